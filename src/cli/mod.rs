@@ -1,0 +1,49 @@
+//! The command line: one file a subcommand. Parsing, progress and printing; no algorithm lives here.
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+mod adapt;
+mod classify;
+mod inspect;
+mod model;
+
+/// Adapts tetrahedral meshes to a metric, on the real CAD model.
+#[derive(Parser)]
+#[command(name = "geo-adapt", version, about, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Adapt a mesh to a metric
+    Adapt(adapt::Arguments),
+    /// Put a mesh's boundary on the entities of a CAD model
+    Classify(classify::Arguments),
+    /// Check a mesh and measure it in a metric
+    Inspect(inspect::Arguments),
+    /// List the entities of a CAD model
+    Model(model::Arguments),
+}
+
+/// What a subcommand returns: its exit code, or an error that ends the program with code 2.
+/// The error is printed as `geo-adapt: error: …` in one piece.
+type Outcome = Result<ExitCode, Box<dyn std::error::Error>>;
+
+/// Exit code of bad input.
+const BAD_INPUT: u8 = 2;
+
+/// Parses the command line, runs the subcommand, prints its error.
+pub fn main() -> ExitCode {
+    let outcome = match Arguments::parse().command {
+        Command::Adapt(arguments) => adapt::run(&arguments),
+        Command::Classify(arguments) => classify::run(&arguments),
+        Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Model(arguments) => model::run(&arguments),
+    };
+    outcome.unwrap_or_else(|error| {
+        eprintln!("geo-adapt: error: {error}");
+        ExitCode::from(BAD_INPUT)
+    })
+}

@@ -1,0 +1,15 @@
+//! The geometry of the domain: entities, their shape, and the classification of a mesh on them.
+pub mod classify;
+mod discrete;
+mod entity;
+mod error;
+mod model;
+#[cfg(feature = "occt")]
+mod occt;
+mod traits;
+
+pub use discrete::Discrete;
+pub use entity::{CurveKind, EdgeEntity, Entity, FaceEntity, SurfaceKind, Topology, VertexEntity};
+pub use error::Error;
+pub use model::{Evaluator, Model};
+pub use traits::{CurveFrame, Evaluate, Geometry, OnCurve, OnSurface, SurfaceFrame};

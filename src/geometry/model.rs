@@ -1,0 +1,89 @@
+//! A model of any backend. The kernel works on this type: backends are told apart by a match, not by a virtual call.
+use super::{CurveFrame, Discrete, Evaluate, Geometry, OnCurve, OnSurface, SurfaceFrame, Topology};
+use crate::mesh::vector::Vec3;
+
+/// A geometry of one of the backends.
+pub enum Model {
+    /// A B-rep read by OpenCASCADE.
+    #[cfg(feature = "occt")]
+    Occt(super::occt::OcctModel),
+    /// The surface of a mesh itself.
+    Discrete(Discrete),
+}
+
+/// The evaluator of a [`Model`], for one thread.
+#[allow(missing_docs)]
+pub enum Evaluator<'a> {
+    #[cfg(feature = "occt")]
+    Occt(<super::occt::OcctModel as Geometry>::Evaluator<'a>),
+    Discrete(<Discrete as Geometry>::Evaluator<'a>),
+}
+
+impl Model {
+    /// Reads a model file; the format follows from the extension (.step .stp .iges .igs .brep .egads).
+    #[cfg(feature = "occt")]
+    pub fn read(path: &std::path::Path) -> Result<Self, super::Error> {
+        super::occt::OcctModel::read(path).map(Model::Occt)
+    }
+}
+
+impl Geometry for Model {
+    type Evaluator<'a> = Evaluator<'a>;
+
+    fn topology(&self) -> &Topology {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.topology(),
+            Model::Discrete(model) => model.topology(),
+        }
+    }
+
+    fn evaluator(&self) -> Evaluator<'_> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => Evaluator::Occt(model.evaluator()),
+            Model::Discrete(model) => Evaluator::Discrete(model.evaluator()),
+        }
+    }
+}
+
+/// Sends a call to the backend at hand.
+macro_rules! forward {
+    ($self:ident, $call:ident($($argument:expr),*)) => {
+        match $self {
+            #[cfg(feature = "occt")]
+            Evaluator::Occt(evaluator) => evaluator.$call($($argument),*),
+            Evaluator::Discrete(evaluator) => evaluator.$call($($argument),*),
+        }
+    };
+}
+
+impl Evaluate for Evaluator<'_> {
+    fn edge_frame(&mut self, edge: u32, t: f64) -> CurveFrame {
+        forward!(self, edge_frame(edge, t))
+    }
+
+    fn face_frame(&mut self, face: u32, uv: [f64; 2]) -> SurfaceFrame {
+        forward!(self, face_frame(face, uv))
+    }
+
+    fn face_normal(&mut self, face: u32, uv: [f64; 2]) -> Vec3 {
+        forward!(self, face_normal(face, uv))
+    }
+
+    fn edge_on_face(&mut self, edge: u32, t: f64, face: u32) -> Option<[f64; 2]> {
+        forward!(self, edge_on_face(edge, t, face))
+    }
+
+    fn closest_on_edge(&mut self, edge: u32, point: Vec3, guess: Option<f64>) -> OnCurve {
+        forward!(self, closest_on_edge(edge, point, guess))
+    }
+
+    fn closest_on_face(&mut self, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> OnSurface {
+        forward!(self, closest_on_face(face, point, guess))
+    }
+
+    fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
+        forward!(self, closest_on_surface(face, point, guess))
+    }
+}

@@ -1,0 +1,11 @@
+//! geo-adapt: anisotropic adaptation of tetrahedral meshes to a metric, on the real CAD model.
+//!
+//! The way of the data: a [`mesh::TetMesh`] is classified on a [`geometry::Model`], given a
+//! [`metric::Field`], adapted by [`adapt`], and comes out as a [`mesh::TetMesh`] again.
+//! Imports go one way: `cli → adapt → { metric, geometry, tasks } → mesh`.
+pub mod adapt;
+pub mod cli;
+pub mod geometry;
+pub mod mesh;
+pub mod metric;
+pub mod tasks;

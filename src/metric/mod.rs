@@ -1,0 +1,4 @@
+//! Metrics: the tensor algebra, edge length and mean ratio, fields, analytic fields, the background.
+pub mod tensor;
+
+pub use tensor::Sym3;

@@ -1,0 +1,1 @@
+//! The tasking front-end. Knows no mesh.
