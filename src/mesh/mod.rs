@@ -1,5 +1,8 @@
 //! Tetrahedral meshes as plain arrays: what goes in and what comes out.
+pub mod adjacency;
+mod box_tree;
 pub mod io;
+pub mod locate;
 mod tet_mesh;
 pub mod vector;
 

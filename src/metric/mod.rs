@@ -1,4 +1,22 @@
 //! Metrics: the tensor algebra, edge length and mean ratio, fields, analytic fields, the background.
+mod analytic;
+mod background;
+mod eigen;
+mod error;
+mod exponential;
+pub mod field;
+pub mod quality;
+#[cfg(test)]
+mod random;
+mod source;
 pub mod tensor;
+#[cfg(test)]
+mod tests;
 
+pub use analytic::Analytic;
+pub use background::Background;
+pub use eigen::Eigen;
+pub use error::Error;
+pub use field::Field;
+pub use source::Source;
 pub use tensor::Sym3;

@@ -1,19 +1,11 @@
-//! Symmetric 3×3 tensors and their spectral maps (METHOD.md §1).
+//! Symmetric 3×3 tensors: the algebra, and the maps through eigenvalues (METHOD.md §1).
+use super::eigen::Eigen;
 use crate::mesh::vector::Vec3;
 
 /// A symmetric 3×3 tensor; the six terms are in the order of .sol files: 11 12 22 13 23 33.
 /// The order is part of the type: conversions from other customs are named functions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sym3(pub [f64; 6]);
-
-/// Eigenvalues (ascending) and unit eigenvectors (rows, right-handed or not) of a [`Sym3`].
-#[derive(Clone, Copy, Debug)]
-pub struct Eigen {
-    /// Eigenvalues, ascending.
-    pub values: [f64; 3],
-    /// `vectors[i]` belongs to `values[i]`.
-    pub vectors: [Vec3; 3],
-}
 
 impl Sym3 {
     /// The identity.
@@ -73,7 +65,7 @@ impl Sym3 {
             + 2.0 * (m[1] * v[0] * v[1] + m[3] * v[0] * v[2] + m[4] * v[1] * v[2])
     }
 
-    /// Determinant.
+    /// Determinant, by expansion. Of a metric of great anisotropy prefer [`Sym3::sqrt_det`].
     #[inline(always)]
     pub fn det(&self) -> f64 {
         let m = &self.0;
@@ -86,60 +78,89 @@ impl Sym3 {
         self.0[0] + self.0[2] + self.0[5]
     }
 
-    /// Spectral decomposition by cyclic Jacobi rotations.
-    pub fn eigen(&self) -> Eigen {
-        let mut a = [[0.0; 3]; 3];
-        for i in 0..3 {
-            for j in 0..3 {
-                a[i][j] = self.at(i, j);
-            }
+    /// tr(A B): of a sum of dyads Σ vvᵀ and a metric M this is Σ vᵀ M v.
+    #[inline(always)]
+    pub fn contract(&self, other: &Self) -> f64 {
+        let (a, b) = (&self.0, &other.0);
+        a[0] * b[0] + a[2] * b[2] + a[5] * b[5] + 2.0 * (a[1] * b[1] + a[3] * b[3] + a[4] * b[4])
+    }
+
+    /// s·I + self.
+    #[inline(always)]
+    pub fn plus_identity(self, s: f64) -> Self {
+        let m = self.0;
+        Self([m[0] + s, m[1], m[2] + s, m[3], m[4], m[5] + s])
+    }
+
+    /// A².
+    #[inline(always)]
+    pub fn squared(&self) -> Self {
+        let [a, b, c, d, e, f] = self.0;
+        Self([
+            a * a + b * b + d * d,
+            a * b + b * c + d * e,
+            b * b + c * c + e * e,
+            a * d + b * e + d * f,
+            b * d + c * e + e * f,
+            d * d + e * e + f * f,
+        ])
+    }
+
+    /// R A R with a symmetric R (self is A).
+    #[inline]
+    pub fn congruent(&self, r: &Self) -> Self {
+        let rows = [[r.0[0], r.0[1], r.0[3]], [r.0[1], r.0[2], r.0[4]], [r.0[3], r.0[4], r.0[5]]];
+        let mut out = [0.0; 6];
+        for (k, (i, j)) in [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].into_iter().enumerate() {
+            out[k] = crate::mesh::vector::dot(rows[i], self.apply(rows[j]));
         }
-        let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        for _ in 0..50 {
-            let off = a[0][1] * a[0][1] + a[0][2] * a[0][2] + a[1][2] * a[1][2];
-            let diagonal = a[0][0] * a[0][0] + a[1][1] * a[1][1] + a[2][2] * a[2][2];
-            if off <= 1e-40 * diagonal || off == 0.0 {
-                break;
-            }
-            for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-                if a[p][q] == 0.0 {
-                    continue;
-                }
-                let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-                let c = 1.0 / (t * t + 1.0).sqrt();
-                let s = t * c;
-                for k in 0..3 {
-                    let (x, y) = (a[k][p], a[k][q]);
-                    a[k][p] = c * x - s * y;
-                    a[k][q] = s * x + c * y;
-                }
-                for k in 0..3 {
-                    let (x, y) = (a[p][k], a[q][k]);
-                    a[p][k] = c * x - s * y;
-                    a[q][k] = s * x + c * y;
-                }
-                for row in &mut v {
-                    let (x, y) = (row[p], row[q]);
-                    row[p] = c * x - s * y;
-                    row[q] = s * x + c * y;
-                }
-            }
-        }
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| a[i][i].total_cmp(&a[j][j]));
-        Eigen { values: order.map(|i| a[i][i]), vectors: order.map(|i| [v[0][i], v[1][i], v[2][i]]) }
+        Self(out)
+    }
+
+    /// The pivots of M = L D Lᵀ, in the order of the rows; their product is the determinant, and all are
+    /// positive just when M is positive definite. Not defined (NaN or infinite) when a pivot vanishes.
+    #[inline]
+    fn pivots(&self) -> [f64; 3] {
+        let [a, b, c, d, e, f] = self.0;
+        let l1 = b / a;
+        let p2 = c - l1 * b;
+        let x = e - l1 * d;
+        [a, p2, f - d / a * d - x / p2 * x]
+    }
+
+    /// √det M of a positive-definite tensor, by its pivots: no differences of products of three terms.
+    #[inline]
+    pub fn sqrt_det(&self) -> f64 {
+        let [a, b, c] = self.pivots();
+        a.sqrt() * b.sqrt() * c.sqrt()
+    }
+
+    /// Whether all terms are finite and all eigenvalues positive (in floating point).
+    pub fn is_spd(&self) -> bool {
+        self.0.iter().all(|x| x.is_finite()) && self.eigen_spd().values[0] > 0.0
+    }
+
+    /// The sizes h = λ^(-1/2), greatest first, of a positive-definite metric; `eigen_spd().vectors` are their directions.
+    pub fn sizes(&self) -> [f64; 3] {
+        self.eigen_spd().values.map(|x| 1.0 / x.sqrt())
+    }
+
+    /// The metric of sizes h_i > 0 along orthonormal directions.
+    pub fn from_sizes(directions: [Vec3; 3], sizes: [f64; 3]) -> Self {
+        Self::from_eigen(&Eigen { values: sizes.map(|h| 1.0 / (h * h)), vectors: directions })
     }
 
     /// Σ values_i v_i v_iᵀ.
+    #[inline]
     pub fn from_eigen(eigen: &Eigen) -> Self {
-        (0..3).fold(Self::ZERO, |m, i| m.plus(Self::outer(eigen.vectors[i], eigen.values[i])))
+        let [a, b, c] = eigen.vectors;
+        Self::outer(a, eigen.values[0]).plus(Self::outer(b, eigen.values[1])).plus(Self::outer(c, eigen.values[2]))
     }
 
-    /// P f(D) Pᵀ.
+    /// P f(D) Pᵀ of a positive-definite tensor.
     #[inline]
-    pub fn map(&self, f: impl Fn(f64) -> f64) -> Self {
-        let mut eigen = self.eigen();
+    pub fn map_spd(&self, f: impl Fn(f64) -> f64) -> Self {
+        let mut eigen = self.eigen_spd();
         eigen.values = eigen.values.map(f);
         Self::from_eigen(&eigen)
     }
@@ -147,12 +168,33 @@ impl Sym3 {
     /// ln M of a positive-definite tensor.
     #[inline]
     pub fn ln(&self) -> Self {
-        self.map(f64::ln)
+        self.map_spd(f64::ln)
     }
 
-    /// exp L.
+    /// M^(1/2) of a positive-definite tensor.
     #[inline]
-    pub fn exp(&self) -> Self {
-        self.map(f64::exp)
+    pub fn sqrt(&self) -> Self {
+        self.map_spd(f64::sqrt)
+    }
+
+    /// M^(-1/2) of a positive-definite tensor.
+    #[inline]
+    pub fn inverse_sqrt(&self) -> Self {
+        self.map_spd(|x| 1.0 / x.sqrt())
+    }
+
+    /// M^(-1) of a positive-definite tensor.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        self.map_spd(|x| 1.0 / x)
+    }
+
+    /// M1 ∩ M2: the metric whose unit ball fits into both unit balls (METHOD.md §1): in the frame of M1 the
+    /// eigenvalues of M2 are raised to at least 1.
+    pub fn intersect(&self, other: &Self) -> Self {
+        let eigen = self.eigen_spd();
+        let root = Self::from_eigen(&Eigen { values: eigen.values.map(f64::sqrt), ..eigen });
+        let inverse_root = Self::from_eigen(&Eigen { values: eigen.values.map(|x| 1.0 / x.sqrt()), ..eigen });
+        other.congruent(&inverse_root).map_spd(|x| x.max(1.0)).congruent(&root)
     }
 }

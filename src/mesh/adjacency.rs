@@ -1,0 +1,64 @@
+//! Neighbours of tetrahedra and unique edges of a plain mesh, by sorting.
+
+/// No neighbour: the face is on the boundary.
+pub const NONE: u32 = u32::MAX;
+
+/// The nodes of face i of a tetrahedron, which is opposite to node i; ordered so that the normal points outwards.
+pub const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+/// The nodes of the six edges of a tetrahedron.
+pub const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
+/// A face of a tetrahedron, by its sorted nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct FaceKey {
+    /// Nodes, ascending.
+    pub nodes: [u32; 3],
+    /// 4·tet + face.
+    pub side: u32,
+}
+
+/// Three node numbers, ascending.
+#[inline(always)]
+pub fn sorted3([a, b, c]: [u32; 3]) -> [u32; 3] {
+    let (a, b) = if a < b { (a, b) } else { (b, a) };
+    let (b, c) = if b < c { (b, c) } else { (c, b) };
+    if a < b { [a, b, c] } else { [b, a, c] }
+}
+
+/// All faces of the tetrahedra, sorted by their nodes: equal faces are next to each other.
+pub fn sorted_faces(tets: &[[u32; 4]]) -> Vec<FaceKey> {
+    let mut keys = Vec::with_capacity(4 * tets.len());
+    for (t, nodes) in tets.iter().enumerate() {
+        for (f, face) in FACES.iter().enumerate() {
+            keys.push(FaceKey { nodes: sorted3(face.map(|i| nodes[i])), side: (4 * t + f) as u32 });
+        }
+    }
+    keys.sort_unstable();
+    keys
+}
+
+/// The neighbour across each face, shape (n, 4); [`NONE`] on the boundary. Of a face of more than two tetrahedra the
+/// first two are neighbours.
+pub fn neighbours(tets: &[[u32; 4]]) -> Vec<[u32; 4]> {
+    let mut neighbours = vec![[NONE; 4]; tets.len()];
+    let keys = sorted_faces(tets);
+    for same in keys.chunk_by(|a, b| a.nodes == b.nodes) {
+        if let [a, b, ..] = same {
+            neighbours[a.side as usize / 4][a.side as usize % 4] = b.side / 4;
+            neighbours[b.side as usize / 4][b.side as usize % 4] = a.side / 4;
+        }
+    }
+    neighbours
+}
+
+/// The edges of the tetrahedra, each once, lower node first, sorted.
+pub fn unique_edges(tets: &[[u32; 4]]) -> Vec<[u32; 2]> {
+    let mut edges: Vec<[u32; 2]> = Vec::with_capacity(6 * tets.len());
+    for nodes in tets {
+        edges.extend(EDGES.iter().map(|&[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]));
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}

@@ -1,0 +1,199 @@
+//! Point location in a tetrahedral mesh: a walk from a hint, and a tree of boxes for where the walk cannot go.
+use super::adjacency::{FACES, NONE, neighbours};
+use super::box_tree::BoxTree;
+use super::vector::{Vec3, add, cross, distance, dot, scale, sub, volume6};
+use std::sync::OnceLock;
+
+/// A barycentric coordinate down to this counts as inside.
+const INSIDE: f64 = -1e-12;
+
+/// Steps after which a walk gives up; a tree search costs about as much as so many steps.
+const STEPS: u32 = 200;
+
+/// Where a point is.
+#[derive(Clone, Copy, Debug)]
+pub struct Location {
+    /// The tetrahedron that contains the point, or the nearest one.
+    pub tet: u32,
+    /// Barycentric coordinates, ≥ 0, sum 1; of the nearest point of the tetrahedron when the point lies outside the mesh.
+    pub weights: [f64; 4],
+    /// Distance from the point to the tetrahedron, 0 inside; model units.
+    pub distance: f64,
+}
+
+/// A mesh to search. Shared by threads; a query allocates nothing.
+pub struct Locator {
+    vertices: Vec<Vec3>,
+    tets: Vec<[u32; 4]>,
+    neighbours: Vec<[u32; 4]>,
+    tree: OnceLock<BoxTree>,
+}
+
+/// How a walk ended.
+enum Walk {
+    Found(Location),
+    /// Stopped at the boundary or given up, in this tetrahedron.
+    Lost(u32),
+}
+
+impl Locator {
+    /// From vertices (n, 3) and tetrahedra (m, 4).
+    ///
+    /// # Panics
+    /// When there is no tetrahedron or an index is out of range.
+    pub fn new(vertices: Vec<Vec3>, tets: Vec<[u32; 4]>) -> Self {
+        assert!(!tets.is_empty(), "a mesh without tetrahedra cannot be searched");
+        assert!(tets.iter().flatten().all(|&v| (v as usize) < vertices.len()), "node out of range");
+        let neighbours = neighbours(&tets);
+        Self { vertices, tets, neighbours, tree: OnceLock::new() }
+    }
+
+    /// The vertices.
+    pub fn vertices(&self) -> &[Vec3] {
+        &self.vertices
+    }
+
+    /// The tetrahedra.
+    pub fn tets(&self) -> &[[u32; 4]] {
+        &self.tets
+    }
+
+    /// The tetrahedron that contains p, else the nearest one. `hint` is where the walk starts (any number will do: one
+    /// out of range starts with the tree) and becomes the tetrahedron found.
+    pub fn locate(&self, p: Vec3, hint: &mut u32) -> Location {
+        let found = if (*hint as usize) < self.tets.len() {
+            match self.walk(p, *hint) {
+                Walk::Found(found) => found,
+                Walk::Lost(tet) => self.search(p, self.nearest_in(tet, p)),
+            }
+        } else {
+            self.search(p, self.nearest_in(0, p))
+        };
+        *hint = found.tet;
+        found
+    }
+
+    /// Corners of a tetrahedron.
+    #[inline]
+    fn corners(&self, tet: u32) -> [Vec3; 4] {
+        self.tets[tet as usize].map(|v| self.vertices[v as usize])
+    }
+
+    /// Visibility walk that remembers where it came from: always through the face that p lies farthest behind, in
+    /// barycentric terms. Meshes that are not Delaunay can make it run in circles: it gives up after a number of steps.
+    fn walk(&self, p: Vec3, start: u32) -> Walk {
+        let (mut tet, mut previous) = (start, NONE);
+        for _ in 0..STEPS {
+            let corners = self.corners(tet);
+            let volumes = sub_volumes(&corners, p);
+            let total = volumes[0] + volumes[1] + volumes[2] + volumes[3];
+            if total > 0.0 && volumes.iter().all(|&v| v >= INSIDE * total) {
+                let weights = volumes.map(|v| v.max(0.0));
+                let sum: f64 = weights.iter().sum();
+                return Walk::Found(Location { tet, weights: weights.map(|w| w / sum), distance: 0.0 });
+            }
+            let mut next = NONE;
+            let mut least = 0.0;
+            for (face, &volume) in volumes.iter().enumerate() {
+                let beyond = self.neighbours[tet as usize][face];
+                if volume < least && beyond != NONE && beyond != previous {
+                    (next, least) = (beyond, volume);
+                }
+            }
+            if next == NONE {
+                return Walk::Lost(tet);
+            }
+            (previous, tet) = (tet, next);
+        }
+        Walk::Lost(tet)
+    }
+
+    /// The nearest tetrahedron of all, given one that bounds the distance.
+    fn search(&self, p: Vec3, bound: Location) -> Location {
+        let tree = self.tree.get_or_init(|| {
+            BoxTree::new(self.tets.len(), |tet| {
+                let c = self.corners(tet);
+                let corner = |f: fn(f64, f64) -> f64| -> Vec3 {
+                    std::array::from_fn(|i| f(f(c[0][i], c[1][i]), f(c[2][i], c[3][i])))
+                };
+                [corner(f64::min), corner(f64::max)]
+            })
+        });
+        let mut best = bound;
+        tree.nearest(p, best.distance * best.distance, |tet| {
+            let found = self.nearest_in(tet, p);
+            if found.distance < best.distance {
+                best = found;
+            }
+            best.distance * best.distance
+        });
+        best
+    }
+
+    /// The point of a tetrahedron nearest to p.
+    fn nearest_in(&self, tet: u32, p: Vec3) -> Location {
+        let corners = self.corners(tet);
+        let volumes = sub_volumes(&corners, p);
+        let total: f64 = volumes.iter().sum();
+        if total > 0.0 && volumes.iter().all(|&v| v >= 0.0) {
+            return Location { tet, weights: volumes.map(|v| v / total), distance: 0.0 };
+        }
+        let mut best = Location { tet, weights: [0.25; 4], distance: f64::INFINITY };
+        for (face, nodes) in FACES.iter().enumerate() {
+            // The nearest point of a convex body lies on a face that p sees; all faces of a flat or inverted one count.
+            if total > 0.0 && volumes[face] >= 0.0 {
+                continue;
+            }
+            let weights = nearest_on_triangle(p, nodes.map(|i| corners[i]));
+            let on_face = nodes.iter().zip(weights).fold([0.0; 3], |q, (&i, w)| add(q, scale(corners[i], w)));
+            let away = distance(p, on_face);
+            if away < best.distance {
+                best.distance = away;
+                best.weights = [0.0; 4];
+                for (&i, w) in nodes.iter().zip(weights) {
+                    best.weights[i] = w;
+                }
+            }
+        }
+        best
+    }
+}
+
+/// Six times the volumes with p in the place of each corner: p's barycentric coordinates times the whole.
+#[inline(always)]
+fn sub_volumes(c: &[Vec3; 4], p: Vec3) -> [f64; 4] {
+    [
+        volume6(p, c[1], c[2], c[3]),
+        volume6(c[0], p, c[2], c[3]),
+        volume6(c[0], c[1], p, c[3]),
+        volume6(c[0], c[1], c[2], p),
+    ]
+}
+
+/// Barycentric coordinates of the point of a triangle nearest to p: inside, else on the nearest of its edges.
+fn nearest_on_triangle(p: Vec3, t: [Vec3; 3]) -> [f64; 3] {
+    let normal = cross(sub(t[1], t[0]), sub(t[2], t[0]));
+    let square = dot(normal, normal);
+    if square > 0.0 {
+        let part = |a: Vec3, b: Vec3| dot(cross(sub(a, p), sub(b, p)), normal) / square;
+        let weights = [part(t[1], t[2]), part(t[2], t[0]), part(t[0], t[1])];
+        if weights.iter().all(|&w| w >= 0.0) {
+            let sum: f64 = weights.iter().sum();
+            return weights.map(|w| w / sum);
+        }
+    }
+    let mut best = ([1.0, 0.0, 0.0], f64::INFINITY);
+    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+        let edge = sub(t[j], t[i]);
+        let length = dot(edge, edge);
+        let s = if length > 0.0 { (dot(sub(p, t[i]), edge) / length).clamp(0.0, 1.0) } else { 0.0 };
+        let away = distance(p, add(t[i], scale(edge, s)));
+        if away < best.1 {
+            let mut weights = [0.0; 3];
+            weights[i] = 1.0 - s;
+            weights[j] = s;
+            best = (weights, away);
+        }
+    }
+    best.0
+}

@@ -1,0 +1,99 @@
+//! The exponential of a log metric: the inner loop of everything.
+//!
+//! A symmetric tensor is L = (tr L/3) I + S. With S³ = 3p S + 2r I (Cayley–Hamilton), exp S = a0 I + a1 S + a2 S²,
+//! where the polynomial interpolates e^x at the three eigenvalues of S (Newton's divided differences). Only the
+//! eigenvalues are needed, no vectors, and a close pair does no harm: the interpolation error of a node that is off by
+//! √ε, with its twin off as much, is of the order ε.
+use super::Sym3;
+use super::eigen::{Eigen, invariants, roots};
+
+/// Below this √p the power series is as exact and has no small divisors.
+const SERIES: f64 = 0.05;
+
+/// Beyond this difference of the eigenvalues of ln M (anisotropy 1e4) quadratic forms are summed along the
+/// eigenvectors: the figures that a matrix of six terms would lose are kept.
+const STRONG: f64 = 18.4;
+
+/// exp S of a traceless S, as coefficients of 1, S and S².
+struct Coefficients {
+    a: [f64; 3],
+    /// Difference of the extreme eigenvalues of S.
+    spread: f64,
+}
+
+#[inline(always)]
+fn coefficients(s: &Sym3) -> Coefficients {
+    let (p, r) = invariants(s);
+    if p < SERIES * SERIES {
+        return series(p, r);
+    }
+    let x = roots(p, r);
+    // The sum of the roots is 0: the third exponential is the inverse of the others' product.
+    let (low, high) = (x[0].exp(), x[2].exp());
+    let middle = 1.0 / (low * high);
+    let f01 = divided_difference(x[1] - x[0], low, middle);
+    let f12 = divided_difference(x[2] - x[1], middle, high);
+    let spread = x[2] - x[0];
+    let f012 = (f12 - f01) / spread;
+    // e0 + f01 (S − x0) + f012 (S − x0)(S − x1), with x0 + x1 = −x2.
+    Coefficients { a: [low - f01 * x[0] + f012 * x[0] * x[1], f01 + f012 * x[2], f012], spread }
+}
+
+/// (e^(x+d) − e^x)/d from the two exponentials.
+#[inline(always)]
+fn divided_difference(d: f64, first: f64, second: f64) -> f64 {
+    if d > 1e-5 { (second - first) / d } else { first * (1.0 + d * (0.5 + d / 6.0)) }
+}
+
+/// Σ Sⁿ/n! up to n = 9, in Horner's scheme in the ring of polynomials modulo x³ − 3p x − 2r.
+#[cold]
+fn series(p: f64, r: f64) -> Coefficients {
+    let mut a = [1.0, 0.0, 0.0];
+    for n in (1..=9).rev() {
+        let over = 1.0 / f64::from(n);
+        // a ← 1 + x·a/n
+        a = [1.0 + 2.0 * r * a[2] * over, (a[0] + 3.0 * p * a[2]) * over, a[1] * over];
+    }
+    Coefficients { a, spread: 4.0 * p.sqrt() }
+}
+
+impl Sym3 {
+    /// exp L, to the rounding of its largest eigenvalue.
+    #[inline]
+    pub fn exp(&self) -> Self {
+        let mean = self.trace() / 3.0;
+        let s = self.plus_identity(-mean);
+        let c = coefficients(&s);
+        if c.spread > STRONG {
+            let Eigen { values, vectors } = self.eigen();
+            return Self::from_eigen(&Eigen { values: values.map(f64::exp), vectors });
+        }
+        let factor = mean.exp();
+        let [a0, a1, a2] = c.a.map(|x| x * factor);
+        s.squared().times(a2).plus(s.times(a1)).plus_identity(a0)
+    }
+
+    /// tr(G exp S), S the traceless part of self and G = Σ vvᵀ: the sum of vᵀ exp(S) v over the vectors v. The volume part of
+    /// the metric, exp(tr L/3), is left out: in the mean ratio it cancels. `vectors` are the v, for strong anisotropy.
+    #[inline]
+    pub(super) fn deviatoric_form(&self, g: &Self, vectors: impl Fn() -> [crate::mesh::vector::Vec3; 6]) -> f64 {
+        let s = self.plus_identity(-self.trace() / 3.0);
+        let c = coefficients(&s);
+        if c.spread > STRONG {
+            return strong_form(&s, vectors());
+        }
+        c.a[0] * g.trace() + c.a[1] * g.contract(&s) + c.a[2] * g.contract(&s.squared())
+    }
+}
+
+/// Σ vᵀ exp(S) v, along the eigenvectors of S.
+#[cold]
+fn strong_form(s: &Sym3, vectors: [crate::mesh::vector::Vec3; 6]) -> f64 {
+    let eigen = s.eigen();
+    let mut sum = 0.0;
+    for i in 0..3 {
+        let squares: f64 = vectors.iter().map(|&v| crate::mesh::vector::dot(eigen.vectors[i], v).powi(2)).sum();
+        sum += eigen.values[i].exp() * squares;
+    }
+    sum
+}

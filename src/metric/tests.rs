@@ -1,0 +1,138 @@
+//! Properties of the tensor algebra over random metrics, to an anisotropy of 1e6.
+use super::random::{rotated, spd};
+use super::{Eigen, Sym3};
+use crate::mesh::vector::dot;
+use proptest::prelude::*;
+
+/// ln 1e6.
+const STRONGEST: f64 = 13.815_510_557_964_274;
+
+/// Greatest absolute term.
+fn size(m: &Sym3) -> f64 {
+    m.0.iter().fold(0.0, |a: f64, x| a.max(x.abs()))
+}
+
+fn difference(a: &Sym3, b: &Sym3) -> f64 {
+    size(&a.plus(b.times(-1.0)))
+}
+
+fn check_frame(eigen: &Eigen) -> Result<(), TestCaseError> {
+    for i in 0..3 {
+        for j in 0..3 {
+            let expected = f64::from(u8::from(i == j));
+            let found = dot(eigen.vectors[i], eigen.vectors[j]);
+            prop_assert!((found - expected).abs() < 1e-12, "v{i}·v{j} = {found}");
+        }
+    }
+    prop_assert!(eigen.values[0] <= eigen.values[1] && eigen.values[1] <= eigen.values[2]);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(512))]
+
+    #[test]
+    fn eigen_gives_the_tensor_back(m in spd(STRONGEST), shift in -3.0..3.0f64) {
+        for a in [m, m.ln(), m.ln().plus_identity(shift)] {
+            for eigen in [a.eigen(), a.eigen_jacobi()] {
+                check_frame(&eigen)?;
+                prop_assert!(difference(&Sym3::from_eigen(&eigen), &a) <= 4e-15 * size(&a), "{a:?} {eigen:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn eigenvalues_are_the_sizes(frame in rotated(), logs in prop::array::uniform3(0.0..STRONGEST)) {
+        let m = Sym3::from_sizes(frame, logs.map(|x| x.exp()));
+        let mut expected = logs.map(|x| x.exp());
+        expected.sort_by(|a, b| b.total_cmp(a));
+        let ratio = (expected[0] / expected[2]).powi(2);
+        for (h, e) in m.sizes().iter().zip(expected) {
+            // The tensor's terms are rounded by 1e-16 of the greatest.
+            prop_assert!((h / e - 1.0).abs() < 1e-13 + 4e-16 * ratio, "{h} {e}");
+        }
+    }
+
+    #[test]
+    fn exp_is_right_on_known_eigenvectors(frame in rotated(), logs in prop::array::uniform3(-STRONGEST..STRONGEST)) {
+        let values = logs.map(|x| -2.0 * x);
+        let exact = Sym3::from_eigen(&Eigen { values: values.map(f64::exp), vectors: frame });
+        let e = Sym3::from_eigen(&Eigen { values, vectors: frame }).exp();
+        prop_assert!(difference(&e, &exact) <= 1e-13 * size(&exact), "{e:?} {exact:?}");
+    }
+
+    #[test]
+    fn exp_and_ln_are_inverse(m in spd(STRONGEST)) {
+        let ln = m.ln();
+        let back = ln.exp();
+        prop_assert!(difference(&back, &m) <= 1e-12 * size(&m), "{m:?} {back:?}");
+        // det exp L = e^(tr L).
+        prop_assert!((ln.trace() - 2.0 * m.sqrt_det().ln()).abs() <= 1e-3);
+    }
+
+    #[test]
+    fn exp_of_weakly_anisotropic(frame in rotated(), logs in prop::array::uniform3(-1.0..1.0f64), scale in -12.0..0.5f64) {
+        let values = logs.map(|x| x * scale.exp());
+        let exact = Sym3::from_eigen(&Eigen { values: values.map(f64::exp), vectors: frame });
+        let e = Sym3::from_eigen(&Eigen { values, vectors: frame }).exp();
+        prop_assert!(difference(&e, &exact) <= 4e-15 * size(&exact));
+    }
+
+    #[test]
+    fn quadratic_forms_keep_their_figures(frame in rotated(), logs in prop::array::uniform3(0.0..6.9f64), v in prop::array::uniform3(-1.0..1.0f64)) {
+        let values = logs.map(|x| -2.0 * x);
+        let e = Sym3::from_eigen(&Eigen { values, vectors: frame }).exp();
+        for v in [v, frame[0], frame[1], frame[2]] {
+            let exact: f64 = (0..3).map(|i| values[i].exp() * dot(frame[i], v).powi(2)).sum();
+            prop_assert!((e.quadratic(v) / exact - 1.0).abs() < 1e-9, "{} {exact}", e.quadratic(v));
+        }
+    }
+
+    #[test]
+    fn roots_and_inverse(m in spd(0.5 * STRONGEST)) {
+        let root = m.sqrt();
+        prop_assert!(difference(&root.squared(), &m) <= 1e-13 * size(&m));
+        let one = m.congruent(&m.inverse_sqrt());
+        let ratio = { let h = m.sizes(); (h[0] / h[2]).powi(2) };
+        prop_assert!(difference(&one, &Sym3::IDENTITY) <= 1e-13 + 1e-15 * ratio, "{one:?}");
+        prop_assert!(difference(&m.inverse().inverse(), &m) <= (1e-13 + 1e-15 * ratio) * size(&m));
+        prop_assert!((m.sqrt_det().powi(2) / m.det() - 1.0).abs() < 1e-10 + 1e-15 * ratio * ratio);
+    }
+
+    #[test]
+    fn the_intersection_contains_both(a in spd(STRONGEST), b in spd(STRONGEST), vs in prop::array::uniform8(prop::array::uniform3(-1.0..1.0f64))) {
+        let both = a.intersect(&b);
+        prop_assert!(both.0.iter().all(|x| x.is_finite()));
+        let rounding = 1e-9 * (size(&a) + size(&b));
+        for v in vs {
+            let greater = a.quadratic(v).max(b.quadratic(v));
+            prop_assert!(both.quadratic(v) >= greater - rounding * dot(v, v), "{} {greater}", both.quadratic(v));
+        }
+    }
+
+    #[test]
+    fn the_intersection_in_a_common_frame(frame in rotated(), x in prop::array::uniform3(-3.0..3.0f64), y in prop::array::uniform3(-3.0..3.0f64)) {
+        let of = |logs: [f64; 3]| Sym3::from_sizes(frame, logs.map(f64::exp));
+        let exact = of(std::array::from_fn(|i| x[i].min(y[i])));
+        let both = of(x).intersect(&of(y));
+        prop_assert!(difference(&both, &exact) <= 1e-10 * size(&exact), "{both:?} {exact:?}");
+    }
+
+    #[test]
+    fn spd_is_told(m in spd(0.5 * STRONGEST), shift in 1.001..2.0f64) {
+        prop_assert!(m.is_spd());
+        let least = m.eigen_jacobi().values[0];
+        prop_assert!(!m.plus_identity(-shift * least).is_spd());
+    }
+}
+
+#[test]
+fn degenerate_tensors() {
+    for m in [Sym3::ZERO, Sym3::IDENTITY, Sym3::IDENTITY.times(1e-300), Sym3::outer([0.6, 0.8, 0.0], 5.0)] {
+        check_frame(&m.eigen()).unwrap();
+        assert!(difference(&Sym3::from_eigen(&m.eigen()), &m) <= 1e-15 * size(&m));
+    }
+    assert_eq!(Sym3::ZERO.exp(), Sym3::IDENTITY);
+    assert!(!Sym3([f64::NAN, 0.0, 1.0, 0.0, 0.0, 1.0]).is_spd());
+    assert!(!Sym3::ZERO.is_spd());
+}
