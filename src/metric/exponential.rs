@@ -10,9 +10,9 @@ use super::eigen::{Eigen, invariants, roots};
 /// Below this √p the power series is as exact and has no small divisors.
 const SERIES: f64 = 0.05;
 
-/// Beyond this difference of the eigenvalues of ln M (anisotropy 1e4) quadratic forms are summed along the
+/// Beyond this difference of the eigenvalues of ln M (anisotropy 1e3) quadratic forms are summed along the
 /// eigenvectors: the figures that a matrix of six terms would lose are kept.
-const STRONG: f64 = 18.4;
+const STRONG: f64 = 13.8;
 
 /// exp S of a traceless S, as coefficients of 1, S and S².
 struct Coefficients {
