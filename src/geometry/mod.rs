@@ -1,6 +1,6 @@
 //! The geometry of the domain: entities, their shape, and the classification of a mesh on them.
 pub mod classify;
-mod discrete;
+pub mod discrete;
 mod entity;
 mod error;
 mod model;
