@@ -71,7 +71,8 @@ impl LocalSet {
 
     #[cold]
     fn grow(&mut self) {
-        let old = std::mem::replace(&mut self.slots, vec![(0, 0); self.slots.len() * 2]);
+        let larger = vec![(0, 0); self.slots.len() * 2];
+        let old = std::mem::replace(&mut self.slots, larger);
         self.len = 0;
         for (stamp, key) in old {
             if stamp == self.stamp {

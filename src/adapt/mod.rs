@@ -14,6 +14,7 @@ mod outcome;
 mod pipeline;
 mod project;
 mod reconnect;
+mod run;
 mod schedule;
 mod shape;
 mod shell;
@@ -23,5 +24,8 @@ mod store;
 mod surface;
 mod worker;
 
+pub use build::{Error, Extracted};
 pub use criteria::Criterion;
 pub use outcome::{Counts, Refusal};
+pub use pipeline::{Kind, Observer, Work};
+pub use run::{Adapted, Options, adapt};

@@ -24,11 +24,11 @@ pub trait Operation: Sync {
 pub type Advance<'a> = &'a (dyn Fn(usize) + Sync);
 
 /// Applies the operation to all items, in order on one thread, speculatively on more.
-pub fn run<O: Operation>(
+pub fn run<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
-    context: &Context<'_>,
-    states: &mut [State<'_>],
+    context: &Context<'m>,
+    states: &mut [State<'m>],
     pool: &Pool,
     advance: Advance<'_>,
 ) -> Counts {

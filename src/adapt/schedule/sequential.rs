@@ -9,11 +9,11 @@ use crate::adapt::worker::{State, Worker};
 const STRIDE: usize = 1024;
 
 /// Applies the operation to the items in turn.
-pub fn run<O: Operation>(
+pub fn run<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
-    context: &Context<'_>,
-    state: &mut State<'_>,
+    context: &Context<'m>,
+    state: &mut State<'m>,
     advance: Advance<'_>,
 ) -> Counts {
     let mut counts = Counts::default();

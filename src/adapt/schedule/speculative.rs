@@ -16,11 +16,11 @@ const BUCKET: usize = 150;
 const ROUNDS: usize = 6;
 
 /// Applies the operation to the items on all threads of the pool, one state each.
-pub fn run<O: Operation>(
+pub fn run<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
-    context: &Context<'_>,
-    states: &mut [State<'_>],
+    context: &Context<'m>,
+    states: &mut [State<'m>],
     pool: &Pool,
     advance: Advance<'_>,
 ) -> Counts {
@@ -64,12 +64,12 @@ impl<I> Default for Outcome<I> {
 }
 
 #[allow(clippy::too_many_arguments)]
-fn take_buckets<O: Operation>(
+fn take_buckets<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
     next: &AtomicUsize,
-    context: &Context<'_>,
-    state: &mut State<'_>,
+    context: &Context<'m>,
+    state: &mut State<'m>,
     thread: usize,
     outcome: &mut Outcome<O::Item>,
     advance: Advance<'_>,

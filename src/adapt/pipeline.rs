@@ -1,0 +1,236 @@
+//! The passes: what is done, in which order, until the mesh is a unit mesh.
+use super::build;
+use super::context::{Context, Limits};
+use super::criteria::Criterion;
+use super::ids::{EDGE, TetId, VertexId};
+use super::insert::EdgeItem;
+use super::outcome::Counts;
+use super::schedule::{self, Collapse, Operation, Project, Reconnect, Smooth, Split};
+use super::worker::State;
+use crate::mesh::vector::sub;
+use crate::metric::quality::edge_length;
+use crate::tasks::Pool;
+use std::time::{Duration, Instant};
+
+/// Passes of refinement and coarsening at most.
+const PASSES: usize = 12;
+
+/// A kind of operation, for progress and report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Insertion.
+    Split,
+    /// Collapse.
+    Collapse,
+    /// Reconnection.
+    Reconnect,
+    /// Smoothing.
+    Smooth,
+    /// Projection on the model.
+    Project,
+}
+
+/// Time and counts of one kind of operation.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize)]
+pub struct Work {
+    /// Counts over all sweeps.
+    pub counts: Counts,
+    /// Sweeps.
+    pub sweeps: u32,
+    /// Wall time.
+    pub time: Duration,
+}
+
+/// Is told what happens; called from several threads.
+pub trait Observer: Sync {
+    /// A sweep begins.
+    fn begin(&self, kind: Kind, pass: usize, items: usize);
+    /// So many more items are done.
+    fn advance(&self, items: usize);
+    /// The sweep is over.
+    fn end(&self, counts: &Counts);
+    /// Whether to stop after this sweep.
+    fn stop(&self) -> bool;
+}
+
+/// The passes on one mesh.
+pub struct Pipeline<'c, 'm> {
+    /// Mesh, metric, model, limits.
+    pub context: &'c mut Context<'m>,
+    /// One a thread.
+    pub states: Vec<State<'m>>,
+    /// The threads.
+    pub pool: &'c Pool,
+    /// Who is told.
+    pub observer: &'c dyn Observer,
+    /// Criterion of the flips that follow refinement.
+    pub criterion: Criterion,
+    /// By kind of operation.
+    pub work: [Work; 5],
+    /// Boundary vertices that are not on the model yet.
+    pub waiting: Vec<VertexId>,
+    pass: usize,
+}
+
+impl<'c, 'm> Pipeline<'c, 'm> {
+    /// A pipeline on a filled store.
+    pub fn new(
+        context: &'c mut Context<'m>,
+        pool: &'c Pool,
+        observer: &'c dyn Observer,
+        criterion: Criterion,
+        waiting: Vec<VertexId>,
+    ) -> Self {
+        let states = (0..pool.threads()).map(|_| State::new(context)).collect();
+        Self { context, states, pool, observer, criterion, work: [Work::default(); 5], waiting, pass: 0 }
+    }
+
+    /// Adapts the mesh.
+    pub fn run(&mut self) {
+        self.context.limits = Limits::default();
+        for pass in 0..PASSES {
+            self.pass = pass;
+            let before = self.changes();
+            self.collapse();
+            let split = self.refine();
+            self.collapse();
+            self.reconnect(Criterion::MeanRatio, 2);
+            self.smooth();
+            self.reconnect(Criterion::MeanRatio, 1);
+            if self.observer.stop() || (split == 0 && self.changes() - before < 1) {
+                break;
+            }
+        }
+    }
+
+    fn changes(&self) -> u64 {
+        self.work[Kind::Split as usize].counts.done + self.work[Kind::Collapse as usize].counts.done
+    }
+
+    /// Splits long edges until none is left or none can be split.
+    fn refine(&mut self) -> u64 {
+        let mut total = 0;
+        for _ in 0..4 {
+            if self.observer.stop() {
+                break;
+            }
+            let items = self.long_edges();
+            let done = self.sweep(Kind::Split, &Split, &items).done;
+            self.project();
+            self.reconnect(self.criterion, 1);
+            total += done;
+            if (done as f64) < 0.02 * items.len() as f64 || done == 0 {
+                break;
+            }
+        }
+        total
+    }
+
+    fn collapse(&mut self) {
+        for _ in 0..3 {
+            let items = self.short_edges();
+            if self.observer.stop() || self.sweep(Kind::Collapse, &Collapse, &items).done == 0 {
+                break;
+            }
+        }
+    }
+
+    fn reconnect(&mut self, criterion: Criterion, sweeps: usize) {
+        let mut since = 0;
+        for _ in 0..sweeps {
+            let items: Vec<TetId> = self.context.store.live_tets().filter(|&t| self.context.store.stamp(t) >= since).collect();
+            since = self.context.store.clock() + 1;
+            if self.observer.stop() || self.sweep(Kind::Reconnect, &Reconnect(criterion), &items).done == 0 {
+                break;
+            }
+        }
+    }
+
+    fn smooth(&mut self) {
+        for _ in 0..2 {
+            let items: Vec<VertexId> = self.context.store.live_vertices().collect();
+            if self.observer.stop() || self.sweep(Kind::Smooth, &Smooth, &items).done == 0 {
+                break;
+            }
+        }
+    }
+
+    /// Tries to bring the waiting vertices to the model.
+    fn project(&mut self) {
+        for state in &mut self.states {
+            self.waiting.append(&mut state.waiting);
+        }
+        if self.waiting.is_empty() {
+            return;
+        }
+        let items = std::mem::take(&mut self.waiting);
+        self.sweep(Kind::Project, &Project, &items);
+        for state in &mut self.states {
+            self.waiting.append(&mut state.waiting);
+        }
+    }
+
+    /// One sweep of an operation over its items.
+    fn sweep<O: Operation>(&mut self, kind: Kind, operation: &O, items: &[O::Item]) -> Counts {
+        if items.is_empty() {
+            return Counts::default();
+        }
+        let (vertices, tets) = (self.context.store.vertex_bound(), self.context.store.tet_bound());
+        let room = self.context.store.room();
+        if room.0 < vertices / 2 || room.1 < tets / 2 {
+            self.context.store.reserve(vertices, tets);
+        }
+        self.context.store.tick();
+        let start = Instant::now();
+        self.observer.begin(kind, self.pass, items.len());
+        let advance = |n: usize| self.observer.advance(n);
+        let counts = schedule::run(operation, items, self.context, &mut self.states, self.pool, &advance);
+        self.observer.end(&counts);
+        let work = &mut self.work[kind as usize];
+        work.counts.add(&counts);
+        work.sweeps += 1;
+        work.time += start.elapsed();
+        counts
+    }
+
+    /// Edges whose length passes the test, each once, with their length.
+    fn edges(&self, wanted: impl Fn(f64) -> bool) -> Vec<(EdgeItem, f64)> {
+        let store = &self.context.store;
+        let mut found = Vec::new();
+        for t in store.live_tets() {
+            let v = store.vertices(t);
+            let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
+            for [i, j] in EDGE {
+                let length = edge_length(sub(p[j], p[i]), &m[i], &m[j]);
+                if wanted(length) {
+                    found.push((EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t }, length));
+                }
+            }
+        }
+        found.sort_unstable_by_key(|(item, _)| (item.a, item.b));
+        found.dedup_by_key(|(item, _)| (item.a, item.b));
+        found
+    }
+
+    /// Edges to be split: those of the model's edges first, then of its faces, then inside; long ones first.
+    fn long_edges(&self) -> Vec<EdgeItem> {
+        let store = &self.context.store;
+        let mut found = self.edges(|length| length > self.context.limits.long);
+        let rank = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
+        found.sort_by(|(x, lx), (y, ly)| rank(x).cmp(&rank(y)).then(ly.total_cmp(lx)));
+        found.into_iter().map(|(item, _)| item).collect()
+    }
+
+    /// Edges to be collapsed, short ones first.
+    fn short_edges(&self) -> Vec<EdgeItem> {
+        let mut found = self.edges(|length| length < self.context.limits.short);
+        found.sort_by(|(_, lx), (_, ly)| lx.total_cmp(ly));
+        found.into_iter().map(|(item, _)| item).collect()
+    }
+}
+
+/// Measures everything anew: after the limits or the field changed.
+pub fn remeasure(context: &Context<'_>) {
+    build::measure(&context.store, context.source);
+}
