@@ -1,5 +1,5 @@
 //! Errors of files.
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What was wrong with a file: what, where, and the remedy.
 #[derive(Debug, thiserror::Error)]
@@ -22,4 +22,16 @@ pub enum Error {
         /// What is wrong and the remedy.
         message: String,
     },
+}
+
+impl Error {
+    /// An error of the operating system at a file.
+    pub(super) fn system(path: &Path, source: std::io::Error) -> Self {
+        Self::System { path: path.to_owned(), source }
+    }
+
+    /// Wrong content at a place of a file.
+    pub(super) fn content(path: &Path, place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::Content { path: path.to_owned(), place: place.into(), message: message.into() }
+    }
 }

@@ -1,7 +1,20 @@
 //! Mesh and solution files: libMeshb's .mesh/.meshb and .sol/.solb.
+//!
+//! Reading goes bytes → `source` (sections; found by `ascii` or `binary`) → `read` (arrays, through a `cursor`);
+//! writing goes arrays → `write` (checked) → `sink` → `beside`.
+mod ascii;
+mod beside;
+mod binary;
+mod cursor;
 mod error;
+mod keyword;
+mod read;
+mod sink;
 mod solution;
+mod source;
+mod write;
 
+pub use beside::write_beside;
 pub use error::Error;
 pub use solution::{FieldKind, Solution, SolutionField};
 
@@ -18,25 +31,37 @@ pub struct Read<T> {
 }
 
 /// Reads .mesh or .meshb, told apart by the content; every index in range, every coordinate finite.
+///
+/// # Errors
+/// [`Error::System`] when the file cannot be read, [`Error::Content`] when what it says cannot be true.
 pub fn read_mesh(path: &Path) -> Result<Read<TetMesh>, Error> {
-    let _ = path;
-    unimplemented!()
+    let bytes = std::fs::read(path).map_err(|e| Error::system(path, e))?;
+    read::mesh_from(path, &bytes)
 }
 
 /// Writes .mesh or .meshb by the extension: beside the target first, then renamed.
+///
+/// # Errors
+/// [`Error::Content`] for another extension, an index out of range or a value that is not finite,
+/// [`Error::System`] when the file cannot be written.
 pub fn write_mesh(path: &Path, mesh: &TetMesh) -> Result<(), Error> {
-    let _ = (path, mesh);
-    unimplemented!()
+    write::mesh_to(path, mesh)
 }
 
-/// Reads .sol or .solb (fields at vertices).
+/// Reads .sol or .solb (fields at vertices), told apart by the content; every value finite.
+///
+/// # Errors
+/// [`Error::System`] when the file cannot be read, [`Error::Content`] when what it says cannot be true.
 pub fn read_solution(path: &Path) -> Result<Read<Solution>, Error> {
-    let _ = path;
-    unimplemented!()
+    let bytes = std::fs::read(path).map_err(|e| Error::system(path, e))?;
+    read::solution_from(path, &bytes)
 }
 
 /// Writes .sol or .solb by the extension: beside the target first, then renamed.
+///
+/// # Errors
+/// [`Error::Content`] for another extension, a wrong number of values or a value that is not finite,
+/// [`Error::System`] when the file cannot be written.
 pub fn write_solution(path: &Path, solution: &Solution) -> Result<(), Error> {
-    let _ = (path, solution);
-    unimplemented!()
+    write::solution_to(path, solution)
 }

@@ -1,0 +1,230 @@
+//! Binary files: the chain of keywords and the values.
+//!
+//! ```text
+//!  1 (tells the byte order) │ version │ keyword │ position of the next keyword │ count │ rows … │ keyword │ …
+//! ```
+//! The chain ends at the keyword End. Versions differ in the size of words (see [`Words`]).
+use super::cursor::Cursor;
+use super::keyword::{DIMENSION, END, Keyword, PRECISION, describe};
+use super::source::{Contents, Encoding, Section, Source, Words, field_kinds};
+use super::{Error, FieldKind};
+use std::ops::Range;
+use std::path::Path;
+
+/// Bytes of a keyword, a dimension, a number of fields, a field's type: in all versions.
+const WORD: usize = 4;
+
+impl Words {
+    /// The integer of `size` bytes (4 or 8) at `at`, if the bytes reach that far.
+    #[inline(always)]
+    fn int_at(&self, bytes: &[u8], at: usize, size: usize) -> Option<i64> {
+        if size == 4 {
+            let word = *bytes.get(at..)?.first_chunk()?;
+            Some(if self.big { i32::from_be_bytes(word) } else { i32::from_le_bytes(word) }.into())
+        } else {
+            let word = *bytes.get(at..)?.first_chunk()?;
+            Some(if self.big { i64::from_be_bytes(word) } else { i64::from_le_bytes(word) })
+        }
+    }
+
+    /// The real at `at`, if the bytes reach that far.
+    #[inline(always)]
+    fn real_at(&self, bytes: &[u8], at: usize) -> Option<f64> {
+        if self.real == 4 {
+            let word = *bytes.get(at..)?.first_chunk()?;
+            Some(if self.big { f32::from_be_bytes(word) } else { f32::from_le_bytes(word) }.into())
+        } else {
+            let word = *bytes.get(at..)?.first_chunk()?;
+            Some(if self.big { f64::from_be_bytes(word) } else { f64::from_le_bytes(word) })
+        }
+    }
+}
+
+/// One link of the chain: a keyword and the bytes up to the next.
+struct Link {
+    code: i32,
+    at: usize,
+    body: Range<usize>,
+}
+
+impl Link {
+    /// What errors call it.
+    fn name(&self) -> String {
+        describe(self.code)
+    }
+}
+
+/// Finds the sections of a binary file.
+pub(super) fn contents<'a>(path: &'a Path, bytes: &'a [u8], big: bool) -> Result<Contents<'a>, Error> {
+    let mut words = Words::of_version(2, big);
+    let mut source = Source { path, bytes, encoding: Encoding::Binary(words) };
+    match words.int_at(bytes, 4, WORD) {
+        Some(version @ 1..=4) => words = Words::of_version(version, big),
+        Some(version) => {
+            return Err(source.error(4, "version", format!("version {version} is not known; 1 to 4 are")));
+        }
+        None => return Err(source.error(bytes.len(), "version", CUT)),
+    }
+    let chain = chain(&source, words)?;
+    if let Some(real) = precision(&source, words, &chain) {
+        words.real = real;
+    }
+    source.encoding = Encoding::Binary(words);
+    let mut contents = Contents { source, sections: Vec::new(), notices: Vec::new() };
+    let mut dimension = None;
+    for link in &chain {
+        match Keyword::from_code(link.code) {
+            Some(keyword) => contents.add(section(&source, words, link, keyword)?, link.at)?,
+            None if link.code == DIMENSION => dimension = words.int_at(&bytes[link.body.clone()], 0, WORD),
+            None if link.code == PRECISION => {}
+            None => contents.notices.push(source.notice(link.at, &link.name())),
+        }
+    }
+    super::source::check_dimension(&source, dimension)?;
+    Ok(contents)
+}
+
+/// Remedy for a file that ends too early.
+const CUT: &str = "the file ends here: it was cut; copy or write it again";
+
+/// Follows the chain to the keyword End.
+fn chain(source: &Source, words: Words) -> Result<Vec<Link>, Error> {
+    let size = source.bytes.len();
+    let mut links = Vec::new();
+    let mut at = 2 * WORD;
+    loop {
+        let Some(code) = words.int_at(source.bytes, at, WORD) else {
+            return Err(source.error(size, "keyword", CUT));
+        };
+        let code = code as i32; // read from four bytes
+        let body = at + WORD + words.position;
+        if code == END {
+            // some writers leave out End's own position, which means nothing
+            return if size <= body {
+                Ok(links)
+            } else {
+                Err(source.error(body, "End", format!("{} bytes follow the end; cut them off", size - body)))
+            };
+        }
+        let Some(next) = words.int_at(source.bytes, at + WORD, words.position) else {
+            return Err(source.error(size, &describe(code), CUT));
+        };
+        // positions that only grow make the chain end
+        let next = match usize::try_from(next) {
+            Ok(0) => return Err(source.error(at, &describe(code), NO_END)),
+            Ok(next) if next >= body && next < size => next,
+            Ok(next) if next >= size => return Err(source.error(at, &describe(code), beyond(next, size))),
+            _ => return Err(source.error(at, &describe(code), backwards(next))),
+        };
+        links.push(Link { code, at, body: body..next });
+        at = next;
+    }
+}
+
+/// Remedy for a chain that stops before the keyword End.
+const NO_END: &str = "no next keyword and no End: the file was not written to its end; write it again";
+
+fn beyond(next: usize, size: usize) -> String {
+    format!("the next keyword is said to be at byte {next}, but the file has {size} bytes: it was cut; copy it again")
+}
+
+fn backwards(next: i64) -> String {
+    format!("the next keyword is said to be at byte {next}, before this one's end; the file is damaged, write it again")
+}
+
+/// Bytes of a real, when the file says so itself.
+fn precision(source: &Source, words: Words, chain: &[Link]) -> Option<usize> {
+    let link = chain.iter().find(|link| link.code == PRECISION && link.body.len() == words.int)?;
+    match words.int_at(source.bytes, link.body.start, words.int) {
+        Some(32) => Some(4),
+        Some(64) => Some(8),
+        _ => None,
+    }
+}
+
+/// Reads a section's header and checks that its rows fill it exactly.
+fn section(source: &Source, words: Words, link: &Link, keyword: Keyword) -> Result<Section, Error> {
+    let bytes = &source.bytes[..link.body.end];
+    let fail = |at: usize, message: String| source.error(at, keyword.name(), message);
+    let mut at = link.body.start;
+    let Some(count) = words.int_at(bytes, at, words.int) else {
+        return Err(fail(at, "the next keyword follows before the count; the file is damaged, write it again".into()));
+    };
+    at += words.int;
+    let mut kinds = Vec::new();
+    if keyword == Keyword::SolAtVertices {
+        kinds = solution_header(words, bytes, at).map_err(|message| fail(at, message))?;
+        at += WORD * (1 + kinds.len());
+    }
+    let mut section = Section { keyword, count: 0, body: at..bytes.len(), kinds };
+    let (ints, reals) = section.row();
+    let (row, body) = (ints * words.int + reals * words.real, section.body.len());
+    match usize::try_from(count) {
+        Ok(count) if count.checked_mul(row) == Some(body) => section.count = count,
+        _ => {
+            let holds = if body.is_multiple_of(row) { format!("{}", body / row) } else { format!("{body} bytes") };
+            return Err(fail(
+                link.body.start,
+                format!("the count says {count}, but there are {holds}: the file is damaged, write it again"),
+            ));
+        }
+    }
+    Ok(section)
+}
+
+/// The fields of a solution: their number and their types.
+fn solution_header(words: Words, bytes: &[u8], at: usize) -> Result<Vec<FieldKind>, String> {
+    let fields = words.int_at(bytes, at, WORD).ok_or("the number of fields is missing; write the file again")?;
+    let room = bytes.len().saturating_sub(at + WORD) / WORD;
+    match usize::try_from(fields) {
+        Ok(fields) if (1..=room).contains(&fields) => {
+            field_kinds((1..=fields).filter_map(|k| words.int_at(bytes, at + WORD * k, WORD)))
+        }
+        _ => Err(format!("{fields} fields are said to follow; at least 1 is expected, and no more than fit")),
+    }
+}
+
+/// Walks through the values of a section of a binary file.
+pub(super) struct BinaryCursor<'a> {
+    bytes: &'a [u8],
+    words: Words,
+    next: usize,
+    at: usize,
+}
+
+impl BinaryCursor<'_> {
+    #[inline(always)]
+    fn step(&mut self, size: usize) -> usize {
+        self.at = self.next;
+        self.next += size;
+        self.at
+    }
+}
+
+impl<'a> Cursor<'a> for BinaryCursor<'a> {
+    fn new(source: &Source<'a>, section: &Section) -> Self {
+        let Encoding::Binary(words) = source.encoding else { unreachable!("a binary cursor on a text") };
+        let (bytes, at) = (&source.bytes[..section.body.end], section.body.start);
+        Self { bytes, words, next: at, at }
+    }
+
+    #[inline(always)]
+    fn int(&mut self) -> Result<i64, String> {
+        let at = self.step(self.words.int);
+        self.words.int_at(self.bytes, at, self.words.int).ok_or_else(|| CUT.into())
+    }
+
+    #[inline(always)]
+    fn raw_real(&mut self) -> Result<f64, String> {
+        let at = self.step(self.words.real);
+        self.words.real_at(self.bytes, at).ok_or_else(|| CUT.into())
+    }
+
+    fn at(&self) -> usize {
+        self.at
+    }
+
+    fn finish(&mut self) -> Result<(), String> {
+        Ok(()) // the rows fill the section, see `section`
+    }
+}
