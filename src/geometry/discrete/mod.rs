@@ -18,3 +18,4 @@ pub use evaluate::DiscreteEvaluator;
 pub(crate) use chains::{Chain, trace_chains};
 pub(crate) use edges::EdgeTable;
 pub(crate) use features::Features;
+pub(crate) use tree::{BoxTree, box_of};

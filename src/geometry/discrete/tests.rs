@@ -144,7 +144,7 @@ fn a_smooth_sphere_is_one_face_and_has_its_curvature() {
 #[test]
 fn closest_points_are_closest_whatever_the_guess() {
     let mesh = sphere(8);
-    let (model, _) = discrete(&mesh);
+    let (model, classification) = discrete(&mesh);
     let mut evaluator = model.evaluator();
     let mut seed = 1u64;
     let mut random = || {
@@ -158,7 +158,7 @@ fn closest_points_are_closest_whatever_the_guess() {
         let on = evaluator.closest_on_face(face, p, Some(guess));
         let mut least = f64::INFINITY;
         for k in 0..mesh.triangles.len() {
-            if model_face(&model, &mesh, k) == face {
+            if classification.faces[k] == face {
                 let corners = mesh.triangles.nodes[k].map(|v| mesh.vertices[v as usize]);
                 least = least.min(brute_distance(corners, p));
             }
@@ -166,16 +166,6 @@ fn closest_points_are_closest_whatever_the_guess() {
         assert!(on.distance <= least + 1e-9, "{} {least}", on.distance);
         assert!((norm(sub(on.point, p)) - on.distance).abs() < 1e-12);
     }
-}
-
-fn model_face(_: &Discrete, mesh: &TetMesh, triangle: usize) -> u32 {
-    let mut seen = Vec::new();
-    for &reference in &mesh.triangles.refs {
-        if !seen.contains(&reference) {
-            seen.push(reference);
-        }
-    }
-    seen.iter().position(|&r| r == mesh.triangles.refs[triangle]).unwrap() as u32
 }
 
 /// Distance to a triangle by a fine scan of its points: an upper bound.
