@@ -2,4 +2,75 @@
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
+    #[cfg(feature = "occt")]
+    occt::build();
+}
+
+#[cfg(feature = "occt")]
+mod occt {
+    use std::path::PathBuf;
+
+    const SOURCES: [&str; 3] = ["cpp/load.cpp", "cpp/model.cpp", "cpp/evaluate.cpp"];
+
+    /// Toolkits that the bridge calls, callers first.
+    const LIBRARIES: [&str; 14] = [
+        "TKIGES",
+        "TKSTEP",
+        "TKSTEPBase",
+        "TKXSBase",
+        "TKShHealing",
+        "TKTopAlgo",
+        "TKGeomAlgo",
+        "TKBRep",
+        "TKGeomBase",
+        "TKG3d",
+        "TKG2d",
+        "TKMath",
+        "TKernel",
+        "TKSTEPAttr",
+    ];
+
+    /// Compiles cpp/ and links OCCT. OCCT_INCLUDE and OCCT_LIB name its folders when it is not the system's.
+    pub fn build() {
+        for name in ["OCCT_INCLUDE", "OCCT_LIB"] {
+            println!("cargo:rerun-if-env-changed={name}");
+        }
+        let include = include_folder();
+        cxx_build::bridge("src/geometry/occt/bridge.rs")
+            .files(SOURCES)
+            // As a system folder, so that OCCT's own headers raise no warnings.
+            .flag("-isystem")
+            .flag(include.to_str().expect("OCCT's include folder has a UTF-8 name"))
+            .std("c++17")
+            .flag("-Wall")
+            .flag("-Wextra")
+            .compile("geo-adapt-occt");
+        for source in SOURCES.iter().chain(&["cpp/occt.hpp", "src/geometry/occt/bridge.rs"]) {
+            println!("cargo:rerun-if-changed={source}");
+        }
+        if let Ok(folder) = std::env::var("OCCT_LIB") {
+            println!("cargo:rustc-link-search=native={folder}");
+        }
+        for library in LIBRARIES {
+            println!("cargo:rustc-link-lib={library}");
+        }
+    }
+
+    /// Where OCCT's headers lie; ends the build with the remedy when they are nowhere.
+    fn include_folder() -> PathBuf {
+        let candidates = std::env::var("OCCT_INCLUDE")
+            .into_iter()
+            .chain(["/usr", "/usr/local", "/opt/opencascade"].map(|root| format!("{root}/include/opencascade")));
+        for folder in candidates.map(PathBuf::from) {
+            if folder.join("Standard_Version.hxx").is_file() {
+                return folder;
+            }
+        }
+        eprintln!(
+            "OpenCASCADE's headers were not found. Install OCCT 7.6 (Debian: apt-get install libocct-data-exchange-dev \
+             libocct-modeling-algorithms-dev libocct-ocaf-dev), or set OCCT_INCLUDE and OCCT_LIB to its folders, or build \
+             with --no-default-features to leave the CAD backend out."
+        );
+        std::process::exit(1);
+    }
 }

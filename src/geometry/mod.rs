@@ -1,6 +1,6 @@
 //! The geometry of the domain: entities, their shape, and the classification of a mesh on them.
 pub mod classify;
-mod discrete;
+pub mod discrete;
 mod entity;
 mod error;
 mod model;
@@ -12,4 +12,6 @@ pub use discrete::Discrete;
 pub use entity::{CurveKind, EdgeEntity, Entity, FaceEntity, SurfaceKind, Topology, VertexEntity};
 pub use error::Error;
 pub use model::{Evaluator, Model};
+#[cfg(feature = "occt")]
+pub use occt::{OcctEvaluator, OcctModel};
 pub use traits::{CurveFrame, Evaluate, Geometry, OnCurve, OnSurface, SurfaceFrame};

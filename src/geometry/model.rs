@@ -25,6 +25,37 @@ impl Model {
     pub fn read(path: &std::path::Path) -> Result<Self, super::Error> {
         super::occt::OcctModel::read(path).map(Model::Occt)
     }
+
+    /// Without OpenCASCADE no model file can be read.
+    #[cfg(not(feature = "occt"))]
+    pub fn read(path: &std::path::Path) -> Result<Self, super::Error> {
+        let message = "this build has no CAD backend; build geo-adapt with its feature `occt`, or leave the model out";
+        Err(super::Error::Model { path: path.into(), message: message.into() })
+    }
+
+    /// Area of a face, in the square of the model's unit; none where the backend does not tell.
+    pub fn face_area(&self, face: u32) -> Option<f64> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.face_area(face),
+            Model::Discrete(_) => {
+                let _ = face;
+                None
+            }
+        }
+    }
+
+    /// Length of an edge, in the model's unit; none where the backend does not tell.
+    pub fn edge_length(&self, edge: u32) -> Option<f64> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.edge_length(edge),
+            Model::Discrete(_) => {
+                let _ = edge;
+                None
+            }
+        }
+    }
 }
 
 impl Geometry for Model {

@@ -1,19 +1,63 @@
-//! The OpenCASCADE backend.
-use super::{CurveFrame, Error, Evaluate, Geometry, OnCurve, OnSurface, SurfaceFrame, Topology};
-use crate::mesh::vector::Vec3;
+//! The OpenCASCADE backend: OCCT loads, lists and evaluates (cpp/); projections are here. Analytic surfaces and curves
+//! are copied once and evaluated in Rust; what is left goes over the bridge.
+mod bridge;
+mod cells;
+mod curve;
+mod evaluator;
+mod load;
+mod newton;
+mod project;
+mod range;
+mod surface;
 
-/// A B-rep model read by OpenCASCADE.
-pub struct OcctModel {
-    topology: Topology,
+use super::{Error, Geometry, Topology};
+use bridge::ffi;
+use cells::Cell;
+use curve::Curve;
+pub use evaluator::OcctEvaluator;
+use std::sync::OnceLock;
+use surface::Surface;
+
+/// A closed form, and the cells for the global search, made when first asked for.
+struct Shape<T> {
+    form: T,
+    counts: [usize; 2],
+    cells: OnceLock<Vec<Cell>>,
 }
 
-/// Evaluator of one thread: its own adaptors.
-pub struct OcctEvaluator<'a>(&'a OcctModel);
+impl<T> Shape<T> {
+    fn new(form: T, u: usize, v: usize) -> Self {
+        Self { form, counts: [u, v], cells: OnceLock::new() }
+    }
+}
+
+/// A B-rep model read by OpenCASCADE. Coordinates are the numbers that the file states, whatever their unit.
+pub struct OcctModel {
+    topology: Topology,
+    occt: cxx::SharedPtr<ffi::Model>,
+    surfaces: Vec<Shape<Surface>>,
+    curves: Vec<Shape<Curve>>,
+    /// The greater of the box's diagonal and the largest coordinate: what rounding is measured by.
+    size: f64,
+}
 
 impl OcctModel {
-    /// Reads a model file.
+    /// Reads a model file; the format follows from the extension (.step .stp .iges .igs .brep .egads).
+    ///
+    /// # Errors
+    /// [`Error::Open`] when there is no such file; [`Error::Model`] when it is of another kind, damaged, or without faces.
     pub fn read(path: &std::path::Path) -> Result<Self, Error> {
-        Err(Error::Model { path: path.into(), message: "not there yet".into() })
+        load::read(path)
+    }
+
+    /// Area of a face, in the square of the model's unit; none where OCCT finds none.
+    pub fn face_area(&self, face: u32) -> Option<f64> {
+        (face < self.topology.faces.len() as u32).then(|| self.occt.face_area(face).ok()).flatten()
+    }
+
+    /// Length of an edge; none where OCCT finds none.
+    pub fn edge_length(&self, edge: u32) -> Option<f64> {
+        (edge < self.topology.edges.len() as u32).then(|| self.occt.edge_length(edge).ok()).flatten()
     }
 }
 
@@ -25,31 +69,6 @@ impl Geometry for OcctModel {
     }
 
     fn evaluator(&self) -> OcctEvaluator<'_> {
-        OcctEvaluator(self)
-    }
-}
-
-impl Evaluate for OcctEvaluator<'_> {
-    fn edge_frame(&mut self, _edge: u32, _t: f64) -> CurveFrame {
-        let _ = self.0;
-        unimplemented!()
-    }
-    fn face_frame(&mut self, _face: u32, _uv: [f64; 2]) -> SurfaceFrame {
-        unimplemented!()
-    }
-    fn face_normal(&mut self, _face: u32, _uv: [f64; 2]) -> Vec3 {
-        unimplemented!()
-    }
-    fn edge_on_face(&mut self, _edge: u32, _t: f64, _face: u32) -> Option<[f64; 2]> {
-        unimplemented!()
-    }
-    fn closest_on_edge(&mut self, _edge: u32, _point: Vec3, _guess: Option<f64>) -> OnCurve {
-        unimplemented!()
-    }
-    fn closest_on_face(&mut self, _face: u32, _point: Vec3, _guess: Option<[f64; 2]>) -> OnSurface {
-        unimplemented!()
-    }
-    fn closest_on_surface(&mut self, _face: u32, _point: Vec3, _guess: [f64; 2]) -> OnSurface {
-        unimplemented!()
+        OcctEvaluator::new(self)
     }
 }

@@ -1,0 +1,177 @@
+// Reading of STEP, IGES and BREP files.
+#include "geo-adapt/cpp/occt.hpp"
+
+#include <BRepBuilderAPI_MakeSolid.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepLib.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <IGESControl_Reader.hxx>
+#include <IGESData_GlobalSection.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <STEPConstruct_UnitContext.hxx>
+#include <STEPControl_Reader.hxx>
+#include <StepData_StepModel.hxx>
+#include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
+#include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
+#include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
+
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+namespace geo_adapt {
+namespace {
+
+/// OCCT reports on its messenger and, in places, straight on std::cout: errors are ours to print.
+class Silence
+{
+public:
+  Silence() : out(std::cout.rdbuf(nullptr)), err(std::cerr.rdbuf(nullptr))
+  {
+    Message::DefaultMessenger()->ChangePrinters().Clear();
+  }
+  ~Silence()
+  {
+    std::cout.rdbuf(out);
+    std::cerr.rdbuf(err);
+  }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+private:
+  std::streambuf *out, *err;
+};
+
+/// The length unit of a STEP file in millimetres: that of its first context with units; 0 when it states none.
+double step_unit(const Handle(StepData_StepModel)& model)
+{
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Standard_Transient) entity = model->Value(i);
+    Handle(StepRepr_GlobalUnitAssignedContext) context;
+    if (const auto full = Handle(StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx)::DownCast(entity);
+        !full.IsNull()) {
+      context = full->GlobalUnitAssignedContext();
+    } else if (const auto part =
+                 Handle(StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext)::DownCast(entity);
+               !part.IsNull()) {
+      context = part->GlobalUnitAssignedContext();
+    }
+    if (context.IsNull()) {
+      continue;
+    }
+    STEPConstruct_UnitContext units;
+    if (units.ComputeFactors(context) == 0 && units.LengthDone()) {
+      return units.LengthFactor();
+    }
+  }
+  return 0.0;
+}
+
+/// OCCT converts lengths to its own unit, by default the millimetre. With its unit set to the file's, the factor
+/// is one: the coordinates come as the file states them.
+TopoDS_Shape read_step(const std::string& path)
+{
+  STEPControl_Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {
+    throw std::runtime_error("OpenCASCADE cannot read it as STEP: it is damaged or cut off; export it again");
+  }
+  const double unit = step_unit(reader.StepModel());
+  if (unit > 0.0) {
+    reader.SetSystemLengthUnit(unit);
+  }
+  if (reader.NbRootsForTransfer() == 0) {
+    throw std::runtime_error("the STEP file holds no shape; export the solid as AP203, AP214 or AP242");
+  }
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+
+/// IGES knows faces rather than solids: those without a solid are sewn, and closed shells made solid.
+TopoDS_Shape sewn(const TopoDS_Shape& shape)
+{
+  if (TopExp_Explorer(shape, TopAbs_SOLID).More()) {
+    return shape;
+  }
+  double tolerance = 1e-7;
+  for (TopExp_Explorer it(shape, TopAbs_EDGE); it.More(); it.Next()) {
+    tolerance = std::max(tolerance, BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
+  }
+  BRepBuilderAPI_Sewing sewing(10.0 * tolerance);
+  sewing.Add(shape);
+  sewing.Perform();
+  const TopoDS_Shape joined = sewing.SewedShape();
+  if (joined.IsNull()) {
+    return shape;
+  }
+  TopoDS_Compound all;
+  BRep_Builder builder;
+  builder.MakeCompound(all);
+  for (TopExp_Explorer it(joined, TopAbs_SHELL); it.More(); it.Next()) {
+    const TopoDS_Shell shell = TopoDS::Shell(it.Current());
+    TopoDS_Solid solid;
+    if (BRep_Tool::IsClosed(shell)) {
+      solid = BRepBuilderAPI_MakeSolid(shell).Solid();
+      BRepLib::OrientClosedSolid(solid);
+    }
+    builder.Add(all, solid.IsNull() ? TopoDS_Shape(shell) : TopoDS_Shape(solid));
+  }
+  for (TopExp_Explorer it(joined, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) {
+    builder.Add(all, it.Current());
+  }
+  return all;
+}
+
+TopoDS_Shape read_iges(const std::string& path)
+{
+  IGESControl_Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {
+    throw std::runtime_error("OpenCASCADE cannot read it as IGES: it is damaged or cut off; export it again");
+  }
+  const Handle(IGESData_IGESModel) model = reader.IGESModel();
+  IGESData_GlobalSection header = model->GlobalSection();
+  if (header.UnitValue() > 0.0) {
+    header.SetCascadeUnit(header.UnitValue());
+    model->SetGlobalSection(header);
+  }
+  reader.TransferRoots();
+  const TopoDS_Shape shape = reader.OneShape();
+  return shape.IsNull() ? shape : sewn(shape);
+}
+
+TopoDS_Shape read_brep(const std::string& path)
+{
+  std::ifstream stream(path);
+  TopoDS_Shape shape;
+  BRepTools::Read(shape, stream, BRep_Builder());
+  if (stream.fail() || shape.IsNull()) {
+    throw std::runtime_error("OpenCASCADE cannot read it as BREP: it is damaged or cut off; write it again");
+  }
+  return shape;
+}
+
+} // namespace
+
+std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
+{
+  const Silence silence;
+  const std::string path(name);
+  const TopoDS_Shape shape = format == 0 ? read_step(path) : format == 1 ? read_iges(path) : read_brep(path);
+  if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) {
+    throw std::runtime_error("the model has no faces; export the solid's surfaces, not only curves or a mesh");
+  }
+  BRepLib::BuildCurves3d(shape);
+  return std::make_shared<Model>(shape);
+}
+
+} // namespace geo_adapt

@@ -1,0 +1,167 @@
+// The entities of a loaded model.
+#include "geo-adapt/cpp/occt.hpp"
+#include "geo-adapt/src/geometry/occt/bridge.rs.h"
+
+#include <BRepBndLib.hxx>
+#include <BRepGProp.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <GProp_GProps.hxx>
+#include <Geom2dAdaptor_Curve.hxx>
+#include <Precision.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Vertex.hxx>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace geo_adapt {
+namespace {
+
+std::array<double, 3> coordinates(const gp_Pnt& point)
+{
+  return {point.X(), point.Y(), point.Z()};
+}
+
+std::array<double, 6> box(const TopoDS_Shape& shape)
+{
+  Bnd_Box bounds;
+  BRepBndLib::AddOptimal(shape, bounds, Standard_False, Standard_False);
+  bounds.SetGap(0.0);
+  if (bounds.IsVoid()) {
+    return {0, 0, 0, 0, 0, 0};
+  }
+  if (bounds.IsOpen()) {
+    throw std::runtime_error("the model is unbounded; trim its surfaces");
+  }
+  const gp_Pnt low = bounds.CornerMin(), high = bounds.CornerMax();
+  return {low.X(), low.Y(), low.Z(), high.X(), high.Y(), high.Z()};
+}
+
+/// Whether OCCT's box of the edge's p-curve is exact rather than a numerical extremum.
+bool has_exact_box(const TopoDS_Edge& edge, const TopoDS_Face& face)
+{
+  double first = 0.0, last = 0.0;
+  const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
+  if (curve.IsNull()) {
+    return false;
+  }
+  const GeomAbs_CurveType type = Geom2dAdaptor_Curve(curve).GetType();
+  return type == GeomAbs_Line || type == GeomAbs_Circle || type == GeomAbs_Ellipse;
+}
+
+} // namespace
+
+Model::Model(const TopoDS_Shape& loaded) : shape(loaded)
+{
+  TopExp::MapShapes(shape, TopAbs_FACE, faces);
+  TopExp::MapShapes(shape, TopAbs_EDGE, edges);
+  TopExp::MapShapes(shape, TopAbs_VERTEX, vertices);
+}
+
+TopoDS_Face Model::face(std::uint32_t index) const
+{
+  return TopoDS::Face(faces(static_cast<int>(index) + 1).Oriented(TopAbs_FORWARD));
+}
+
+TopoDS_Edge Model::edge(std::uint32_t index) const
+{
+  return TopoDS::Edge(edges(static_cast<int>(index) + 1).Oriented(TopAbs_FORWARD));
+}
+
+std::uint32_t Model::solid_count() const
+{
+  TopTools_IndexedMapOfShape solids;
+  TopExp::MapShapes(shape, TopAbs_SOLID, solids);
+  return static_cast<std::uint32_t>(solids.Extent());
+}
+
+FaceRecord Model::face_record(std::uint32_t index) const
+{
+  const TopoDS_Face here = face(index);
+  if (BRep_Tool::Surface(here).IsNull()) {
+    throw std::runtime_error("a face has no surface; export exact geometry, not triangles");
+  }
+  const BRepAdaptor_Surface surface(here, Standard_False);
+  FaceRecord record{};
+  record.kind = static_cast<std::uint32_t>(surface.GetType());
+  record.reversed = faces(static_cast<int>(index) + 1).Orientation() == TopAbs_REVERSED;
+  BRepTools::UVBounds(here, record.range[0], record.range[1], record.range[2], record.range[3]);
+  for (const double bound : record.range) {
+    if (!std::isfinite(bound) || Precision::IsInfinite(bound)) {
+      throw std::runtime_error("a face is unbounded; trim the model's surfaces");
+    }
+  }
+  record.exact_range = true;
+  record.spans = {static_cast<std::uint32_t>(surface.NbUIntervals(GeomAbs_CN)),
+                  static_cast<std::uint32_t>(surface.NbVIntervals(GeomAbs_CN))};
+  record.natural = {surface.FirstUParameter(), surface.LastUParameter(), surface.FirstVParameter(),
+                    surface.LastVParameter()};
+  record.period = {surface.IsUPeriodic() ? surface.UPeriod() : 0.0, surface.IsVPeriodic() ? surface.VPeriod() : 0.0};
+  record.tolerance = BRep_Tool::Tolerance(here);
+  record.bounds = box(here);
+  for (TopExp_Explorer it(here, TopAbs_EDGE); it.More(); it.Next()) {
+    const TopoDS_Edge edge = TopoDS::Edge(it.Current());
+    record.edges.push_back(static_cast<std::uint32_t>(edges.FindIndex(edge) - 1));
+    record.exact_range = record.exact_range && has_exact_box(edge, here);
+  }
+  return record;
+}
+
+EdgeRecord Model::edge_record(std::uint32_t index) const
+{
+  const TopoDS_Edge here = edge(index);
+  EdgeRecord record{};
+  TopoDS_Vertex first, last;
+  TopExp::Vertices(here, first, last);
+  record.vertices = {first.IsNull() ? -1 : vertices.FindIndex(first) - 1, last.IsNull() ? -1 : vertices.FindIndex(last) - 1};
+  record.tolerance = BRep_Tool::Tolerance(here);
+  record.degenerate = BRep_Tool::Degenerated(here);
+  BRep_Tool::Range(here, record.range[0], record.range[1]);
+  if (!record.degenerate) {
+    const BRepAdaptor_Curve curve(here);
+    record.kind = static_cast<std::uint32_t>(curve.GetType());
+    record.range = {curve.FirstParameter(), curve.LastParameter()};
+    record.spans = static_cast<std::uint32_t>(curve.NbIntervals(GeomAbs_CN));
+    record.period = curve.IsPeriodic() ? curve.Period() : 0.0;
+    if (Precision::IsInfinite(record.range[0]) || Precision::IsInfinite(record.range[1])) {
+      throw std::runtime_error("an edge is unbounded; trim the model's curves");
+    }
+  }
+  return record;
+}
+
+VertexRecord Model::vertex_record(std::uint32_t index) const
+{
+  const TopoDS_Vertex here = TopoDS::Vertex(vertices(static_cast<int>(index) + 1));
+  VertexRecord record{};
+  record.point = coordinates(BRep_Tool::Pnt(here));
+  record.tolerance = BRep_Tool::Tolerance(here);
+  return record;
+}
+
+std::array<double, 6> Model::bounds() const
+{
+  return box(shape);
+}
+
+double Model::face_area(std::uint32_t index) const
+{
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(face(index), properties);
+  return properties.Mass();
+}
+
+double Model::edge_length(std::uint32_t index) const
+{
+  GProp_GProps properties;
+  BRepGProp::LinearProperties(edge(index), properties);
+  return properties.Mass();
+}
+
+} // namespace geo_adapt

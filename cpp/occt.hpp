@@ -1,0 +1,104 @@
+// The C++ side of the OpenCASCADE bridge: a loaded model, and the evaluators that the threads take of it.
+// It only loads, lists and evaluates. Projections, caches and decisions are in src/geometry/occt/.
+#pragma once
+
+#include "rust/cxx.h"
+
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepTopAdaptor_FClass2d.hxx>
+#include <Geom2d_Curve.hxx>
+#include <Standard_Failure.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS_Shape.hxx>
+
+#include <array>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+// cxx catches std::exception only; in OCCT 7.6 Standard_Failure is none, and would end the process.
+namespace rust::behavior {
+template <typename Try, typename Fail>
+static void trycatch(Try&& attempt, Fail&& fail) noexcept
+{
+  try {
+    attempt();
+  } catch (const Standard_Failure& failure) {
+    const char* text = failure.GetMessageString();
+    fail(text != nullptr && *text != '\0' ? text : failure.DynamicType()->Name());
+  } catch (const std::exception& failure) {
+    fail(failure.what());
+  } catch (...) {
+    fail("an unknown C++ exception");
+  }
+}
+} // namespace rust::behavior
+
+namespace geo_adapt {
+
+struct FaceRecord;
+struct EdgeRecord;
+struct VertexRecord;
+struct Form;
+
+/// A shape with its faces, edges and vertices numbered from 0 in the order of TopExp::MapShapes.
+/// Never changed after loading, so that threads may read it together.
+class Model
+{
+public:
+  explicit Model(const TopoDS_Shape& shape);
+
+  std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces.Extent()); }
+  std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.Extent()); }
+  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertices.Extent()); }
+  std::uint32_t solid_count() const;
+
+  FaceRecord face_record(std::uint32_t face) const;
+  EdgeRecord edge_record(std::uint32_t edge) const;
+  VertexRecord vertex_record(std::uint32_t vertex) const;
+  std::array<double, 6> bounds() const;
+  double face_area(std::uint32_t face) const;
+  double edge_length(std::uint32_t edge) const;
+
+  TopoDS_Face face(std::uint32_t index) const; // FORWARD, as its p-curves want it
+  TopoDS_Edge edge(std::uint32_t index) const; // FORWARD
+
+private:
+  TopoDS_Shape shape;
+  TopTools_IndexedMapOfShape faces, edges, vertices;
+};
+
+/// Evaluates the shape of one model for one thread: adaptors and classifiers carry caches, so none is ever shared.
+class Evaluator
+{
+public:
+  explicit Evaluator(std::shared_ptr<Model> model);
+
+  Form surface_form(std::uint32_t face);
+  Form curve_form(std::uint32_t edge);
+  void surface_d0(std::uint32_t face, double u, double v, std::array<double, 3>& out);
+  void surface_d2(std::uint32_t face, double u, double v, std::array<double, 18>& out);
+  void curve_d2(std::uint32_t edge, double t, std::array<double, 9>& out);
+  bool pcurve_d0(std::uint32_t edge, std::uint32_t face, double t, std::array<double, 2>& out);
+  bool inside(std::uint32_t face, double u, double v);
+  double reference_distance(bool is_face, std::uint32_t index, const std::array<double, 3>& point) const;
+
+private:
+  BRepAdaptor_Surface& surface(std::uint32_t face);
+  BRepAdaptor_Curve& curve(std::uint32_t edge);
+
+  std::shared_ptr<const Model> model;
+  std::vector<std::unique_ptr<BRepAdaptor_Surface>> surfaces;
+  std::vector<std::unique_ptr<BRepAdaptor_Curve>> curves;
+  std::vector<std::unique_ptr<BRepTopAdaptor_FClass2d>> classifiers;
+  std::unordered_map<std::uint64_t, Handle(Geom2d_Curve)> pcurves;
+};
+
+/// Reads a file: format 0 is STEP, 1 IGES, 2 BREP. Not to be called by two threads at once.
+std::shared_ptr<Model> load_model(rust::Str path, std::uint32_t format);
+std::unique_ptr<Evaluator> new_evaluator(const std::shared_ptr<Model>& model);
+
+} // namespace geo_adapt

@@ -1,0 +1,77 @@
+//! Writing a classification into a mesh.
+use super::Classification;
+use crate::geometry::Entity;
+use crate::mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};
+use std::collections::{HashMap, HashSet};
+
+/// What changed besides the association.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Associated {
+    /// Whether the triangles' references were replaced by the numbers of the faces: they did not tell faces apart,
+    /// or had several names for one.
+    pub references_replaced: bool,
+    /// Listed edges that lie on no edge of the model, and were dropped.
+    pub edges_dropped: usize,
+}
+
+/// Writes a classification into its mesh, numbers from 1: the association of each vertex with its entity of lowest
+/// dimension; `edges` are the mesh edges on model edges, with the edge's number as the reference, all of them
+/// ridges; `corners` are the vertices on model vertices. Triangles keep their references where each stands
+/// for one face, else they get the face's number. Required edges stay required.
+pub fn associate(mesh: &mut TetMesh, classification: &Classification) -> Associated {
+    write_vertices(mesh, classification);
+    let edges_dropped = write_edges(mesh, classification);
+    let references_replaced = !is_one_to_one(&mesh.triangles.refs, &classification.faces);
+    if references_replaced {
+        mesh.triangles.refs = classification.faces.iter().map(|&face| face as i32 + 1).collect();
+    }
+    Associated { references_replaced, edges_dropped }
+}
+
+fn write_vertices(mesh: &mut TetMesh, classification: &Classification) {
+    mesh.association = Association::default();
+    mesh.corners.clear();
+    for (v, (entity, &[first, second])) in classification.entities.iter().zip(&classification.parameters).enumerate() {
+        let vertex = v as u32;
+        match *entity {
+            Entity::Vertex(i) => {
+                mesh.association.vertices.push(OnVertex { vertex, id: i as i32 + 1 });
+                mesh.corners.push(vertex);
+            }
+            Entity::Edge(i) => {
+                mesh.association.edges.push(OnEdge { vertex, id: i as i32 + 1, t: first, r: 0.0 });
+            }
+            Entity::Face(i) => {
+                mesh.association.faces.push(OnFace { vertex, id: i as i32 + 1, uv: [first, second], r: 0.0 });
+            }
+            Entity::Interior => {}
+        }
+    }
+}
+
+/// Replaces the listed edges by the ridges; returns how many of them were none.
+fn write_edges(mesh: &mut TetMesh, classification: &Classification) -> usize {
+    let sorted = |nodes: [u32; 2]| [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])];
+    let required: HashSet<[u32; 2]> =
+        mesh.required_edges.iter().map(|&e| sorted(mesh.edges.nodes[e as usize])).collect();
+    let listed: HashSet<[u32; 2]> = mesh.edges.nodes.iter().map(|&nodes| sorted(nodes)).collect();
+    let mut kept = 0;
+    mesh.edges = Elements::default();
+    mesh.required_edges.clear();
+    for &(nodes, edge) in &classification.ridges {
+        if required.contains(&sorted(nodes)) {
+            mesh.required_edges.push(mesh.edges.len() as u32);
+        }
+        kept += usize::from(listed.contains(&sorted(nodes)));
+        mesh.edges.push(nodes, edge as i32 + 1);
+    }
+    mesh.ridges = (0..mesh.edges.len() as u32).collect();
+    listed.len() - kept
+}
+
+fn is_one_to_one(refs: &[i32], faces: &[u32]) -> bool {
+    let (mut face_of, mut reference_of) = (HashMap::new(), HashMap::new());
+    refs.iter().zip(faces).all(|(&reference, &face)| {
+        *face_of.entry(reference).or_insert(face) == face && *reference_of.entry(face).or_insert(reference) == reference
+    })
+}

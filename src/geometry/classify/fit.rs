@@ -1,0 +1,114 @@
+//! The classification of a mesh on a model.
+use super::hints::Hints;
+use super::{Classification, Error, Report, corners, coverage, entities, patches, ridges, settle, units};
+use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, Features};
+use crate::geometry::{Entity, Geometry, Model, Topology};
+use crate::mesh::TetMesh;
+
+/// Part of the model's diagonal that a vertex may be off by default: what single precision leaves, with room.
+const TOLERANCE: f64 = 1e-6;
+
+/// While entities are looked for, vertices may be this many tolerances off: p-curves, curves and surfaces of a model
+/// agree less well than it states. The entity that is found is held to one tolerance.
+const SLACK: f64 = 10.0;
+
+/// How to classify.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// How far a vertex may be from its entity, model units. By default 1e-6 of the model's diagonal, or twice the
+    /// tolerance that the model states for the entity if that is more.
+    pub tolerance: Option<f64>,
+    /// Dihedral angle in degrees that separates patches where the file lists no edges; it decides nothing that
+    /// geometry does not confirm.
+    pub ridge_angle_deg: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { tolerance: None, ridge_angle_deg: DEFAULT_RIDGE_ANGLE }
+    }
+}
+
+/// Puts a mesh on a model: each vertex, mesh edge and triangle of its surface gets its entity. What the file says
+/// (association, references) is tried first, and believed where the model agrees; the rest is found by
+/// geometry and connectivity.
+///
+/// In the result every triangle has a face; a mesh edge between different faces lies on a model edge that they share;
+/// every model edge that is a ridge is covered by one chain from its first vertex to its last, every face by
+/// triangles; every model vertex has one mesh vertex, except poles and the ends of seams, which no shape singles out.
+///
+/// # Errors
+/// [`Error`], if the mesh does not fit so: which, where, how far.
+pub fn classify(mesh: &TetMesh, model: &Model, options: &Options) -> Result<(Classification, Report), Error> {
+    if mesh.triangles.is_empty() {
+        return Err(Error::NoTriangles);
+    }
+    let topology = model.topology();
+    units::check(mesh, topology)?;
+    let fit = Fit {
+        mesh,
+        model,
+        topology,
+        features: Features::detect(mesh, options.ridge_angle_deg),
+        hints: Hints::new(mesh, topology),
+        tolerance: options.tolerance.unwrap_or(TOLERANCE * topology.diagonal()),
+        given: options.tolerance.is_some(),
+    };
+    let faces = patches::match_faces(&fit)?;
+    let ridges = ridges::find(&fit, &faces.of_triangle)?;
+    let corners = corners::find(&fit, &ridges)?;
+    let entities = entities::assemble(&fit, &faces.of_triangle, &ridges, &corners)?;
+    coverage::check(&fit, &faces.of_triangle, &ridges, &entities)?;
+    settle::settle(&fit, faces, ridges, entities)
+}
+
+/// What all steps share.
+pub(super) struct Fit<'a> {
+    pub mesh: &'a TetMesh,
+    pub model: &'a Model,
+    pub topology: &'a Topology,
+    pub features: Features,
+    pub hints: Hints,
+    /// The tolerance given, or that of an entity which states none.
+    pub tolerance: f64,
+    given: bool,
+}
+
+impl Fit<'_> {
+    /// How far a vertex may be from an entity.
+    pub fn allowed(&self, entity: Entity) -> f64 {
+        let stated = match entity {
+            Entity::Vertex(i) => self.topology.vertices[i as usize].tolerance,
+            Entity::Edge(i) => self.topology.edges[i as usize].tolerance,
+            Entity::Face(i) => self.topology.faces[i as usize].tolerance,
+            Entity::Interior => 0.0,
+        };
+        if self.given { self.tolerance } else { self.tolerance.max(2.0 * stated) }
+    }
+
+    /// How far it may be while the entity is looked for.
+    pub fn reach(&self, entity: Entity) -> f64 {
+        SLACK * self.allowed(entity)
+    }
+
+    /// A point of the mesh.
+    pub fn point(&self, vertex: u32) -> crate::mesh::vector::Vec3 {
+        self.mesh.vertices[vertex as usize]
+    }
+
+    /// The error of vertices off their entities: names the farthest.
+    pub fn vertex_off(&self, mut off: Vec<(u32, Entity, f64)>) -> Option<Error> {
+        off.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        let mut distinct: Vec<u32> = off.iter().map(|entry| entry.0).collect();
+        distinct.sort_unstable();
+        distinct.dedup();
+        off.first().map(|&(vertex, entity, distance)| Error::VertexOff {
+            vertex,
+            point: self.point(vertex),
+            entity,
+            distance,
+            tolerance: self.allowed(entity),
+            others: distinct.len() - 1,
+        })
+    }
+}

@@ -1,0 +1,245 @@
+//! The shape of a discrete face: a patch of triangles, exact where it is plane.
+use super::polyline::closest_on_triangle;
+use super::tree::{Box3, BoxTree, box_of, join};
+use crate::geometry::{OnSurface, SurfaceFrame};
+use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale, sub, unit};
+use std::collections::HashMap;
+
+/// A plane with its axes: e1 × e2 = normal.
+struct Plane {
+    origin: Vec3,
+    axes: [Vec3; 2],
+    normal: Vec3,
+}
+
+/// Triangles of one discrete face, normals outward.
+///
+/// Parameters: on a plane patch the coordinates on its axes. On another, u = k + b1/2, v = b2, where k is the triangle
+/// and b1, b2 are the barycentric weights of its second and third corner: a name of the point rather than a chart.
+pub(crate) struct Patch {
+    triangles: Vec<[Vec3; 3]>,
+    normals: Vec<Vec3>,
+    /// Normals of the patch at the corners of each triangle, mean over the patch's triangles there.
+    corner_normals: Vec<[Vec3; 3]>,
+    plane: Option<Plane>,
+    tree: BoxTree,
+    bounds: Box3,
+}
+
+impl Patch {
+    /// A patch of at least one triangle; plane if no vertex is farther than `flat` from its mean plane.
+    pub fn new(points: &[Vec3], nodes: &[[u32; 3]], flat: f64) -> Self {
+        let triangles: Vec<[Vec3; 3]> = nodes.iter().map(|n| n.map(|v| points[v as usize])).collect();
+        let normals: Vec<Vec3> = triangles.iter().map(|&[a, b, c]| unit(area2(a, b, c))).collect();
+        let boxes: Vec<Box3> = triangles.iter().map(|&corners| box_of(corners)).collect();
+        let plane = Plane::fit(&triangles, &normals, flat);
+        let corner_normals = if plane.is_some() { Vec::new() } else { corner_normals(nodes, &triangles) };
+        let bounds = boxes.iter().copied().reduce(join).unwrap_or([[0.0; 3]; 2]);
+        Self { tree: BoxTree::new(&boxes), triangles, normals, corner_normals, plane, bounds }
+    }
+
+    /// Box of the patch.
+    pub fn bounds(&self) -> Box3 {
+        self.bounds
+    }
+
+    /// Bounds of the parameters.
+    pub fn range(&self) -> [[f64; 2]; 2] {
+        let Some(plane) = &self.plane else { return [[0.0, self.triangles.len() as f64], [0.0, 1.0]] };
+        let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for uv in self.triangles.iter().flatten().map(|&p| plane.parameters(p)) {
+            for i in 0..2 {
+                range[i] = [range[i][0].min(uv[i]), range[i][1].max(uv[i])];
+            }
+        }
+        range
+    }
+
+    /// Parameters of a point of triangle k with barycentric weights.
+    pub fn parameters(&self, k: usize, weights: [f64; 3]) -> [f64; 2] {
+        match &self.plane {
+            Some(plane) => plane.parameters(self.at(k, weights)),
+            None => [k as f64 + 0.5 * weights[1].clamp(0.0, 1.0), weights[2]],
+        }
+    }
+
+    /// Parameters of a point known to be on triangle k.
+    pub fn parameters_on(&self, k: usize, p: Vec3) -> [f64; 2] {
+        self.parameters(k, closest_on_triangle(self.triangles[k], p))
+    }
+
+    /// Triangle and weights at parameters, of a patch that is not plane.
+    fn locate(&self, uv: [f64; 2]) -> (usize, [f64; 3]) {
+        let last = self.triangles.len() - 1;
+        let k = if uv[0] > 0.0 { (uv[0] as usize).min(last) } else { 0 };
+        let b1 = (2.0 * (uv[0] - k as f64)).clamp(0.0, 1.0);
+        let b2 = uv[1].clamp(0.0, 1.0);
+        let sum = (b1 + b2).max(1.0);
+        (k, [1.0 - (b1 + b2) / sum, b1 / sum, b2 / sum])
+    }
+
+    fn at(&self, k: usize, weights: [f64; 3]) -> Vec3 {
+        let [a, b, c] = self.triangles[k];
+        add(add(scale(a, weights[0]), scale(b, weights[1])), scale(c, weights[2]))
+    }
+
+    /// Outward normal at parameters. It is the triangle's own at its centroid and tends to the mean of the
+    /// neighbours towards its sides, so it is continuous and the input's triangles have no normal deviation.
+    pub fn normal(&self, uv: [f64; 2]) -> Vec3 {
+        if let Some(plane) = &self.plane {
+            return plane.normal;
+        }
+        let (k, w) = self.locate(uv);
+        let bubble = 27.0 * w[0] * w[1] * w[2];
+        let [a, b, c] = self.corner_normals[k];
+        let rim = add(add(scale(a, w[0]), scale(b, w[1])), scale(c, w[2]));
+        unit(add(scale(unit(rim), 1.0 - bubble), scale(self.normals[k], bubble)))
+    }
+
+    /// Point, derivatives, normal and curvatures at parameters.
+    pub fn frame(&self, uv: [f64; 2]) -> SurfaceFrame {
+        if let Some(plane) = &self.plane {
+            return plane.frame(uv);
+        }
+        let (k, weights) = self.locate(uv);
+        let [a, b, c] = self.triangles[k];
+        let (curvatures, directions) = self.curvatures(k);
+        SurfaceFrame {
+            point: self.at(k, weights),
+            du: scale(sub(b, a), 2.0),
+            dv: sub(c, a),
+            normal: self.normal(uv),
+            curvatures,
+            directions,
+        }
+    }
+
+    /// Closest point of the patch. The guess only bounds the search.
+    pub fn closest(&self, p: Vec3, guess: Option<[f64; 2]>) -> OnSurface {
+        let first = match (guess, &self.plane) {
+            (Some(uv), None) => self.locate(uv).0,
+            _ => 0,
+        };
+        let measure = |k: usize| {
+            let away = sub(p, self.at(k, closest_on_triangle(self.triangles[k], p)));
+            dot(away, away)
+        };
+        let nearest = self.tree.nearest(p, measure(first), |k| measure(k as usize)).map_or(first, |k| k as usize);
+        let weights = closest_on_triangle(self.triangles[nearest], p);
+        let mut point = self.at(nearest, weights);
+        if let Some(plane) = &self.plane {
+            // The mean plane is the face; its triangles only bound it.
+            let inside = weights.iter().all(|&w| w > 0.0);
+            point = plane.project(if inside { p } else { point });
+            return OnSurface { uv: plane.parameters(point), point, distance: distance(p, point) };
+        }
+        OnSurface { uv: self.parameters(nearest, weights), point, distance: distance(p, point) }
+    }
+
+    /// Closest point of the plane of a plane patch, whether or not the triangles reach there; else as [`Patch::closest`].
+    pub fn closest_untrimmed(&self, p: Vec3, guess: [f64; 2]) -> OnSurface {
+        let Some(plane) = &self.plane else { return self.closest(p, Some(guess)) };
+        let point = plane.project(p);
+        OnSurface { uv: plane.parameters(point), point, distance: distance(p, point) }
+    }
+
+    /// Principal curvatures and directions of triangle k: the symmetric S that fits n_j − n_i = −S (p_j − p_i) along
+    /// its sides best, with the patch's normals n at the corners p (after Rusinkiewicz 2004).
+    fn curvatures(&self, k: usize) -> ([f64; 2], [Vec3; 2]) {
+        let corners = self.triangles[k];
+        let e1 = unit(sub(corners[1], corners[0]));
+        let e2 = cross(self.normals[k], e1);
+        let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+        for i in 0..3 {
+            let j = (i + 1) % 3;
+            let (along, turn) =
+                (sub(corners[j], corners[i]), sub(self.corner_normals[k][j], self.corner_normals[k][i]));
+            let (x, y) = (dot(along, e1), dot(along, e2));
+            for (row, value) in [([x, y, 0.0], -dot(turn, e1)), ([0.0, x, y], -dot(turn, e2))] {
+                for r in 0..3 {
+                    right[r] += row[r] * value;
+                    for c in 0..3 {
+                        matrix[r][c] += row[r] * row[c];
+                    }
+                }
+            }
+        }
+        let Some([s11, s12, s22]) = solve(matrix, right) else { return ([0.0; 2], [e1, e2]) };
+        let (mean, half) = (0.5 * (s11 + s22), (0.25 * (s11 - s22).powi(2) + s12 * s12).sqrt());
+        let angle = 0.5 * (2.0 * s12).atan2(s11 - s22);
+        let greater = add(scale(e1, angle.cos()), scale(e2, angle.sin()));
+        let lesser = cross(self.normals[k], greater);
+        if mean >= 0.0 {
+            ([mean + half, mean - half], [greater, lesser])
+        } else {
+            ([mean - half, mean + half], [lesser, greater])
+        }
+    }
+}
+
+impl Plane {
+    fn fit(triangles: &[[Vec3; 3]], normals: &[Vec3], flat: f64) -> Option<Self> {
+        let (mut sum, mut moment, mut total) = ([0.0; 3], [0.0; 3], 0.0);
+        for &[a, b, c] in triangles {
+            let twice = area2(a, b, c);
+            sum = add(sum, twice);
+            total += norm(twice);
+            moment = add(moment, scale(add(add(a, b), c), norm(twice) / 3.0));
+        }
+        if total == 0.0 || normals.iter().any(|&n| dot(n, sum) < 0.0) {
+            return None;
+        }
+        let (origin, normal) = (scale(moment, 1.0 / total), unit(sum));
+        if triangles.iter().flatten().any(|&p| dot(sub(p, origin), normal).abs() > flat) {
+            return None;
+        }
+        let least = (1..3).fold(0, |m, i| if normal[i].abs() < normal[m].abs() { i } else { m });
+        let mut axis = [0.0; 3];
+        axis[least] = 1.0;
+        let e1 = unit(cross(axis, normal));
+        Some(Self { origin, axes: [e1, cross(normal, e1)], normal })
+    }
+
+    fn parameters(&self, p: Vec3) -> [f64; 2] {
+        self.axes.map(|axis| dot(sub(p, self.origin), axis))
+    }
+
+    fn project(&self, p: Vec3) -> Vec3 {
+        sub(p, scale(self.normal, dot(sub(p, self.origin), self.normal)))
+    }
+
+    fn frame(&self, uv: [f64; 2]) -> SurfaceFrame {
+        let point = add(self.origin, add(scale(self.axes[0], uv[0]), scale(self.axes[1], uv[1])));
+        let [du, dv] = self.axes;
+        SurfaceFrame { point, du, dv, normal: self.normal, curvatures: [0.0; 2], directions: self.axes }
+    }
+}
+
+/// Means of the triangles' normals at the patch's vertices, weighted with the angle there.
+fn corner_normals(nodes: &[[u32; 3]], triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
+    let mut sums: HashMap<u32, Vec3> = HashMap::new();
+    for (nodes, corners) in nodes.iter().zip(triangles) {
+        let normal = unit(area2(corners[0], corners[1], corners[2]));
+        for k in 0..3 {
+            let (to_next, to_last) = (sub(corners[(k + 1) % 3], corners[k]), sub(corners[(k + 2) % 3], corners[k]));
+            let angle = norm(cross(to_next, to_last)).atan2(dot(to_next, to_last));
+            let sum = sums.entry(nodes[k]).or_insert([0.0; 3]);
+            *sum = add(*sum, scale(normal, angle));
+        }
+    }
+    nodes.iter().map(|nodes| nodes.map(|v| unit(sums[&v]))).collect()
+}
+
+/// Solves a 3×3 system by Cramer's rule; none if it is singular.
+fn solve(m: [[f64; 3]; 3], r: [f64; 3]) -> Option<[f64; 3]> {
+    let columns: [Vec3; 3] = std::array::from_fn(|j| [m[0][j], m[1][j], m[2][j]]);
+    let determinant = dot(columns[0], cross(columns[1], columns[2]));
+    let size = norm(columns[0]) * norm(columns[1]) * norm(columns[2]);
+    (determinant.abs() > 1e-14 * size).then(|| {
+        [
+            dot(r, cross(columns[1], columns[2])) / determinant,
+            dot(columns[0], cross(r, columns[2])) / determinant,
+            dot(columns[0], cross(columns[1], r)) / determinant,
+        ]
+    })
+}

@@ -1,0 +1,99 @@
+//! The bridge to cpp/: every call returns a Result, because a C++ exception that leaves a call without one ends
+//! the process.
+
+#[cxx::bridge(namespace = "geo_adapt")]
+pub mod ffi {
+    /// A face as OCCT has it.
+    struct FaceRecord {
+        /// GeomAbs_SurfaceType.
+        kind: u32,
+        reversed: bool,
+        /// u least, u greatest, v least, v greatest.
+        range: [f64; 4],
+        /// Whether the range is exact: it follows from lines, circles and ellipses in the plane of the parameters.
+        exact_range: bool,
+        /// Range of the untrimmed surface, in the same order.
+        natural: [f64; 4],
+        /// Zero where not periodic.
+        period: [f64; 2],
+        /// Smooth spans in u and v.
+        spans: [u32; 2],
+        tolerance: f64,
+        bounds: [f64; 6],
+        /// In the order of its wires; a seam is there twice.
+        edges: Vec<u32>,
+    }
+
+    /// An edge as OCCT has it.
+    struct EdgeRecord {
+        /// GeomAbs_CurveType.
+        kind: u32,
+        /// First and last, −1 for none.
+        vertices: [i32; 2],
+        range: [f64; 2],
+        /// Zero where not periodic.
+        period: f64,
+        /// Smooth spans.
+        spans: u32,
+        degenerate: bool,
+        tolerance: f64,
+    }
+
+    /// A vertex as OCCT has it.
+    struct VertexRecord {
+        point: [f64; 3],
+        tolerance: f64,
+    }
+
+    /// Frame and sizes of an analytic surface or curve.
+    struct Form {
+        origin: [f64; 3],
+        x: [f64; 3],
+        y: [f64; 3],
+        z: [f64; 3],
+        /// Radius; radius and half angle (cone); both radii (torus).
+        sizes: [f64; 2],
+    }
+
+    unsafe extern "C++" {
+        include!("geo-adapt/cpp/occt.hpp");
+
+        type Model;
+        fn load_model(path: &str, format: u32) -> Result<SharedPtr<Model>>;
+        fn face_count(self: &Model) -> Result<u32>;
+        fn edge_count(self: &Model) -> Result<u32>;
+        fn vertex_count(self: &Model) -> Result<u32>;
+        fn solid_count(self: &Model) -> Result<u32>;
+        fn face_record(self: &Model, face: u32) -> Result<FaceRecord>;
+        fn edge_record(self: &Model, edge: u32) -> Result<EdgeRecord>;
+        fn vertex_record(self: &Model, vertex: u32) -> Result<VertexRecord>;
+        fn bounds(self: &Model) -> Result<[f64; 6]>;
+        fn face_area(self: &Model, face: u32) -> Result<f64>;
+        fn edge_length(self: &Model, edge: u32) -> Result<f64>;
+
+        type Evaluator;
+        fn new_evaluator(model: &SharedPtr<Model>) -> Result<UniquePtr<Evaluator>>;
+        fn surface_form(self: Pin<&mut Evaluator>, face: u32) -> Result<Form>;
+        fn curve_form(self: Pin<&mut Evaluator>, edge: u32) -> Result<Form>;
+        fn surface_d0(self: Pin<&mut Evaluator>, face: u32, u: f64, v: f64, out: &mut [f64; 3]) -> Result<()>;
+        /// Point, Su, Sv, Suu, Suv, Svv.
+        fn surface_d2(self: Pin<&mut Evaluator>, face: u32, u: f64, v: f64, out: &mut [f64; 18]) -> Result<()>;
+        /// Point, C′, C″.
+        fn curve_d2(self: Pin<&mut Evaluator>, edge: u32, t: f64, out: &mut [f64; 9]) -> Result<()>;
+        /// False when the edge has no curve on the face.
+        fn pcurve_d0(self: Pin<&mut Evaluator>, edge: u32, face: u32, t: f64, out: &mut [f64; 2]) -> Result<bool>;
+        /// Whether the parameters lie in the trimmed face or on its boundary.
+        fn inside(self: Pin<&mut Evaluator>, face: u32, u: f64, v: f64) -> Result<bool>;
+        /// OCCT's own distance to a face or an edge: slow, the oracle of the tests.
+        fn reference_distance(self: &Evaluator, is_face: bool, index: u32, point: &[f64; 3]) -> Result<f64>;
+    }
+}
+
+// SAFETY: a Model is never changed after load_model has returned it; its member functions are const and read shapes
+// and maps only, whose reference counts are atomic.
+unsafe impl Send for ffi::Model {}
+// SAFETY: as above.
+unsafe impl Sync for ffi::Model {}
+// SAFETY: an Evaluator owns its adaptors and classifiers, and shares with others only the Model and curves and surfaces
+// that it reads, whose reference counts are atomic. It is not Sync: its calls fill caches.
+unsafe impl Send for ffi::Evaluator {}

@@ -1,0 +1,26 @@
+//! Parameters and their ranges.
+
+/// A share of a range by which a parameter may miss it from rounding alone.
+const ROUNDING: f64 = 1e-12;
+
+/// Takes `x` into the range, by the period first, else to the nearer end; and whether it lay in it, but for rounding.
+pub fn place(x: f64, range: [f64; 2], period: Option<f64>) -> (f64, bool) {
+    let [low, high] = range;
+    let x = match period {
+        // The window of one period around the range's middle.
+        Some(period) if x < low || x > high => x - period * ((x - 0.5 * (low + high)) / period).round(),
+        _ => x,
+    };
+    let slack = ROUNDING * (high - low);
+    (x.clamp(low, high), x >= low - slack && x <= high + slack)
+}
+
+/// `x` moved by whole periods to within half a period of `near`.
+pub fn bring_near(x: f64, near: f64, period: Option<f64>) -> f64 {
+    period.map_or(x, |period| x - period * ((x - near) / period).round())
+}
+
+/// Whether the range spans the whole period.
+pub fn is_whole(range: [f64; 2], period: Option<f64>) -> bool {
+    period.is_some_and(|period| range[1] - range[0] >= period * (1.0 - 1e-9))
+}
