@@ -62,3 +62,45 @@ pub fn unique_edges(tets: &[[u32; 4]]) -> Vec<[u32; 2]> {
     edges.dedup();
     edges
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples::cube;
+    use super::*;
+
+    #[test]
+    fn faces_point_outwards() {
+        use crate::mesh::vector::volume6;
+        let p = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        for (opposite, face) in FACES.iter().enumerate() {
+            assert!(volume6(p[face[0]], p[face[1]], p[face[2]], p[opposite]) < 0.0);
+        }
+    }
+
+    #[test]
+    fn neighbours_of_a_cube() {
+        let mesh = cube(3);
+        let around = neighbours(&mesh.tets.nodes);
+        let open = around.iter().flatten().filter(|&&t| t == NONE).count();
+        assert_eq!(open, 6 * 9 * 2);
+        for (t, faces) in around.iter().enumerate() {
+            for (f, &other) in faces.iter().enumerate().filter(|(_, other)| **other != NONE) {
+                let face = sorted3(FACES[f].map(|i| mesh.tets.nodes[t][i]));
+                let back = around[other as usize].iter().position(|&back| back == t as u32).unwrap();
+                assert_eq!(face, sorted3(FACES[back].map(|i| mesh.tets.nodes[other as usize][i])));
+            }
+        }
+    }
+
+    #[test]
+    fn edges_of_a_cube() {
+        // Euler: V − E + F − T = 1; F = (4T + boundary)/2.
+        let mesh = cube(3);
+        let (v, t) = (mesh.vertices.len(), mesh.tets.len());
+        let f = (4 * t + mesh.triangles.len()) / 2;
+        assert_eq!(unique_edges(&mesh.tets.nodes).len(), v + f - t - 1);
+        for nodes in [[1, 2, 3], [3, 2, 1], [2, 3, 1], [2, 1, 3], [3, 1, 2], [1, 3, 2]] {
+            assert_eq!(sorted3(nodes), [1, 2, 3]);
+        }
+    }
+}

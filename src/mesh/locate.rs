@@ -197,3 +197,84 @@ fn nearest_on_triangle(p: Vec3, t: [Vec3; 3]) -> [f64; 3] {
     }
     best.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples::cube;
+    use super::super::validity::check;
+    use super::*;
+    use proptest::prelude::*;
+
+    fn locator(n: u32) -> Locator {
+        let mesh = cube(n);
+        assert!(check(&mesh).is_valid());
+        Locator::new(mesh.vertices, mesh.tets.nodes)
+    }
+
+    /// The cube with a hole: the middle cells are missing, so walks run into walls.
+    fn hollow() -> Locator {
+        let mut mesh = cube(5);
+        let inside = |p: Vec3| p.iter().all(|&x| (0.2..0.8).contains(&x));
+        let middle = |tet: &[u32; 4]| tet.iter().fold([0.0; 3], |s, &v| add(s, scale(mesh.vertices[v as usize], 0.25)));
+        mesh.tets.nodes = mesh.tets.nodes.iter().copied().filter(|tet| !inside(middle(tet))).collect();
+        Locator::new(mesh.vertices, mesh.tets.nodes)
+    }
+
+    fn point(locator: &Locator, found: &Location) -> Vec3 {
+        let nodes = locator.tets()[found.tet as usize];
+        nodes.iter().zip(found.weights).fold([0.0; 3], |s, (&v, w)| add(s, scale(locator.vertices()[v as usize], w)))
+    }
+
+    /// Distance by trying all.
+    fn least_distance(locator: &Locator, p: Vec3) -> f64 {
+        (0..locator.tets().len() as u32).map(|t| locator.nearest_in(t, p).distance).fold(f64::INFINITY, f64::min)
+    }
+
+    fn check_location(locator: &Locator, p: Vec3, hint: u32) -> Result<(), TestCaseError> {
+        let mut hint = hint;
+        let found = locator.locate(p, &mut hint);
+        prop_assert_eq!(hint, found.tet);
+        prop_assert!(found.weights.iter().all(|&w| w >= 0.0));
+        prop_assert!((found.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        prop_assert!((distance(point(locator, &found), p) - found.distance).abs() < 1e-12);
+        prop_assert!((found.distance - least_distance(locator, p)).abs() < 1e-12);
+        Ok(())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        #[test]
+        fn finds_the_nearest_from_any_hint(p in prop::array::uniform3(-0.3..1.3f64), hint in 0..2000u32) {
+            check_location(&locator(4), p, hint)?;
+            check_location(&hollow(), p, hint)?;
+        }
+
+        #[test]
+        fn nearest_on_a_triangle(p in prop::array::uniform3(-1.0..1.0f64), t in prop::array::uniform9(-1.0..1.0f64)) {
+            let t = [[t[0], t[1], t[2]], [t[3], t[4], t[5]], [t[6], t[7], t[8]]];
+            let at = |w: [f64; 3]| (0..3).fold([0.0; 3], |s, i| add(s, scale(t[i], w[i])));
+            let least = distance(p, at(nearest_on_triangle(p, t)));
+            for i in 0..=20 {
+                for j in 0..=20 - i {
+                    let (u, v) = (f64::from(i) / 20.0, f64::from(j) / 20.0);
+                    prop_assert!(least <= distance(p, at([u, v, 1.0 - u - v])) + 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn vertices_and_flat_tets() {
+        let locator = locator(3);
+        for (v, &p) in locator.vertices().iter().enumerate() {
+            let found = locator.locate(p, &mut 7);
+            let at = locator.tets()[found.tet as usize].iter().position(|&node| node as usize == v).unwrap();
+            assert!(found.weights[at] > 1.0 - 1e-12);
+        }
+        let square = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let flat = Locator::new(square, vec![[0, 1, 2, 3]]);
+        assert!((flat.locate([0.5, 0.25, 2.0], &mut 0).distance - 2.0).abs() < 1e-14);
+        assert_eq!(flat.locate([f64::NAN; 3], &mut 0).tet, 0);
+    }
+}

@@ -3,7 +3,11 @@ pub mod adjacency;
 mod box_tree;
 pub mod io;
 pub mod locate;
+pub mod predicate;
+#[cfg(test)]
+pub(crate) mod samples;
 mod tet_mesh;
+pub mod validity;
 pub mod vector;
 
 pub use tet_mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};

@@ -49,3 +49,29 @@ impl Background {
         &self.logs
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::cube;
+
+    #[test]
+    fn a_linear_logarithm_is_met() {
+        let mesh = cube(4);
+        let log = |p: Vec3| Sym3([p[0], 2.0 * p[1], 1.0 - p[2], p[0] - p[1], 0.5, p[2]]);
+        let logs = mesh.vertices.iter().map(|&p| log(p)).collect();
+        let mut background = Background::new(mesh.vertices, mesh.tets.nodes, logs);
+        let mut hint = u32::MAX;
+        for p in [[0.1, 0.2, 0.3], [0.99, 0.01, 0.5], [1.0, 1.0, 1.0], [0.5, 0.77, 0.123]] {
+            let found = background.log_at(p, &mut hint);
+            for i in 0..6 {
+                assert!((found.0[i] - log(p).0[i]).abs() < 1e-14);
+            }
+        }
+        // Outside: the value at the nearest point.
+        let outside = background.log_at([0.3, 1.5, 0.6], &mut hint);
+        assert!((outside.0[1] - 2.0).abs() < 1e-14 && (outside.0[0] - 0.3).abs() < 1e-14, "{outside:?}");
+        background.scale(3.0);
+        assert!((background.log_at([0.25, 0.5, 0.5], &mut hint).0[0] - 3.25).abs() < 1e-14);
+    }
+}

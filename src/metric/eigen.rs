@@ -67,13 +67,14 @@ impl Sym3 {
         let rest = s.trace() / 3.0;
         let (s, mean) = (s.plus_identity(-rest), mean + size * rest);
         let (p, r) = invariants(&s);
-        let axis = null_vector(&s.plus_identity(-isolated_root(p, r)));
+        let root = isolated_root(p, r);
+        let axis = null_vector(&s.plus_identity(-root));
         let (u, w) = plane_basis(axis);
         let (su, sw) = (s.apply(u), s.apply(w));
         let (a, b, c) = (dot(u, su), dot(u, sw), dot(w, sw));
         let (low, high) = rotate(a, b, c, u, w);
         let isolated = (dot(axis, s.apply(axis)), axis);
-        let order = if r > 0.0 { [low, high, isolated] } else { [isolated, low, high] };
+        let order = if root > 0.0 { [low, high, isolated] } else { [isolated, low, high] };
         Eigen { values: order.map(|x| mean + size * x.0), vectors: order.map(|x| x.1) }
     }
 

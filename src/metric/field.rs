@@ -96,3 +96,57 @@ pub fn scale_to_complexity(mesh: &TetMesh, metrics: &mut [Sym3], target: f64) ->
     }
     factor
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::cube;
+
+    fn write(name: &str, kind: FieldKind, values: Vec<f64>) -> (tempfile::TempDir, std::path::PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        let per_vertex = if kind == FieldKind::Scalar { 1 } else { 6 };
+        let solution = Solution { vertices: values.len() / per_vertex, fields: vec![SolutionField { kind, values }] };
+        io::write_solution(&path, &solution).unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn complexity_of_a_constant_metric() {
+        let mesh = cube(3);
+        let mut metrics = vec![Sym3::diagonal(4.0, 9.0, 25.0); mesh.vertices.len()];
+        assert!((complexity(&mesh, &metrics) - 30.0).abs() < 1e-12);
+        let logs: Vec<Sym3> = metrics.iter().map(Sym3::ln).collect();
+        assert!((complexity_of_logs(&mesh, &logs) - 30.0).abs() < 1e-12);
+        let factor = scale_to_complexity(&mesh, &mut metrics, 240.0);
+        assert!((factor - 4.0).abs() < 1e-12);
+        assert!((complexity(&mesh, &metrics) - 240.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn what_was_written_is_read() {
+        let field = Field { metrics: vec![Sym3([4.0, 0.5, 9.0, 0.25, -1.0, 25.0]), Sym3::IDENTITY] };
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["m.sol", "m.solb"] {
+            let path = folder.path().join(name);
+            field.write(&path).unwrap();
+            assert_eq!(Field::read(&path, 2).unwrap().content, field);
+        }
+    }
+
+    #[test]
+    fn errors_name_file_vertex_and_remedy() {
+        let (_folder, path) = write("scalar.sol", FieldKind::Scalar, vec![1.0, 2.0]);
+        let message = Field::read(&path, 2).unwrap_err().to_string();
+        assert!(message.contains("scalar.sol") && message.contains("symmetric tensors"), "{message}");
+
+        let values = [[1.0, 0.0, 1.0, 0.0, 0.0, 1.0], [1.0, 2.0, 1.0, 0.0, 0.0, 1.0]].concat();
+        let (_folder, path) = write("indefinite.solb", FieldKind::SymmetricTensor, values);
+        let message = Field::read(&path, 2).unwrap_err().to_string();
+        assert!(message.contains("indefinite.solb: metric of vertex 2 is not positive definite"), "{message}");
+        assert!(message.contains("(eigenvalues -1.000e0, 1.000e0, 3.000e0)"), "{message}");
+
+        let message = Field::read(&path, 5).unwrap_err().to_string();
+        assert!(message.contains("metric at 2 vertices, but the mesh has 5"), "{message}");
+    }
+}

@@ -9,6 +9,7 @@ pub mod quality;
 #[cfg(test)]
 mod random;
 mod source;
+pub mod statistics;
 pub mod tensor;
 #[cfg(test)]
 mod tests;
@@ -19,4 +20,5 @@ pub use eigen::Eigen;
 pub use error::Error;
 pub use field::Field;
 pub use source::Source;
+pub use statistics::{Distribution, Statistics};
 pub use tensor::Sym3;

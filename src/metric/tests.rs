@@ -132,6 +132,9 @@ fn degenerate_tensors() {
         check_frame(&m.eigen()).unwrap();
         assert!(difference(&Sym3::from_eigen(&m.eigen()), &m) <= 1e-15 * size(&m));
     }
+    // r = 0: the middle eigenvalue is the mean.
+    let m = Sym3([1.0, 2.0, 1.0, 0.0, 0.0, 1.0]);
+    assert!(m.eigen().values.iter().zip([-1.0, 1.0, 3.0]).all(|(x, y)| (x - y).abs() < 1e-15) && !m.is_spd());
     assert_eq!(Sym3::ZERO.exp(), Sym3::IDENTITY);
     assert!(!Sym3([f64::NAN, 0.0, 1.0, 0.0, 0.0, 1.0]).is_spd());
     assert!(!Sym3::ZERO.is_spd());

@@ -1,0 +1,221 @@
+//! The figures of a mesh in a metric: edge lengths, mean ratios, complexity.
+use super::quality::{edge_length, mean_ratio_log};
+use super::{Sym3, field, quality};
+use crate::mesh::adjacency::unique_edges;
+use crate::mesh::vector::{distance, sub, volume6};
+use crate::mesh::{Elements, TetMesh};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+/// Bounds of the classes of edge lengths in the metric; the last class is open.
+pub const LENGTH_CLASSES: [f64; 11] = [0.0, 0.1, 0.25, 0.5, FRAC_1_SQRT_2, 1.0, SQRT_2, 2.0, 4.0, 10.0, f64::INFINITY];
+
+/// Bounds of the classes of mean ratios; the first class is for inverted and flat tetrahedra.
+pub const RATIO_CLASSES: [f64; 13] =
+    [f64::NEG_INFINITY, 0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, f64::INFINITY];
+
+/// A class of a histogram: values in (low, high], of lengths in [low, high).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Class {
+    /// Lower bound; none when open.
+    pub low: Option<f64>,
+    /// Upper bound; none when open.
+    pub high: Option<f64>,
+    /// Values in it.
+    pub count: usize,
+}
+
+/// Least, greatest, mean and histogram of values.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Distribution {
+    /// Number of values.
+    pub count: usize,
+    /// Least value; 0 without values.
+    pub min: f64,
+    /// Arithmetic mean; 0 without values.
+    pub mean: f64,
+    /// Greatest value; 0 without values.
+    pub max: f64,
+    /// Index of the least value (a tetrahedron, from 0; for edges an index into the sorted unique edges).
+    pub argmin: usize,
+    /// The histogram; empty when no classes make sense (lengths without a metric).
+    pub classes: Vec<Class>,
+}
+
+impl Distribution {
+    /// Of values, with the bounds of the classes (ascending). A value equal to a bound belongs to the class above, but
+    /// with `closed_above` to the class below.
+    pub fn of(values: &[f64], bounds: &[f64], closed_above: bool) -> Self {
+        let finite = |x: f64| x.is_finite().then_some(x);
+        let mut classes: Vec<Class> =
+            bounds.windows(2).map(|b| Class { low: finite(b[0]), high: finite(b[1]), count: 0 }).collect();
+        let (mut argmin, mut max, mut sum) = (0, f64::NEG_INFINITY, 0.0);
+        for (i, &value) in values.iter().enumerate() {
+            if value < values[argmin] {
+                argmin = i;
+            }
+            max = max.max(value);
+            sum += value;
+            let above = bounds.partition_point(|&b| if closed_above { b < value } else { b <= value });
+            if !classes.is_empty() {
+                let class = above.clamp(1, classes.len()) - 1;
+                classes[class].count += 1;
+            }
+        }
+        if values.is_empty() {
+            return Self { classes, ..Self::default() };
+        }
+        let mean = sum / values.len() as f64;
+        Self { count: values.len(), min: values[argmin], mean, max, argmin, classes }
+    }
+}
+
+/// What is measured in a metric only.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MetricFigures {
+    /// Complexity C; a unit mesh has about 2C vertices and 12C tetrahedra.
+    pub complexity: f64,
+    /// Vertices over the complexity.
+    pub vertices_per_complexity: f64,
+    /// Share of the edges with a length in [1/√2, √2].
+    pub unit_edges: f64,
+}
+
+/// The figures of a mesh.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of tetrahedra.
+    pub tets: usize,
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Number of tagged edges.
+    pub tagged_edges: usize,
+    /// Volume, model units³.
+    pub volume: f64,
+    /// Tetrahedra of each region.
+    pub regions: BTreeMap<i32, usize>,
+    /// Triangles of each reference.
+    pub patches: BTreeMap<i32, usize>,
+    /// Tagged edges of each reference.
+    pub curves: BTreeMap<i32, usize>,
+    /// Lengths of all edges (each once), in the metric, else in model units.
+    pub edge_lengths: Distribution,
+    /// Mean ratios of the tetrahedra, in the metric, else in space. Inverted and flat ones count as 0.
+    pub mean_ratios: Distribution,
+    /// Complexity and unit edges, when there is a metric.
+    pub metric: Option<MetricFigures>,
+}
+
+impl Statistics {
+    /// Of a mesh with a metric at every vertex.
+    pub fn in_metric(mesh: &TetMesh, metrics: &[Sym3]) -> Self {
+        let logs: Vec<Sym3> = metrics.iter().map(Sym3::ln).collect();
+        let length = |[a, b]: [u32; 2]| {
+            let v = sub(mesh.vertices[b as usize], mesh.vertices[a as usize]);
+            edge_length(v, &metrics[a as usize], &metrics[b as usize])
+        };
+        let mut statistics =
+            Self::of(mesh, length, &LENGTH_CLASSES, |tet| quality::mean_log(tet.map(|v| &logs[v as usize])));
+        let classes = &statistics.edge_lengths.classes;
+        let unit: usize = classes
+            .iter()
+            .filter(|class| class.low == Some(FRAC_1_SQRT_2) || class.high == Some(SQRT_2))
+            .map(|class| class.count)
+            .sum();
+        let complexity = field::complexity_of_logs(mesh, &logs);
+        statistics.metric = Some(MetricFigures {
+            complexity,
+            vertices_per_complexity: mesh.vertices.len() as f64 / complexity,
+            unit_edges: unit as f64 / statistics.edge_lengths.count.max(1) as f64,
+        });
+        statistics
+    }
+
+    /// Of a mesh alone: lengths and mean ratios in space.
+    pub fn in_space(mesh: &TetMesh) -> Self {
+        let length = |[a, b]: [u32; 2]| distance(mesh.vertices[a as usize], mesh.vertices[b as usize]);
+        Self::of(mesh, length, &[], |_| Sym3::ZERO)
+    }
+
+    fn of(
+        mesh: &TetMesh,
+        length: impl Fn([u32; 2]) -> f64,
+        length_classes: &[f64],
+        mean_log: impl Fn(&[u32; 4]) -> Sym3,
+    ) -> Self {
+        let lengths: Vec<f64> = unique_edges(&mesh.tets.nodes).into_iter().map(length).collect();
+        let points = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
+        let ratio = |tet: &[u32; 4]| mean_ratio_log(points(tet), &mean_log(tet)).max(0.0);
+        let ratios: Vec<f64> = mesh.tets.nodes.iter().map(ratio).collect();
+        let volume = |tet: &[u32; 4]| {
+            let [a, b, c, d] = points(tet);
+            volume6(a, b, c, d) / 6.0
+        };
+        Self {
+            vertices: mesh.vertices.len(),
+            tets: mesh.tets.len(),
+            triangles: mesh.triangles.len(),
+            tagged_edges: mesh.edges.len(),
+            volume: mesh.tets.nodes.iter().map(volume).sum(),
+            regions: by_reference(&mesh.tets),
+            patches: by_reference(&mesh.triangles),
+            curves: by_reference(&mesh.edges),
+            edge_lengths: Distribution::of(&lengths, length_classes, false),
+            mean_ratios: Distribution::of(&ratios, &RATIO_CLASSES, true),
+            metric: None,
+        }
+    }
+}
+
+fn by_reference<const N: usize>(elements: &Elements<N>) -> BTreeMap<i32, usize> {
+    let mut counts = BTreeMap::new();
+    for &reference in &elements.refs {
+        *counts.entry(reference).or_insert(0) += 1;
+    }
+    counts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::cube;
+
+    #[test]
+    fn classes_and_bounds() {
+        let d = Distribution::of(&[0.5, 1.0, 1.5, -2.0, 9.0], &[0.0, 1.0, 2.0, f64::INFINITY], false);
+        // −2 counts in the first class.
+        assert_eq!(d.classes.iter().map(|class| class.count).collect::<Vec<_>>(), [2, 2, 1]);
+        assert_eq!((d.count, d.min, d.max, d.mean, d.argmin), (5, -2.0, 9.0, 2.0, 3));
+        assert_eq!((d.classes[2].low, d.classes[2].high), (Some(2.0), None));
+        let d = Distribution::of(&[0.5, 1.0, 1.5], &[0.0, 1.0, 2.0], true);
+        assert_eq!(d.classes.iter().map(|class| class.count).collect::<Vec<_>>(), [2, 1]);
+        assert_eq!(Distribution::of(&[], &[0.0, 1.0], true).count, 0);
+    }
+
+    #[test]
+    fn figures_of_a_cube() {
+        let n = 4;
+        let mesh = cube(n);
+        // Sizes 1/n: edges of length 1, √2 (face diagonals; in the class above by rounding or not) and √3.
+        let metrics = vec![Sym3::IDENTITY.times(f64::from(n * n) * 0.99); mesh.vertices.len()];
+        let statistics = Statistics::in_metric(&mesh, &metrics);
+        let figures = statistics.metric.clone().unwrap();
+        assert!((figures.complexity - (f64::from(n) * 0.99f64.sqrt()).powi(3)).abs() < 1e-9);
+        assert!((figures.vertices_per_complexity * figures.complexity - 125.0).abs() < 1e-9);
+        let (axis, face, body) = (3 * 4 * 25, 3 * 16 * 5, 64);
+        let share = f64::from(axis + face) / f64::from(axis + face + body);
+        assert!((figures.unit_edges - share).abs() < 1e-12, "{figures:?}");
+        assert!((statistics.volume - 1.0).abs() < 1e-12);
+        assert_eq!(statistics.patches, (1..=6).map(|side| (side, 32)).collect());
+        assert_eq!((statistics.regions[&1], statistics.tets), (384, 384));
+        // All tetrahedra are alike.
+        let ratios = &statistics.mean_ratios;
+        assert!((ratios.min - ratios.max).abs() < 1e-12 && (ratios.min - ratios.mean).abs() < 1e-12);
+        let alone = Statistics::in_space(&mesh);
+        assert!((alone.mean_ratios.mean - ratios.mean).abs() < 1e-12 && alone.metric.is_none());
+        assert!((alone.edge_lengths.min - 0.25).abs() < 1e-15 && alone.edge_lengths.classes.is_empty());
+    }
+}
