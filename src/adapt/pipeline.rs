@@ -31,6 +31,22 @@ pub enum Kind {
     Project,
 }
 
+impl Kind {
+    /// All kinds, in the order of their counters.
+    pub const ALL: [Kind; 5] = [Kind::Split, Kind::Collapse, Kind::Reconnect, Kind::Smooth, Kind::Project];
+
+    /// The name in progress and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Split => "insertion",
+            Kind::Collapse => "collapse",
+            Kind::Reconnect => "reconnection",
+            Kind::Smooth => "smoothing",
+            Kind::Project => "projection",
+        }
+    }
+}
+
 /// Time and counts of one kind of operation.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize)]
 pub struct Work {

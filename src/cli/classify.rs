@@ -21,16 +21,8 @@ pub struct Arguments {
     output: PathBuf,
     /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model
     /// states for an entity]
-    #[arg(long, value_name = "T", value_parser = positive)]
+    #[arg(long, value_name = "T", value_parser = super::positive)]
     tolerance: Option<f64>,
-}
-
-/// A positive number.
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("give a positive length".into()),
-    }
 }
 
 /// Runs the subcommand.
@@ -50,8 +42,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     for notice in read.notices.iter().chain(&report.notices) {
         eprintln!("geo-adapt: note: {notice}");
     }
-    // A closed pipe (`| head`) is no error.
-    let _ = std::io::Write::write_all(&mut std::io::stdout(), table(&report, associated).as_bytes());
+    super::print(&table(&report, associated));
     Ok(ExitCode::SUCCESS)
 }
 

@@ -6,6 +6,7 @@ mod adapt;
 mod classify;
 mod inspect;
 mod model;
+mod table;
 
 /// Adapts tetrahedral meshes to a metric, on the real CAD model.
 #[derive(Parser)]
@@ -46,4 +47,17 @@ pub fn main() -> ExitCode {
         eprintln!("geo-adapt: error: {error}");
         ExitCode::from(BAD_INPUT)
     })
+}
+
+/// Writes to standard output; a closed pipe (`| head`) is no error.
+fn print(text: &str) {
+    let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
+}
+
+/// Parses a positive number.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("give a positive number".into()),
+    }
 }
