@@ -1,6 +1,6 @@
 //! What makes one triangulation of a cavity better than another: the criteria of local reconnection (METHOD.md §2).
 use super::access::Access;
-use super::ids::VertexId;
+use super::ids::{TetId, VertexId};
 use super::worker::Worker;
 use crate::mesh::vector::{Vec3, add, cross, dot, scale, sub};
 use crate::metric::Sym3;
@@ -36,6 +36,14 @@ impl<A: Access> Worker<'_, '_, A> {
                 let others = cavity.iter().filter(|v| !tet.contains(v));
                 Some(-others.map(|&p| self.encroachment(tet, points, p)).fold(0.0, f64::max))
             }
+        }
+    }
+
+    /// Score of a tetrahedron that is there: its mean ratio is kept with it.
+    pub fn present_score(&self, criterion: Criterion, t: TetId, cavity: &[VertexId]) -> f64 {
+        match criterion {
+            Criterion::MeanRatio => self.store.quality(t),
+            _ => self.score(criterion, self.store.vertices(t), cavity).unwrap_or(f64::NEG_INFINITY),
         }
     }
 

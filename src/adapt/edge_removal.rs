@@ -49,8 +49,8 @@ impl<A: Access> Worker<'_, '_, A> {
         tables.cavity.clear();
         tables.cavity.extend([a, b]);
         tables.cavity.extend(&shell.ring);
-        let old = shell.tets.iter().map(|&t| self.score(criterion, self.store.vertices(t), &tables.cavity));
-        let old = old.fold(f64::INFINITY, |least, score| least.min(score.unwrap_or(f64::NEG_INFINITY)));
+        let old = shell.tets.iter().map(|&t| self.present_score(criterion, t, &tables.cavity));
+        let old = old.fold(f64::INFINITY, f64::min);
         let wanted = match criterion {
             Criterion::MeanRatio => old + GAIN * old.abs().max(1e-3),
             _ => old + GAIN * old.abs().max(1e-9),

@@ -20,7 +20,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let above = v[i];
         let cavity = [face[0], face[1], face[2], above, below];
         let score = |tet| self.score(criterion, tet, &cavity);
-        let old = score(v).zip(score(w)).map_or(f64::NEG_INFINITY, |(x, y)| x.min(y));
+        let old = self.present_score(criterion, t, &cavity).min(self.present_score(criterion, other, &cavity));
         let wanted = old + 1e-3 * old.abs().max(1e-3);
         // (face, above) is positive, so each side of the face makes a positive tetrahedron with below and above.
         let new = [0, 1, 2].map(|k| [face[k], face[(k + 1) % 3], below, above]);

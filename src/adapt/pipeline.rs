@@ -86,6 +86,8 @@ pub struct Pipeline<'c, 'm> {
     pub work: [Work; 5],
     /// Boundary vertices that are not on the model yet.
     pub waiting: Vec<VertexId>,
+    /// When each kind of operation last looked at everything, on the store's clock.
+    looked: [u32; 5],
     pass: usize,
 }
 
@@ -99,7 +101,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         waiting: Vec<VertexId>,
     ) -> Self {
         let states = (0..pool.threads()).map(|_| State::new(context)).collect();
-        Self { context, states, pool, observer, criterion, work: [Work::default(); 5], waiting, pass: 0 }
+        Self { context, states, pool, observer, criterion, work: [Work::default(); 5], waiting, looked: [0; 5], pass: 0 }
     }
 
     /// Adapts the mesh.
@@ -107,12 +109,14 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.context.limits = Limits::default();
         for pass in 0..PASSES {
             self.pass = pass;
+            // Long edges that were refused are tried again: room may have come from farther away.
+            self.looked[Kind::Split as usize] = 0;
             let before = self.changes();
             self.collapse();
             let split = self.refine();
             self.collapse();
             self.reconnect(Criterion::MeanRatio, 2);
-            self.smooth();
+            self.smooth(2);
             self.reconnect(Criterion::MeanRatio, 1);
             if self.observer.stop() || (split == 0 && self.changes() - before < 1) {
                 break;
@@ -152,24 +156,46 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
     }
 
+    /// Flips at the tetrahedra that changed since the last time, until little is gained.
     fn reconnect(&mut self, criterion: Criterion, sweeps: usize) {
-        let mut since = 0;
         for _ in 0..sweeps {
-            let items: Vec<TetId> = self.context.store.live_tets().filter(|&t| self.context.store.stamp(t) >= since).collect();
-            since = self.context.store.clock() + 1;
+            let since = self.begin(Kind::Reconnect);
+            let store = &self.context.store;
+            let limit = self.context.limits.improve_below;
+            let items: Vec<TetId> =
+                store.live_tets().filter(|&t| store.stamp(t) >= since && store.quality(t) < limit).collect();
             if self.observer.stop() || self.sweep(Kind::Reconnect, &Reconnect(criterion), &items).done == 0 {
                 break;
             }
         }
     }
 
-    fn smooth(&mut self) {
-        for _ in 0..2 {
-            let items: Vec<VertexId> = self.context.store.live_vertices().collect();
+    /// Smooths the vertices whose tetrahedra changed since the last time.
+    fn smooth(&mut self, sweeps: usize) {
+        for _ in 0..sweeps {
+            let since = self.begin(Kind::Smooth);
+            let changed = self.changed(since);
+            let live = self.context.store.live_vertices();
+            let items: Vec<VertexId> = live.filter(|v| changed[v.index()]).collect();
             if self.observer.stop() || self.sweep(Kind::Smooth, &Smooth, &items).done == 0 {
                 break;
             }
         }
+    }
+
+    /// Notes that an operation looks at everything now; returns when it did so last.
+    fn begin(&mut self, kind: Kind) -> u32 {
+        std::mem::replace(&mut self.looked[kind as usize], self.context.store.clock() + 1)
+    }
+
+    /// For each vertex whether one of its tetrahedra changed at or after the time.
+    fn changed(&self, since: u32) -> Vec<bool> {
+        let store = &self.context.store;
+        let mut changed = vec![false; store.vertex_bound()];
+        for t in store.live_tets().filter(|&t| store.stamp(t) >= since) {
+            store.vertices(t).iter().for_each(|v| changed[v.index()] = true);
+        }
+        changed
     }
 
     /// Tries to bring the waiting vertices to the model.
@@ -210,37 +236,46 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         counts
     }
 
-    /// Edges whose length passes the test, each once, with their length.
-    fn edges(&self, wanted: impl Fn(f64) -> bool) -> Vec<(EdgeItem, f64)> {
+    /// Edges whose length passes the test, each once, with their length; only those with an end where something changed.
+    fn edges(&self, since: u32, wanted: impl Fn(f64) -> bool) -> Vec<(EdgeItem, f64)> {
         let store = &self.context.store;
+        let changed = self.changed(since);
         let mut found = Vec::new();
         for t in store.live_tets() {
             let v = store.vertices(t);
+            if !v.iter().any(|x| changed[x.index()]) {
+                continue;
+            }
             let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
             for [i, j] in EDGE {
+                if !changed[v[i].index()] && !changed[v[j].index()] {
+                    continue;
+                }
                 let length = edge_length(sub(p[j], p[i]), &m[i], &m[j]);
                 if wanted(length) {
                     found.push((EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t }, length));
                 }
             }
         }
-        found.sort_unstable_by_key(|(item, _)| (item.a, item.b));
+        found.sort_unstable_by_key(|(item, _)| (item.a, item.b, item.tet));
         found.dedup_by_key(|(item, _)| (item.a, item.b));
         found
     }
 
     /// Edges to be split: those of the model's edges first, then of its faces, then inside; long ones first.
-    fn long_edges(&self) -> Vec<EdgeItem> {
+    fn long_edges(&mut self) -> Vec<EdgeItem> {
+        let since = self.begin(Kind::Split);
+        let mut found = self.edges(since, |length| length > self.context.limits.long);
         let store = &self.context.store;
-        let mut found = self.edges(|length| length > self.context.limits.long);
         let rank = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
         found.sort_by(|(x, lx), (y, ly)| rank(x).cmp(&rank(y)).then(ly.total_cmp(lx)));
         found.into_iter().map(|(item, _)| item).collect()
     }
 
     /// Edges to be collapsed, short ones first.
-    fn short_edges(&self) -> Vec<EdgeItem> {
-        let mut found = self.edges(|length| length < self.context.limits.short);
+    fn short_edges(&mut self) -> Vec<EdgeItem> {
+        let since = self.begin(Kind::Collapse);
+        let mut found = self.edges(since, |length| length < self.context.limits.short);
         found.sort_by(|(_, lx), (_, ly)| lx.total_cmp(ly));
         found.into_iter().map(|(item, _)| item).collect()
     }
