@@ -8,6 +8,8 @@ mod features;
 mod patch;
 mod polyline;
 #[cfg(test)]
+pub(crate) mod samples;
+#[cfg(test)]
 mod tests;
 mod tree;
 
