@@ -7,6 +7,7 @@ mod evaluate;
 mod features;
 mod patch;
 mod polyline;
+mod restore;
 #[cfg(test)]
 pub(crate) mod samples;
 #[cfg(test)]

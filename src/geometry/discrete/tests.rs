@@ -212,3 +212,27 @@ fn a_mesh_without_triangles_is_an_error() {
     let error = Discrete::from_mesh(&cube(1), DEFAULT_RIDGE_ANGLE).err().unwrap();
     assert!(error.to_string().contains("no boundary triangles"), "{error}");
 }
+
+#[test]
+fn features_come_back_with_their_references() {
+    let mut mesh = cube(2);
+    complete_boundary(&mut mesh);
+    let at = |mesh: &TetMesh, p: Vec3| mesh.vertices.iter().position(|&q| q == p).unwrap() as u32;
+    let (a, b, c) = (at(&mesh, [0.0; 3]), at(&mesh, [0.5, 0.0, 0.0]), at(&mesh, [1.0, 0.0, 0.0]));
+    for (t, nodes) in mesh.triangles.nodes.iter().enumerate() {
+        let low = nodes.iter().all(|&v| mesh.vertices[v as usize][2] == 0.0);
+        mesh.triangles.refs[t] = if low { 12 } else { 5 };
+    }
+    // The upper half of the edge along x is listed with another reference than the lower one.
+    mesh.edges = crate::mesh::Elements { nodes: vec![[a, b], [c, b]], refs: vec![8, 9] };
+    let (model, classification) = discrete(&mesh);
+    assert_eq!(model.topology().vertices.len(), 9, "the reference changes at the ninth");
+    let mut copy = mesh.clone();
+    copy.triangles.refs.fill(0);
+    model.restore(&mut copy, &classification);
+    assert_eq!(copy.triangles, mesh.triangles);
+    assert_eq!((copy.edges.len(), copy.corners.len()), (24, 9));
+    let mut refs = copy.edges.refs.clone();
+    refs.sort_unstable();
+    assert_eq!(refs[21..], [0, 8, 9]);
+}
