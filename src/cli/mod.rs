@@ -6,6 +6,7 @@ mod adapt;
 mod classify;
 mod inspect;
 mod model;
+mod table;
 
 /// Adapts tetrahedral meshes to a metric, on the real CAD model.
 #[derive(Parser)]
