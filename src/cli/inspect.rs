@@ -1,11 +1,192 @@
 //! `geo-adapt inspect`.
 use super::Outcome;
+use super::table::{Table, figure};
+use crate::geometry::fidelity::{self, Fidelity};
+use crate::geometry::{Entity, Model, classify};
+use crate::mesh::TetMesh;
+use crate::mesh::io::read_mesh;
+use crate::mesh::validity::{self, Validity};
+use crate::mesh::vector::{Vec3, add, scale};
+use crate::metric::{Analytic, Field, Statistics, Sym3};
+use serde::Serialize;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Exit code of a mesh that is not valid.
+const INVALID: u8 = 1;
 
 /// Arguments of `geo-adapt inspect`.
 #[derive(clap::Args)]
-pub struct Arguments {}
+pub struct Arguments {
+    /// The mesh: .mesh or .meshb
+    mesh: PathBuf,
+    /// The metric at the mesh's vertices: .sol or .solb
+    #[arg(long, value_name = "FILE", conflicts_with = "analytic")]
+    metric: Option<PathBuf>,
+    /// An analytic metric field
+    #[arg(long, value_name = "NAME")]
+    analytic: Option<Analytic>,
+    /// The CAD model the mesh lies on: .step, .stp, .iges, .igs, .brep or .egads
+    #[arg(long, value_name = "MODEL")]
+    cad: Option<PathBuf>,
+    /// Print JSON; there the indices count from 0
+    #[arg(long)]
+    json: bool,
+}
 
-/// Runs the subcommand.
-pub fn run(_arguments: &Arguments) -> Outcome {
-    Err("not there yet".into())
+/// The tetrahedron of the least mean ratio.
+#[derive(Serialize)]
+struct WorstTet {
+    index: usize,
+    mean_ratio: f64,
+    at: Vec3,
+}
+
+/// The mesh on its model.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Cad {
+    On(Fidelity),
+    /// Why the mesh does not fit the model.
+    Off {
+        error: String,
+    },
+}
+
+/// All that is found.
+#[derive(Serialize)]
+struct Inspection {
+    valid: bool,
+    #[serde(flatten)]
+    validity: Validity,
+    #[serde(flatten)]
+    statistics: Statistics,
+    worst_tet: Option<WorstTet>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cad: Option<Cad>,
+}
+
+/// Runs the subcommand: code 0 for a valid mesh (that fits the model, if one is given), else 1.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let mesh = read(&arguments.mesh)?;
+    let model = arguments.cad.as_deref().map(Model::read).transpose()?;
+    let statistics = match metrics(arguments, &mesh)? {
+        Some(metrics) => Statistics::in_metric(&mesh, &metrics),
+        None => Statistics::in_space(&mesh),
+    };
+    let validity = validity::check(&mesh);
+    let cad = model.map(|model| on_model(&mesh, &model));
+    let valid = validity.is_valid() && !matches!(cad, Some(Cad::Off { .. }));
+    let worst_tet = worst(&mesh, &statistics);
+    let inspection = Inspection { valid, validity, statistics, worst_tet, cad };
+    let text = if arguments.json { serde_json::to_string_pretty(&inspection)? + "\n" } else { describe(&inspection) };
+    // A closed pipe (`| head`) is no error.
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    Ok(if valid { ExitCode::SUCCESS } else { ExitCode::from(INVALID) })
+}
+
+/// Reads the mesh and shows the notices.
+fn read(path: &Path) -> Result<TetMesh, Box<dyn std::error::Error>> {
+    let read = read_mesh(path)?;
+    show(&read.notices);
+    if read.content.tets.is_empty() {
+        return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
+    }
+    Ok(read.content)
+}
+
+fn show(notices: &[String]) {
+    for notice in notices {
+        eprintln!("geo-adapt: note: {notice}");
+    }
+}
+
+/// The metric at the vertices, when one is given.
+fn metrics(arguments: &Arguments, mesh: &TetMesh) -> Result<Option<Vec<Sym3>>, crate::metric::Error> {
+    if let Some(path) = &arguments.metric {
+        let read = Field::read(path, mesh.vertices.len())?;
+        show(&read.notices);
+        return Ok(Some(read.content.metrics));
+    }
+    Ok(arguments.analytic.map(|field| mesh.vertices.iter().map(|&p| field.at(p)).collect()))
+}
+
+fn on_model(mesh: &TetMesh, model: &Model) -> Cad {
+    match classify::classify(mesh, model, &classify::Options::default()) {
+        Ok((classification, report)) => {
+            show(&report.notices);
+            Cad::On(fidelity::measure(mesh, model, &classification))
+        }
+        Err(error) => Cad::Off { error: error.to_string() },
+    }
+}
+
+fn worst(mesh: &TetMesh, statistics: &Statistics) -> Option<WorstTet> {
+    let index = statistics.mean_ratios.argmin;
+    let nodes = mesh.tets.nodes.get(index)?;
+    let sum = nodes.iter().fold([0.0; 3], |sum, &v| add(sum, mesh.vertices[v as usize]));
+    Some(WorstTet { index, mean_ratio: statistics.mean_ratios.min, at: scale(sum, 0.25) })
+}
+
+/// The text for people.
+fn describe(inspection: &Inspection) -> String {
+    let mut table = Table::new();
+    if inspection.validity.is_valid() {
+        table.row("validity", "valid");
+    } else {
+        table.row("validity", "INVALID");
+        for flaw in &inspection.validity.flaws {
+            table.line(&format!("  {flaw}"));
+        }
+    }
+    table.statistics(&inspection.statistics);
+    if let Some(WorstTet { index, at, .. }) = inspection.worst_tet {
+        table.row("worst tetrahedron", format_args!("no. {} at {}", index + 1, place(at)));
+    }
+    match &inspection.cad {
+        Some(Cad::On(fidelity)) => table.fidelity(fidelity),
+        Some(Cad::Off { error }) => table.row("on the model", format_args!("NO: {error}")),
+        None => {}
+    }
+    table.text().into()
+}
+
+/// A point for people.
+fn place([x, y, z]: Vec3) -> String {
+    format!("({x:.6}, {y:.6}, {z:.6})")
+}
+
+impl Table {
+    /// How true the mesh is to its model.
+    pub fn fidelity(&mut self, fidelity: &Fidelity) {
+        self.row("vertices on the model", fidelity.vertices);
+        let farthest =
+            [("farthest from the model", &fidelity.from_model), ("farthest from its entity", &fidelity.from_entity)];
+        for (name, found) in farthest {
+            if let Some(found) = found {
+                let (vertex, entity) = (found.vertex + 1, entity_name(found.entity));
+                let far = figure(found.distance);
+                self.row(name, format_args!("{far} (vertex {vertex} on {entity} at {})", place(found.at)));
+            }
+        }
+        if let Some(worst) = &fidelity.worst_normal {
+            let (triangle, face, at) = (worst.triangle + 1, worst.face + 1, place(worst.at));
+            let (value, mean) = (figure(worst.deviation), figure(fidelity.mean_normal_deviation));
+            self.row(
+                "worst normal deviation",
+                format_args!("{value} (triangle {triangle} on face {face} at {at}), mean {mean}"),
+            );
+        }
+    }
+}
+
+/// An entity for people: numbers from 1.
+fn entity_name(entity: Entity) -> String {
+    match entity {
+        Entity::Vertex(i) => format!("vertex {}", i + 1),
+        Entity::Edge(i) => format!("edge {}", i + 1),
+        Entity::Face(i) => format!("face {}", i + 1),
+        Entity::Interior => "nothing".into(),
+    }
 }

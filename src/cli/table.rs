@@ -55,7 +55,10 @@ impl Table {
         self.row("vertices", statistics.vertices);
         self.row("tetrahedra", format_args!("{}{}", statistics.tets, references("region", &statistics.regions)));
         self.row("triangles", format_args!("{}{}", statistics.triangles, references("reference", &statistics.patches)));
-        self.row("tagged edges", format_args!("{}{}", statistics.tagged_edges, references("reference", &statistics.curves)));
+        self.row(
+            "tagged edges",
+            format_args!("{}{}", statistics.tagged_edges, references("reference", &statistics.curves)),
+        );
         self.row("volume", figure(statistics.volume));
         let mut unit = "model units";
         if let Some(figures) = &statistics.metric {
@@ -107,7 +110,14 @@ mod tests {
 
     #[test]
     fn four_figures() {
-        let cases = [(0.0, "0"), (1.0, "1.000"), (0.12345, "0.1235"), (1234.56, "1235"), (2.5e-5, "2.500e-5"), (-3e9, "-3.000e9")];
+        let cases = [
+            (0.0, "0"),
+            (1.0, "1.000"),
+            (0.12345, "0.1235"),
+            (1234.56, "1235"),
+            (2.5e-5, "2.500e-5"),
+            (-3e9, "-3.000e9"),
+        ];
         for (x, text) in cases {
             assert_eq!(figure(x), text);
         }
@@ -119,7 +129,15 @@ mod tests {
         table.distribution("value", &Distribution::of(&[0.5, 1.5, 1.6], &[-1.0, 0.0, 1.0, 2.0, 3.0], false));
         let expected = format!(
             "{:<26} least 0.5000   mean 1.200   greatest 1.600\n  {:>17} {:>10} {:>6} %  {}\n  {:>17} {:>10} {:>6} %  {}\n",
-            "value", "0.00 – 1.00", 1, "33.33", "#".repeat(20), "1.00 – 2.00", 2, "66.67", "#".repeat(40)
+            "value",
+            "0.00 – 1.00",
+            1,
+            "33.33",
+            "#".repeat(20),
+            "1.00 – 2.00",
+            2,
+            "66.67",
+            "#".repeat(40)
         );
         assert_eq!(table.text(), expected);
     }

@@ -3,6 +3,7 @@ pub mod classify;
 pub mod discrete;
 mod entity;
 mod error;
+pub mod fidelity;
 mod model;
 #[cfg(feature = "occt")]
 mod occt;

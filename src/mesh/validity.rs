@@ -61,11 +61,11 @@ impl FlawKind {
     }
 }
 
-/// One of the offenders. Numbers count from 1, as in files.
+/// One of the offenders. Indices count from 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Offender {
-    /// Number of the element or vertex; of a face or edge that is no element, of its tetrahedron; none for an edge.
-    pub number: Option<usize>,
+    /// Index of the element or vertex; of a face that is no element, of its tetrahedron; none for an edge of no element.
+    pub index: Option<usize>,
     /// Its nodes.
     pub nodes: Vec<u32>,
     /// Its middle, model units.
@@ -83,16 +83,18 @@ pub struct Flaw {
     pub first: Vec<Offender>,
 }
 
+/// For people: numbers from 1, as in files.
 impl std::fmt::Display for Flaw {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} {}", self.count, self.kind.words())?;
         for (i, offender) in self.first.iter().enumerate() {
             f.write_str(if i == 0 { ": " } else { "; " })?;
-            if let Some(number) = offender.number {
-                write!(f, "no. {number}, ")?;
+            if let Some(index) = offender.index {
+                write!(f, "no. {}, ", index + 1)?;
             }
             let [x, y, z] = offender.at;
-            write!(f, "nodes {:?} at ({x:.6}, {y:.6}, {z:.6})", offender.nodes)?;
+            let nodes: Vec<u32> = offender.nodes.iter().map(|v| v + 1).collect();
+            write!(f, "nodes {nodes:?} at ({x:.6}, {y:.6}, {z:.6})")?;
         }
         Ok(())
     }
@@ -136,7 +138,7 @@ struct Findings<'a> {
 }
 
 impl Findings<'_> {
-    /// Counts a flaw. `index` counts from 0.
+    /// Counts a flaw.
     fn add(&mut self, kind: FlawKind, index: Option<usize>, nodes: &[u32]) {
         let flaws = &mut self.validity.flaws;
         let at = flaws.iter().position(|flaw| flaw.kind == kind).unwrap_or_else(|| {
@@ -146,11 +148,7 @@ impl Findings<'_> {
         flaws[at].count += 1;
         if flaws[at].first.len() < NAMED {
             let sum = nodes.iter().fold([0.0; 3], |sum, &v| add(sum, self.mesh.vertices[v as usize]));
-            flaws[at].first.push(Offender {
-                number: index.map(|i| i + 1),
-                nodes: nodes.iter().map(|v| v + 1).collect(),
-                at: scale(sum, 1.0 / nodes.len() as f64),
-            });
+            flaws[at].first.push(Offender { index, nodes: nodes.to_vec(), at: scale(sum, 1.0 / nodes.len() as f64) });
         }
     }
 
@@ -351,7 +349,7 @@ mod tests {
         mesh.tets.nodes[5].swap(0, 1);
         let validity = check(&mesh);
         assert_eq!(validity.count(FlawKind::InvertedTet), 1);
-        assert_eq!(validity.flaws[0].first[0].number, Some(6));
+        assert_eq!(validity.flaws[0].first[0].index, Some(5));
         // A vertex inside, moved into the plane of a face of one of its tets.
         let mut mesh = cube(2);
         let inner = mesh.vertices.iter().position(|&p| p == [0.5; 3]).unwrap();

@@ -38,6 +38,7 @@ pub struct Distribution {
     /// Greatest value; 0 without values.
     pub max: f64,
     /// Index of the least value (a tetrahedron, from 0; for edges an index into the sorted unique edges).
+    #[serde(skip)]
     pub argmin: usize,
     /// The histogram; empty when no classes make sense (lengths without a metric).
     pub classes: Vec<Class>,

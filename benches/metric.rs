@@ -1,0 +1,137 @@
+//! The hot kernels of the metric: tensor maps, edge length, mean ratio, location. One call an iteration, over inputs that
+//! vary as they do in a mesh.
+use criterion::{Criterion, criterion_group, criterion_main};
+use geo_adapt::mesh::vector::{Vec3, cross, unit};
+use geo_adapt::metric::quality::{edge_length, may_exceed, mean_ratio, mean_ratio_in};
+use geo_adapt::metric::{Background, Sym3};
+use std::hint::black_box;
+
+/// Inputs of a kernel; a power of two.
+const INPUTS: usize = 1024;
+
+/// Numbers in [0, 1), the same every time (Knuth's linear congruence).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn point(&mut self) -> Vec3 {
+        [self.next(), self.next(), self.next()]
+    }
+
+    /// Sizes within a factor of `anisotropy`.
+    fn metric(&mut self, anisotropy: f64) -> Sym3 {
+        let a = unit(self.point());
+        let b = unit(cross(a, self.point()));
+        let sizes = self.point().map(|x| anisotropy.powf(-x));
+        Sym3::from_sizes([a, b, cross(a, b)], sizes)
+    }
+}
+
+/// Times `kernel` over the inputs in turn.
+fn over<T, R>(c: &mut Criterion, name: &str, inputs: &[T], kernel: impl Fn(&T) -> R) {
+    let mut i = 0;
+    c.bench_function(name, |b| {
+        b.iter(|| {
+            i = (i + 1) % inputs.len();
+            kernel(black_box(&inputs[i]))
+        });
+    });
+}
+
+fn tensors(c: &mut Criterion) {
+    let mut numbers = Numbers(1);
+    for anisotropy in [1.05, 100.0, 1e5] {
+        let metrics: Vec<Sym3> = (0..INPUTS).map(|_| numbers.metric(anisotropy)).collect();
+        let logs: Vec<Sym3> = metrics.iter().map(Sym3::ln).collect();
+        over(c, &format!("exp, anisotropy {anisotropy}"), &logs, |m| m.exp());
+        over(c, &format!("ln, anisotropy {anisotropy}"), &metrics, |m| m.ln());
+    }
+    let metrics: Vec<Sym3> = (0..INPUTS).map(|_| numbers.metric(100.0)).collect();
+    over(c, "eigen", &metrics, |m| m.eigen());
+    over(c, "eigen_jacobi", &metrics, |m| m.eigen_jacobi());
+    let pairs: Vec<(Sym3, Sym3)> = metrics.iter().copied().zip(metrics.iter().rev().copied()).collect();
+    over(c, "intersect", &pairs, |(a, b)| a.intersect(b));
+}
+
+fn quality(c: &mut Criterion) {
+    let mut numbers = Numbers(2);
+    let edges: Vec<(Vec3, Sym3, Sym3)> =
+        (0..INPUTS).map(|_| (numbers.point(), numbers.metric(100.0), numbers.metric(100.0))).collect();
+    over(c, "edge_length", &edges, |(v, a, b)| edge_length(*v, a, b));
+    // Corners near those of a right tetrahedron: positive. Metrics of neighbours differ little.
+    let tets: Vec<([Vec3; 4], [Sym3; 4])> = (0..INPUTS)
+        .map(|_| {
+            let mut corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            for x in corners.iter_mut().flatten() {
+                *x += 0.2 * numbers.next();
+            }
+            let log = numbers.metric(100.0).ln();
+            (corners, [0.0, 0.1, 0.2, 0.3].map(|x| log.times(1.0 + x)))
+        })
+        .collect();
+    over(c, "mean_ratio", &tets, |(p, logs)| mean_ratio(*p, logs.each_ref()));
+    over(c, "may_exceed (refusal)", &tets, |(p, logs)| may_exceed(*p, logs.each_ref(), 0.999));
+    over(c, "mean_ratio_in", &tets, |(p, logs)| mean_ratio_in(*p, &logs[0], 1.0));
+}
+
+/// The unit cube as n³ cells of six tetrahedra around a diagonal.
+fn cube(n: u32) -> (Vec<Vec3>, Vec<[u32; 4]>) {
+    let index = |at: [u32; 3]| (at[0] * (n + 1) + at[1]) * (n + 1) + at[2];
+    let line = 0..(n + 1).pow(3);
+    let of = |i: u32, m: u32| [i / (m * m), i / m % m, i % m];
+    let vertices = line.map(|i| of(i, n + 1).map(|x| f64::from(x) / f64::from(n))).collect();
+    let mut tets = Vec::new();
+    for cell in 0..n * n * n {
+        for (order, odd) in [
+            ([0, 1, 2], false),
+            ([1, 2, 0], false),
+            ([2, 0, 1], false),
+            ([1, 0, 2], true),
+            ([0, 2, 1], true),
+            ([2, 1, 0], true),
+        ] {
+            let mut at = of(cell, n);
+            let mut nodes = [index(at); 4];
+            for (node, axis) in nodes[1..].iter_mut().zip(order) {
+                at[axis] += 1;
+                *node = index(at);
+            }
+            if odd {
+                nodes.swap(0, 1);
+            }
+            tets.push(nodes);
+        }
+    }
+    (vertices, tets)
+}
+
+fn location(c: &mut Criterion) {
+    let (vertices, tets) = cube(24);
+    let mut numbers = Numbers(3);
+    let logs = vertices.iter().map(|_| numbers.metric(100.0).ln()).collect();
+    let background = Background::new(vertices, tets, logs);
+    let mut p = [0.5; 3];
+    let mut hint = 0;
+    // A step of half a cell from the last point, as the kernel's hints are.
+    c.bench_function("background, near hint (83k tets)", |b| {
+        b.iter(|| {
+            p = p.map(|x| (x + 0.04 * (numbers.next() - 0.5)).clamp(0.0, 1.0));
+            background.log_at(p, &mut hint)
+        });
+    });
+    c.bench_function("background, far hint", |b| b.iter(|| background.log_at(numbers.point(), &mut hint)));
+    c.bench_function("background, no hint", |b| b.iter(|| background.log_at(numbers.point(), &mut u32::MAX.clone())));
+    c.bench_function("background, outside", |b| {
+        b.iter(|| {
+            p = p.map(|x| (x + 0.04 * (numbers.next() - 0.5)).clamp(0.0, 1.0));
+            background.log_at([p[0], p[1], 1.002], &mut hint)
+        });
+    });
+}
+
+criterion_group!(benches, tensors, quality, location);
+criterion_main!(benches);

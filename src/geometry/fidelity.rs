@@ -1,0 +1,187 @@
+//! How true a mesh's boundary is to its model: distances, and the deviation of the normals.
+use super::classify::Classification;
+use super::{Entity, Evaluate, Geometry, Model, Topology};
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::{FACES, FaceKey, sorted_faces, sorted3};
+use crate::mesh::vector::{Vec3, add, area2, distance, dot, norm, scale, unit};
+use serde::Serialize;
+
+/// The vertex that is farthest from something.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Farthest {
+    /// Distance, model units.
+    pub distance: f64,
+    /// Mesh vertex, from 0.
+    pub vertex: u32,
+    /// What it is classified on.
+    pub entity: Entity,
+    /// Where it is.
+    pub at: Vec3,
+}
+
+/// The triangle that deviates most.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Deviation {
+    /// 1 − n·n_CAD, n_CAD at the point of its face closest to its centroid: 0 best, 2 worst.
+    pub deviation: f64,
+    /// Triangle, from 0.
+    pub triangle: u32,
+    /// Its face, from 0.
+    pub face: u32,
+    /// Its centroid.
+    pub at: Vec3,
+}
+
+/// How true a mesh's boundary is to its model.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Fidelity {
+    /// Vertices on the model.
+    pub vertices: usize,
+    /// The vertex farthest from the model's surface.
+    pub from_model: Option<Farthest>,
+    /// The vertex farthest from its own entity.
+    pub from_entity: Option<Farthest>,
+    /// The triangle of the worst normal.
+    pub worst_normal: Option<Deviation>,
+    /// Mean of 1 − n·n_CAD over the triangles.
+    pub mean_normal_deviation: f64,
+}
+
+/// Measures a mesh that was classified on a model.
+pub fn measure(mesh: &TetMesh, model: &Model, classification: &Classification) -> Fidelity {
+    let mut fidelity = Fidelity::default();
+    measure_vertices(mesh, model, classification, &mut fidelity);
+    measure_normals(mesh, model, classification, &mut fidelity);
+    fidelity
+}
+
+fn measure_vertices(mesh: &TetMesh, model: &Model, classification: &Classification, fidelity: &mut Fidelity) {
+    let topology = model.topology();
+    let mut evaluator = model.evaluator();
+    let grow = |farthest: &mut Option<Farthest>, found: Farthest| {
+        if farthest.is_none_or(|known| found.distance > known.distance) {
+            *farthest = Some(found);
+        }
+    };
+    for (vertex, &entity) in classification.entities.iter().enumerate() {
+        let at = mesh.vertices[vertex];
+        let [t, v] = classification.parameters[vertex];
+        let distance = match entity {
+            Entity::Vertex(i) => distance(at, topology.vertices[i as usize].point),
+            Entity::Edge(i) => evaluator.closest_on_edge(i, at, Some(t)).distance,
+            Entity::Face(i) => evaluator.closest_on_face(i, at, Some([t, v])).distance,
+            Entity::Interior => continue,
+        };
+        fidelity.vertices += 1;
+        let found = Farthest { distance, vertex: vertex as u32, entity, at };
+        grow(&mut fidelity.from_entity, found);
+        // The model is no farther than the own entity: most vertices need no search.
+        if fidelity.from_model.is_none_or(|known| distance > known.distance) {
+            let distance = distance_from_model(topology, &mut evaluator, at, distance);
+            grow(&mut fidelity.from_model, Farthest { distance, ..found });
+        }
+    }
+}
+
+/// Distance to the nearest face, which is no more than `bound`.
+fn distance_from_model(topology: &Topology, evaluator: &mut impl Evaluate, p: Vec3, bound: f64) -> f64 {
+    let mut least = bound;
+    for (face, entity) in topology.faces.iter().enumerate() {
+        let [low, high] = entity.bounds;
+        let to_box = norm(std::array::from_fn(|i| (low[i] - p[i]).max(p[i] - high[i]).max(0.0)));
+        if to_box < least {
+            least = least.min(evaluator.closest_on_face(face as u32, p, None).distance);
+        }
+    }
+    least
+}
+
+fn measure_normals(mesh: &TetMesh, model: &Model, classification: &Classification, fidelity: &mut Fidelity) {
+    let mut evaluator = model.evaluator();
+    let faces = sorted_faces(&mesh.tets.nodes);
+    let (mut sum, mut count) = (0.0, 0usize);
+    for (triangle, (nodes, &face)) in mesh.triangles.nodes.iter().zip(&classification.faces).enumerate() {
+        let [a, b, c] = nodes.map(|v| mesh.vertices[v as usize]);
+        let at = scale(add(add(a, b), c), 1.0 / 3.0);
+        let guess = nodes.iter().find_map(|&v| parameters_on(&mut evaluator, classification, v, face));
+        let foot = evaluator.closest_on_face(face, at, guess);
+        let truth = evaluator.face_normal(face, foot.uv);
+        let Some(side) = side_of(mesh, &faces, *nodes) else { continue };
+        if dot(truth, truth) == 0.0 {
+            continue;
+        }
+        let cosine = dot(unit(area2(a, b, c)), truth);
+        let deviation = 1.0 - side.map_or(cosine.abs(), |sign| sign * cosine);
+        sum += deviation;
+        count += 1;
+        if fidelity.worst_normal.is_none_or(|known| deviation > known.deviation) {
+            fidelity.worst_normal = Some(Deviation { deviation, triangle: triangle as u32, face, at });
+        }
+    }
+    fidelity.mean_normal_deviation = sum / count.max(1) as f64;
+}
+
+/// Parameters of a mesh vertex on a face, for a guess.
+fn parameters_on(
+    evaluator: &mut impl Evaluate,
+    classification: &Classification,
+    vertex: u32,
+    face: u32,
+) -> Option<[f64; 2]> {
+    let parameters = classification.parameters[vertex as usize];
+    match classification.entities[vertex as usize] {
+        Entity::Face(own) if own == face => Some(parameters),
+        Entity::Edge(edge) => evaluator.edge_on_face(edge, parameters[0], face),
+        _ => None,
+    }
+}
+
+/// +1 when the triangle's normal points out of its only tetrahedron, −1 when into it, no sign between two
+/// tetrahedra; none when it is no face of any.
+fn side_of(mesh: &TetMesh, faces: &[FaceKey], nodes: [u32; 3]) -> Option<Option<f64>> {
+    let key = sorted3(nodes);
+    let first = faces.partition_point(|face| face.nodes < key);
+    let same = faces[first..].iter().take_while(|face| face.nodes == key).count();
+    if same != 1 {
+        return (same > 1).then_some(None);
+    }
+    let side = faces[first].side as usize;
+    let outward = FACES[side % 4].map(|i| mesh.tets.nodes[side / 4][i]);
+    let turned = (0..3).any(|i| (0..3).all(|j| outward[(i + j) % 3] == nodes[j]));
+    Some(Some(if turned { 1.0 } else { -1.0 }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Discrete;
+    use crate::mesh::samples::cube;
+
+    #[test]
+    fn a_cube_on_its_own_surface() {
+        let mut mesh = cube(2);
+        let (model, classification) = Discrete::from_mesh(&mesh, 30.0).unwrap();
+        let model = Model::Discrete(model);
+        // The orientation of the triangles in the file does not matter.
+        mesh.triangles.nodes[3].swap(0, 1);
+        let fidelity = measure(&mesh, &model, &classification);
+        assert_eq!(fidelity.vertices, 26);
+        assert!(fidelity.from_entity.unwrap().distance < 1e-14 && fidelity.from_model.unwrap().distance < 1e-14);
+        assert!(fidelity.worst_normal.unwrap().deviation < 1e-14);
+        // A vertex within a side, pushed in: by 0.1 from both, and the triangles around it lean.
+        let vertex = mesh.vertices.iter().position(|&p| p == [0.5, 0.5, 0.0]).unwrap();
+        mesh.vertices[vertex][2] = 0.1;
+        let fidelity = measure(&mesh, &model, &classification);
+        let (own, all) = (fidelity.from_entity.unwrap(), fidelity.from_model.unwrap());
+        assert_eq!((own.vertex, all.vertex), (vertex as u32, vertex as u32));
+        assert!((own.distance - 0.1).abs() < 1e-12 && (all.distance - 0.1).abs() < 1e-12);
+        let lean = fidelity.worst_normal.unwrap().deviation;
+        assert!(lean > 0.01 && lean < 0.1, "{lean}");
+        // Slid over a side it leaves its entity, not the model: an edge's vertex here.
+        let vertex = mesh.vertices.iter().position(|&p| p == [0.5, 0.0, 1.0]).unwrap();
+        mesh.vertices[vertex] = [0.5, 0.2, 1.0];
+        let fidelity = measure(&mesh, &model, &classification);
+        assert!((fidelity.from_entity.unwrap().distance - 0.2).abs() < 1e-12);
+        assert!((fidelity.from_model.unwrap().distance - 0.1).abs() < 1e-12);
+    }
+}
