@@ -65,9 +65,8 @@ def baseline(mesh):
     path = OUT / "mmg.json"
     if not path.is_file():
         return {}
-    summary = json.loads(path.read_text())
-    same = Path(summary["start"]) == Path(mesh).resolve()
-    return {field: result["cpu_seconds"] for field, result in summary["fields"].items()} if same else {}
+    known = json.loads(path.read_text()).get(str(Path(mesh).resolve()), {})
+    return {field: result["cpu_seconds"] for field, result in known.items()}
 
 
 def draw(options, name, field):

@@ -36,8 +36,14 @@ def main():
     for field in options.fields:
         results[field] = run(options, folder, field)
         cycles.say(cycles.row("mmg3d -hgrad -1", field, results[field], results[field]["cpu_seconds"]))
-    summary = {"start": str(options.start.resolve()), "cycles": options.cycles, "fields": results}
-    (folder.parent / "mmg.json").write_text(json.dumps(summary, indent=1))
+    remember(folder.parent / "mmg.json", str(options.start.resolve()), results)
+
+
+def remember(path, start, results):
+    """Puts the results under their start mesh, beside those of other start meshes and fields."""
+    known = json.loads(path.read_text()) if path.is_file() else {}
+    known[start] = known.get(start, {}) | results
+    path.write_text(json.dumps(known, indent=1))
 
 
 def run(options, folder, field):
