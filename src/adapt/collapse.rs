@@ -1,9 +1,9 @@
 //! Edge collapse: a vertex goes, its ball becomes a star about a neighbour.
 use super::access::Access;
-use super::ids::{FACE, VertexId};
+use super::ids::{FACE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Refusal;
-use super::star::Seed;
+use super::star::{Bounds, Seed};
 use super::worker::Worker;
 use crate::geometry::Entity;
 
@@ -17,28 +17,22 @@ impl<A: Access> Worker<'_, '_, A> {
         if self.length(a, b) >= self.context.limits.short {
             return Err(Refusal::Stale);
         }
-        match (self.try_collapse(a, b), self.try_collapse(b, a)) {
-            (Ok(first), Ok(second)) if first > second => self.try_collapse(a, b).and_then(|_| self.finish_collapse(a, b)),
-            (_, Ok(_)) => self.finish_collapse(b, a),
-            (Ok(_), Err(_)) => self.try_collapse(a, b).and_then(|_| self.finish_collapse(a, b)),
-            (Err(Refusal::Geometry), Err(refusal)) | (Err(refusal), Err(_)) => Err(refusal),
+        let onto_a = self.try_collapse(b, a, 0.0);
+        match (onto_a, self.try_collapse(a, b, onto_a.unwrap_or(0.0))) {
+            (_, Ok(_)) => self.finish_collapse(a, b),
+            (Ok(_), Err(_)) => self.try_collapse(b, a, 0.0).and_then(|_| self.finish_collapse(b, a)),
+            (Err(refusal), Err(Refusal::Geometry)) | (Err(_), Err(refusal)) => Err(refusal),
         }
     }
 
-    /// Prepares the removal of v onto its neighbour w; returns the worst mean ratio after it.
-    pub fn try_collapse(&mut self, v: VertexId, w: VertexId) -> Result<f64, Refusal> {
-        let limits = self.context.limits;
+    /// Prepares the removal of v onto its neighbour w; returns the worst mean ratio after it, which is at least `better`.
+    pub fn try_collapse(&mut self, v: VertexId, w: VertexId, better: f64) -> Result<f64, Refusal> {
         self.check_entities(v, w)?;
         self.gather_ball(v)?;
         let ball = std::mem::take(&mut self.state.ball);
-        let result = self.collapse_star(v, w, &ball);
-        let longest_old = ball.iter().flat_map(|&t| self.store.vertices(t));
-        let longest_old = longest_old.filter(|&x| x != v).map(|x| self.length(v, x)).fold(0.0, f64::max);
+        let result = self.check_new_lengths(v, w, &ball).and_then(|()| self.collapse_star(v, w, &ball, better));
         self.state.ball = ball;
         let worst = result?;
-        if self.star_lengths(w).1 > limits.longest_new.max(longest_old) {
-            return Err(Refusal::Length);
-        }
         if !self.state.star.surface.is_empty() {
             self.check_surface_link(v, w)?;
             self.check_normals(0.0)?;
@@ -46,14 +40,24 @@ impl<A: Access> Worker<'_, '_, A> {
         Ok(worst)
     }
 
-    fn collapse_star(&mut self, v: VertexId, w: VertexId, ball: &[super::ids::TetId]) -> Result<f64, Refusal> {
-        let floor = self.context.limits.collapse_floor;
-        let worst = self.build_star(Seed::Vertex(v), w, ball, 0.0)?;
-        if worst >= floor.min(self.worst_old()) { Ok(worst) } else { Err(Refusal::Shape) }
+    /// No new edge may be longer than the limit and than the longest one that goes.
+    fn check_new_lengths(&mut self, v: VertexId, w: VertexId, ball: &[TetId]) -> Result<(), Refusal> {
+        self.list_link(v, ball);
+        let link = &self.state.star.link;
+        let limit = self.context.limits.longest_new;
+        let longest = |x: VertexId| link.iter().map(|&y| self.length(x, y)).fold(0.0, f64::max);
+        let too_long = link.iter().any(|&x| x != w && self.length(w, x) > limit);
+        if too_long && longest(w) > longest(v) { Err(Refusal::Length) } else { Ok(()) }
+    }
+
+    fn collapse_star(&mut self, v: VertexId, w: VertexId, ball: &[TetId], better: f64) -> Result<f64, Refusal> {
+        let worst_old = ball.iter().map(|&t| self.store.quality(t)).fold(f64::INFINITY, f64::min);
+        let floor = self.context.limits.collapse_floor.min(worst_old).max(better);
+        self.build_star(Seed::Vertex(v), w, ball, Bounds { wanted: 0.0, floor })
     }
 
     /// Carries out what [`Worker::try_collapse`] prepared last.
-    fn finish_collapse(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
+    pub fn finish_collapse(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
         let ends = (self.store.dimension(v) == 1).then(|| self.store.ridge(v));
         self.commit()?;
         if let Some([x, y]) = ends {

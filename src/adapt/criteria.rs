@@ -19,13 +19,17 @@ pub enum Criterion {
     MeanRatio,
 }
 
+/// How much better, in part, a triangulation must be to be taken: no flipping back and forth by rounding.
+pub const GAIN: f64 = 1e-3;
+
 impl<A: Access> Worker<'_, '_, A> {
     /// Score of one tetrahedron in a cavity with these vertices: the score of a triangulation is the least of its
-    /// tetrahedra's, and the greater is the better. `None` when the tetrahedron is not positive.
-    pub fn score(&self, criterion: Criterion, tet: [VertexId; 4], cavity: &[VertexId]) -> Option<f64> {
+    /// tetrahedra's, and the greater is the better. `None` when the tetrahedron is not positive. A score that does not exceed
+    /// `floor` may come out lower than it is.
+    pub fn score(&self, criterion: Criterion, tet: [VertexId; 4], cavity: &[VertexId], floor: f64) -> Option<f64> {
         let points = tet.map(|v| self.store.position(v));
         match criterion {
-            Criterion::MeanRatio => Some(self.shape(tet)).filter(|&q| q > 0.0),
+            Criterion::MeanRatio => Some(self.shape_above(tet, floor)).filter(|&q| q > 0.0),
             _ if !super::shape::is_positive(points) => None,
             Criterion::EdgeWeight => {
                 let logs = tet.map(|v| self.store.log(v));
@@ -43,7 +47,7 @@ impl<A: Access> Worker<'_, '_, A> {
     pub fn present_score(&self, criterion: Criterion, t: TetId, cavity: &[VertexId]) -> f64 {
         match criterion {
             Criterion::MeanRatio => self.store.quality(t),
-            _ => self.score(criterion, self.store.vertices(t), cavity).unwrap_or(f64::NEG_INFINITY),
+            _ => self.score(criterion, self.store.vertices(t), cavity, 0.0).unwrap_or(f64::NEG_INFINITY),
         }
     }
 

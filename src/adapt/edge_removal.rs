@@ -4,7 +4,7 @@
 //! is found by dynamic programming over the polygon (Klincsek 1980; Shewchuk 2002).
 use super::access::Access;
 use super::cavity::NewTet;
-use super::criteria::Criterion;
+use super::criteria::{Criterion, GAIN};
 use super::ids::{TetId, VertexId};
 use super::outcome::Refusal;
 use super::shell::Shell;
@@ -20,9 +20,6 @@ pub struct RingTables {
     third: [[usize; LONGEST_RING]; LONGEST_RING],
     cavity: Vec<VertexId>,
 }
-
-/// How much better a triangulation must be to be taken: no flipping back and forth by rounding.
-const GAIN: f64 = 1e-3;
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Removes the edge a–b of a tetrahedron that holds still, when the criterion gains by it.
@@ -51,10 +48,7 @@ impl<A: Access> Worker<'_, '_, A> {
         tables.cavity.extend(&shell.ring);
         let old = shell.tets.iter().map(|&t| self.present_score(criterion, t, &tables.cavity));
         let old = old.fold(f64::INFINITY, f64::min);
-        let wanted = match criterion {
-            Criterion::MeanRatio => old + GAIN * old.abs().max(1e-3),
-            _ => old + GAIN * old.abs().max(1e-9),
-        };
+        let wanted = old + GAIN * old.abs().max(GAIN);
         self.triangulate(a, b, shell, criterion, wanted, &mut tables);
         let best = tables.score[0][n - 1];
         if best > wanted {
@@ -124,9 +118,10 @@ impl<A: Access> Worker<'_, '_, A> {
                     if bound <= best.max(wanted) {
                         continue;
                     }
-                    let score = |tet| self.score(criterion, tet, &tables.cavity).unwrap_or(f64::NEG_INFINITY);
+                    let floor = best.max(wanted);
+                    let score = |tet| self.score(criterion, tet, &tables.cavity, floor).unwrap_or(f64::NEG_INFINITY);
                     let upper = bound.min(score([ring[i], ring[k], ring[j], b]));
-                    if upper <= best.max(wanted) {
+                    if upper <= floor {
                         continue;
                     }
                     let value = upper.min(score([ring[i], ring[j], ring[k], a]));

@@ -2,7 +2,7 @@
 use super::access::Access;
 use super::ids::{TetId, VertexId};
 use super::outcome::Refusal;
-use super::star::Seed;
+use super::star::{Bounds, Seed};
 use super::surface::Placed;
 use super::worker::Worker;
 use crate::geometry::Entity;
@@ -89,11 +89,11 @@ impl<A: Access> Worker<'_, '_, A> {
 
     fn try_insert(&mut self, seed: Seed, seeds: &[TetId], v: VertexId) -> Result<(), Refusal> {
         let limits = self.context.limits;
-        let mut worst = self.build_star(seed, v, seeds, 0.0)?;
         let allowed = |worker: &Self| limits.insert_floor.min(0.5 * worker.worst_old());
+        let worst = self.build_star(seed, v, seeds, Bounds::default())?;
         if worst < allowed(self) {
-            worst = self.build_star(seed, v, seeds, limits.insert_floor)?;
-            if worst < allowed(self) {
+            let larger = Bounds { wanted: limits.insert_floor, floor: 0.0 };
+            if self.build_star(seed, v, seeds, larger)? < allowed(self) {
                 return Err(Refusal::Shape);
             }
         }

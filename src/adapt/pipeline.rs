@@ -1,19 +1,24 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
-use super::build;
 use super::context::{Context, Limits};
 use super::criteria::Criterion;
 use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
-use super::schedule::{self, Collapse, Operation, Project, Reconnect, Smooth, Split};
+use super::schedule::{self, Collapse, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::worker::State;
 use crate::mesh::vector::sub;
 use crate::metric::quality::edge_length;
 use crate::tasks::Pool;
 use std::time::{Duration, Instant};
 
-/// Passes of refinement and coarsening at most.
-const PASSES: usize = 12;
+/// Passes at most that bring the edges to their length.
+const SIZE_PASSES: usize = 20;
+
+/// Passes at most that improve the shapes.
+const SHAPE_PASSES: usize = 6;
+
+/// Tries at most to bring every boundary vertex to the model.
+const SETTLE_PASSES: usize = 4;
 
 /// A kind of operation, for progress and report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -104,23 +109,64 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         Self { context, states, pool, observer, criterion, work: [Work::default(); 5], waiting, looked: [0; 5], pass: 0 }
     }
 
-    /// Adapts the mesh.
+    /// Adapts the mesh: first to the sizes, then to the shapes, then what is left off the model.
     pub fn run(&mut self) {
-        self.context.limits = Limits::default();
-        for pass in 0..PASSES {
-            self.pass = pass;
-            // Long edges that were refused are tried again: room may have come from farther away.
-            self.looked[Kind::Split as usize] = 0;
-            let before = self.changes();
-            self.collapse();
-            let split = self.refine();
-            self.collapse();
-            self.reconnect(Criterion::MeanRatio, 2);
-            self.smooth(2);
-            self.reconnect(Criterion::MeanRatio, 1);
-            if self.observer.stop() || (split == 0 && self.changes() - before < 1) {
+        self.context.limits = Limits { improve_below: 0.4, ..Limits::default() };
+        for _ in 0..SIZE_PASSES {
+            if self.size_pass() || self.observer.stop() {
                 break;
             }
+            self.pass += 1;
+        }
+        self.context.limits.improve_below = 0.9;
+        self.looked = [0; 5];
+        for _ in 0..SHAPE_PASSES {
+            self.pass += 1;
+            if self.shape_pass() || self.observer.stop() {
+                break;
+            }
+        }
+        self.settle();
+    }
+
+    /// One pass of insertion and collapse, with as much reconnection as they need; whether it changed little.
+    fn size_pass(&mut self) -> bool {
+        let before = self.changes();
+        self.looked[Kind::Split as usize] = 0;
+        self.refine(1);
+        self.collapse(1);
+        self.reconnect(self.criterion, 1);
+        self.smooth(1);
+        ((self.changes() - before) as f64) < 0.05 * self.context.store.vertex_bound() as f64
+    }
+
+    /// One pass of all operations; whether it changed little.
+    fn shape_pass(&mut self) -> bool {
+        let before = self.changes();
+        self.reconnect(Criterion::MeanRatio, 2);
+        self.smooth(1);
+        self.collapse(2);
+        // Long edges that were refused are tried again: room may have come from farther away.
+        self.looked[Kind::Split as usize] = 0;
+        self.refine(2);
+        self.reconnect(Criterion::MeanRatio, 1);
+        self.smooth(1);
+        ((self.changes() - before) as f64) < 1e-3 * self.context.store.vertex_bound() as f64
+    }
+
+    /// Brings the last waiting vertices to the model, or takes them out.
+    fn settle(&mut self) {
+        for _ in 0..SETTLE_PASSES {
+            self.project();
+            if self.waiting.is_empty() {
+                return;
+            }
+            self.context.limits.collapse_floor = 0.0;
+            self.context.limits.longest_new = f64::INFINITY;
+            let items = std::mem::take(&mut self.waiting);
+            self.sweep(Kind::Project, &Retire, &items);
+            self.gather_waiting();
+            self.reconnect(Criterion::MeanRatio, 1);
         }
     }
 
@@ -128,27 +174,21 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.work[Kind::Split as usize].counts.done + self.work[Kind::Collapse as usize].counts.done
     }
 
-    /// Splits long edges until none is left or none can be split.
-    fn refine(&mut self) -> u64 {
-        let mut total = 0;
-        for _ in 0..4 {
-            if self.observer.stop() {
+    /// Splits long edges in so many sweeps, or until few are split.
+    fn refine(&mut self, sweeps: usize) {
+        for _ in 0..sweeps {
+            let items = self.long_edges();
+            if self.observer.stop() || self.sweep(Kind::Split, &Split, &items).done * 50 <= items.len() as u64 {
                 break;
             }
-            let items = self.long_edges();
-            let done = self.sweep(Kind::Split, &Split, &items).done;
             self.project();
             self.reconnect(self.criterion, 1);
-            total += done;
-            if (done as f64) < 0.02 * items.len() as f64 || done == 0 {
-                break;
-            }
         }
-        total
     }
 
-    fn collapse(&mut self) {
-        for _ in 0..3 {
+    /// Collapses short edges in so many sweeps, or until none is collapsed.
+    fn collapse(&mut self, sweeps: usize) {
+        for _ in 0..sweeps {
             let items = self.short_edges();
             if self.observer.stop() || self.sweep(Kind::Collapse, &Collapse, &items).done == 0 {
                 break;
@@ -200,14 +240,13 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Tries to bring the waiting vertices to the model.
     fn project(&mut self) {
-        for state in &mut self.states {
-            self.waiting.append(&mut state.waiting);
-        }
-        if self.waiting.is_empty() {
-            return;
-        }
+        self.gather_waiting();
         let items = std::mem::take(&mut self.waiting);
         self.sweep(Kind::Project, &Project, &items);
+        self.gather_waiting();
+    }
+
+    fn gather_waiting(&mut self) {
         for state in &mut self.states {
             self.waiting.append(&mut state.waiting);
         }
@@ -279,9 +318,4 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         found.sort_by(|(_, lx), (_, ly)| lx.total_cmp(ly));
         found.into_iter().map(|(item, _)| item).collect()
     }
-}
-
-/// Measures everything anew: after the limits or the field changed.
-pub fn remeasure(context: &Context<'_>) {
-    build::measure(&context.store, context.source);
 }

@@ -1,42 +1,80 @@
 //! Boundary vertices that could not be put on the model when they were made go there once there is room.
 use super::access::Access;
-use super::ids::VertexId;
+use super::ids::{TetId, VertexId};
 use super::outcome::Refusal;
+use super::star::{Bounds, Seed};
+use super::surface::Placed;
 use super::worker::Worker;
-use crate::mesh::vector::{distance, lerp};
+use crate::mesh::vector::lerp;
 
 /// Halvings of the way to the model within one attempt.
 const HALVINGS: u32 = 5;
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Moves a waiting vertex towards the closest point of its entity: all the way if no tetrahedron inverts, else half of it,
-    /// up to five halvings. Refused as `Inverted` while it has not arrived: to be tried again after reconnection.
+    /// Moves a waiting vertex to the closest point of its entity, its cavity growing where it must; if that fails, as far
+    /// towards it as inverts no tetrahedron, by up to five halvings.
+    /// Refused as `Inverted` while it has not arrived: to be tried again after reconnection.
     pub fn project(&mut self, v: VertexId) -> Result<(), Refusal> {
         self.claim_live(v)?;
         self.gather_ball(v)?;
         let ball = std::mem::take(&mut self.state.ball);
-        let start = self.store.position(v);
-        let (entity, hint) = (self.store.entity(v), self.store.hint(v));
-        let goal = self.place(entity, start, &[v]);
-        let mut step = 1.0;
-        let mut arrived = false;
-        for _ in 0..=HALVINGS {
-            let point = if step == 1.0 { goal.point } else { lerp(start, goal.point, step) };
-            self.store.set_position(v, point);
+        let (start, hint) = (self.store.position(v), self.store.hint(v));
+        let goal = self.place(self.store.entity(v), start, &[v]);
+        let result = self.carry(v, &ball, goal).or_else(|refusal| {
+            self.set_point(v, start, hint);
+            if refusal == Refusal::Conflict { Err(refusal) } else { self.approach(v, &ball, goal) }
+        });
+        self.state.ball = ball;
+        result
+    }
+
+    /// Puts the vertex on the goal and makes its ball a star about it there.
+    fn carry(&mut self, v: VertexId, ball: &[TetId], goal: Placed) -> Result<(), Refusal> {
+        self.set_point(v, goal.point, self.store.hint(v));
+        self.build_star(Seed::Vertex(v), v, ball, Bounds::default())?;
+        self.check_normals(2.0)?;
+        self.commit()?;
+        self.store.set_place(v, goal.entity, goal.parameters);
+        Ok(())
+    }
+
+    fn approach(&mut self, v: VertexId, ball: &[TetId], goal: Placed) -> Result<(), Refusal> {
+        let (start, hint) = (self.store.position(v), self.store.hint(v));
+        let mut step = 0.5;
+        for _ in 0..HALVINGS {
+            self.store.set_position(v, lerp(start, goal.point, step));
             if ball.iter().all(|&t| self.positive(self.store.vertices(t))) {
-                self.set_point(v, point, hint);
-                self.store.set_place(v, entity, goal.parameters);
-                arrived = step == 1.0;
+                self.set_point(v, self.store.position(v), hint);
                 break;
             }
             self.store.set_position(v, start);
             step *= 0.5;
         }
-        for &t in &ball {
+        for &t in ball {
             self.store.set_quality(t, self.shape(self.store.vertices(t)));
             self.store.touch(t);
         }
+        Err(Refusal::Inverted)
+    }
+
+    /// Removes a waiting vertex that never arrived: onto the neighbour that leaves the best elements, whatever the lengths.
+    pub fn retire(&mut self, v: VertexId) -> Result<(), Refusal> {
+        self.claim_live(v)?;
+        self.gather_ball(v)?;
+        let ball = std::mem::take(&mut self.state.ball);
+        self.list_link(v, &ball);
         self.state.ball = ball;
-        if arrived || distance(self.store.position(v), goal.point) == 0.0 { Ok(()) } else { Err(Refusal::Inverted) }
+        let link = self.state.star.link.clone();
+        let mut best: Option<(f64, VertexId)> = None;
+        for w in link {
+            match self.try_collapse(v, w, best.map_or(0.0, |(quality, _)| quality)) {
+                Ok(quality) => best = Some((quality, w)),
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                Err(_) => {}
+            }
+        }
+        let (_, w) = best.ok_or(Refusal::Inverted)?;
+        self.try_collapse(v, w, 0.0)?;
+        self.finish_collapse(v, w)
     }
 }

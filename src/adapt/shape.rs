@@ -1,9 +1,9 @@
 //! Length, orientation and shape of what is in the store.
 use super::access::Access;
-use super::ids::{EDGE, TetId, VertexId};
+use super::ids::VertexId;
 use super::worker::Worker;
 use crate::mesh::vector::{Vec3, sub, volume6};
-use crate::metric::quality::{edge_length, mean_ratio};
+use crate::metric::quality::{edge_length, may_exceed, mean_ratio};
 use robust::{Coord3D, orient3d};
 
 /// Whether the tetrahedron is positive: exact.
@@ -45,10 +45,16 @@ impl<A: Access> Worker<'_, '_, A> {
         mean_ratio(points, [&logs[0], &logs[1], &logs[2], &logs[3]])
     }
 
-    /// The longest edge of a tetrahedron: its length and local index.
-    pub fn longest_edge(&self, t: TetId) -> (f64, usize) {
-        let v = self.store.vertices(t);
-        let lengths = EDGE.map(|[i, j]| self.length(v[i], v[j]));
-        (0..6).map(|e| (lengths[e], e)).max_by(|x, y| x.0.total_cmp(&y.0)).unwrap_or_default()
+    /// As [`Worker::shape`], but 0 at once when a cheap bound shows that it does not exceed `floor`.
+    #[inline]
+    pub fn shape_above(&self, vertices: [VertexId; 4], floor: f64) -> f64 {
+        let points = vertices.map(|v| self.store.position(v));
+        if !is_positive(points) {
+            return 0.0;
+        }
+        let logs = vertices.map(|v| self.store.log(v));
+        let logs = [&logs[0], &logs[1], &logs[2], &logs[3]];
+        if may_exceed(points, logs, floor) { mean_ratio(points, logs) } else { 0.0 }
     }
+
 }

@@ -23,7 +23,10 @@ struct Held {
 }
 
 /// Part of the energy that a step must save.
-const GAIN: f64 = 1e-3;
+const GAIN: f64 = 0.01;
+
+/// Parts of a direction that are tried.
+const STEPS: [f64; 2] = [0.8, 0.3];
 
 /// Weight of the edge lengths in the energy, beside the shapes.
 const LENGTH_WEIGHT: f64 = 1.0;
@@ -66,11 +69,11 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Tries the directions in turn, each with shorter and shorter steps; whether the vertex moved.
     fn descend(&mut self, v: VertexId, ball: &[TetId], triangles: &[([VertexId; 3], u32)]) -> bool {
         let mut moved = false;
-        let mut energy = self.energy(v, ball, f64::INFINITY);
+        let mut energy = self.present_energy(v, ball);
         for direction in 0..2 {
             let from = self.store.position(v);
             let to = if direction == 0 { self.pliant_point(v) } else { self.gradient_point(v, ball) };
-            for step in [1.0, 0.5, 0.2] {
+            for step in STEPS {
                 let target = lerp(from, to, step);
                 if let Some(lower) = self.try_move(v, target, ball, triangles, energy * (1.0 - GAIN)) {
                     energy = lower;
@@ -129,10 +132,21 @@ impl<A: Access> Worker<'_, '_, A> {
         self.store.set_hint(v, held.hint);
     }
 
+    /// The energy as the vertex lies, from the kept mean ratios.
+    fn present_energy(&self, v: VertexId, ball: &[TetId]) -> f64 {
+        let shapes = ball.iter().map(|&t| self.store.quality(t).max(1e-6));
+        self.length_energy(v) + shapes.map(|shape| 1.0 / (shape * shape * shape)).sum::<f64>()
+    }
+
+    /// Σ (ln L)² over the edges at v, weighted.
+    fn length_energy(&self, v: VertexId) -> f64 {
+        let lengths = self.state.star.link.iter().map(|&x| self.length(v, x).ln());
+        LENGTH_WEIGHT * lengths.map(|l| l * l).sum::<f64>()
+    }
+
     /// Σ 1/Q³ over the ball and Σ (ln L)² over the edges at v; infinite when a tetrahedron is inverted or the sum passes `limit`.
     fn energy(&self, v: VertexId, ball: &[TetId], limit: f64) -> f64 {
-        let lengths = self.state.star.link.iter().map(|&x| self.length(v, x).ln());
-        let mut energy: f64 = LENGTH_WEIGHT * lengths.map(|l| l * l).sum::<f64>();
+        let mut energy = 0.0;
         for &t in ball {
             let shape = self.shape(self.store.vertices(t));
             if shape <= 0.0 || energy > limit {
@@ -140,7 +154,7 @@ impl<A: Access> Worker<'_, '_, A> {
             }
             energy += 1.0 / (shape * shape * shape);
         }
-        energy
+        energy + self.length_energy(v)
     }
 
     /// The mean of the points that have unit distance from the neighbours, in the direction of v.
@@ -183,7 +197,7 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// Lists the vertices joined to v in `state.star.link`.
-    fn list_link(&mut self, v: VertexId, ball: &[TetId]) {
+    pub fn list_link(&mut self, v: VertexId, ball: &[TetId]) {
         let (set, link) = (&mut self.state.set, &mut self.state.star.link);
         set.clear();
         link.clear();

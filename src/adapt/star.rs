@@ -44,6 +44,15 @@ impl Seed {
     }
 }
 
+/// Mean ratios of a star's tetrahedra.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bounds {
+    /// Where it is below this the cavity grows, if it can; it always does where a tetrahedron would be inverted.
+    pub wanted: f64,
+    /// Where it stays below this the star is given up.
+    pub floor: f64,
+}
+
 /// A face that the apex sees.
 #[derive(Clone, Copy)]
 struct Seen {
@@ -70,13 +79,14 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Prepares `state.replacement` as the star of `apex` over the tetrahedra in `seeds`. The apex has its position and
     /// metric in the store. Returns the worst mean ratio of the star.
     ///
-    /// The cavity grows over faces where a tetrahedron would be inverted or below `wanted`.
+    /// The cavity grows over faces where a tetrahedron would be inverted or below `wanted`; where it cannot, and the
+    /// tetrahedron is below `floor`, it is given up.
     ///
     /// # Errors
-    /// `Inverted` when a face stays hidden, `Topology` when a tagged face or a boundary vertex would be swallowed.
-    pub fn build_star(&mut self, seed: Seed, apex: VertexId, seeds: &[TetId], wanted: f64) -> Result<f64, Refusal> {
+    /// `Shape` at a tetrahedron below `floor`, `Inverted` when a face stays hidden, `Topology` when a tagged face or a boundary vertex would be swallowed.
+    pub fn build_star(&mut self, seed: Seed, apex: VertexId, seeds: &[TetId], bounds: Bounds) -> Result<f64, Refusal> {
         let mut star = std::mem::take(&mut self.state.star);
-        let result = self.grow_star(&mut star, seed, apex, seeds, wanted);
+        let result = self.grow_star(&mut star, seed, apex, seeds, bounds);
         let result = result.and_then(|()| self.finish_star(&mut star, seed, apex));
         self.state.star = star;
         result
@@ -88,7 +98,7 @@ impl<A: Access> Worker<'_, '_, A> {
         seed: Seed,
         apex: VertexId,
         seeds: &[TetId],
-        wanted: f64,
+        bounds: Bounds,
     ) -> Result<(), Refusal> {
         star.inside.clear();
         star.seen.clear();
@@ -101,7 +111,7 @@ impl<A: Access> Worker<'_, '_, A> {
             star.open.extend((0..4).map(|i| (t, i)));
         }
         while let Some((t, i)) = star.open.pop() {
-            self.look_at_face(star, seed, apex, (t, i), wanted)?;
+            self.look_at_face(star, seed, apex, (t, i), bounds)?;
         }
         Ok(())
     }
@@ -112,7 +122,7 @@ impl<A: Access> Worker<'_, '_, A> {
         seed: Seed,
         apex: VertexId,
         (t, i): (TetId, usize),
-        wanted: f64,
+        bounds: Bounds,
     ) -> Result<(), Refusal> {
         let (v, tag, behind) = (self.store.vertices(t), self.store.tags(t)[i], self.store.neighbour(t, i));
         let face = FACE[i].map(|k| v[k]);
@@ -134,7 +144,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let quality = self.shape(vertices);
         let may_grow = behind.is_some() && tag == 0 && self.state.replacement.old.len() < self.context.limits.cavity;
-        if quality < wanted && may_grow {
+        if (quality <= 0.0 || quality < bounds.wanted) && may_grow {
             self.claim_tet(behind)?;
             star.inside.insert(behind.0);
             self.state.replacement.old.push(behind);
@@ -143,6 +153,9 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         if quality <= 0.0 {
             return Err(Refusal::Inverted);
+        }
+        if quality < bounds.floor {
+            return Err(Refusal::Shape);
         }
         star.seen.push(Seen { behind, tag, tet: NewTet { vertices, region: self.store.region(t), quality } });
         Ok(())

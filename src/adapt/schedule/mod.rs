@@ -82,6 +82,21 @@ impl Operation for Smooth {
     }
 }
 
+/// Removes waiting boundary vertices that never arrived.
+pub struct Retire;
+
+impl Operation for Retire {
+    type Item = VertexId;
+
+    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
+        let result = worker.retire(item);
+        if result.is_err_and(|refusal| !matches!(refusal, Refusal::Conflict | Refusal::Stale)) {
+            worker.state.waiting.push(item);
+        }
+        result
+    }
+}
+
 /// Moves waiting boundary vertices to the model.
 pub struct Project;
 
