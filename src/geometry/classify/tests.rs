@@ -207,3 +207,39 @@ fn a_closed_surface_without_ridges_lies_on_one_face() {
     let on_surface = result.entities.iter().filter(|e| **e == Entity::Face(0)).count();
     assert_eq!(report.dimensions.map(|d| d.count), [0, 0, on_surface]);
 }
+
+/// A box with a ball cut out of it: a seam and two poles, of which nothing may be asked of the mesh.
+#[cfg(feature = "occt")]
+#[test]
+fn a_sphere_has_no_ridge_along_its_seam_and_no_corner_at_its_poles() {
+    use crate::geometry::SurfaceKind;
+    use crate::mesh::vector::{add, scale};
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry/sphere-in-box.step");
+    if !path.is_file() {
+        eprintln!("skipped: {} is not there", path.display());
+        return;
+    }
+    let model = Model::read(&path).unwrap();
+    let topology = model.topology();
+    let ball = topology.faces.iter().position(|face| face.kind == SurfaceKind::Sphere).unwrap();
+    let [low, high] = topology.faces[ball].bounds;
+    let (centre, radius) = (scale(add(low, high), 0.5), 0.5 * (high[2] - low[2]));
+    let mut mesh = closed_cube(3);
+    mesh.tets = Elements::default();
+    let [low, high] = topology.bounds;
+    let place = |p: [f64; 3]| std::array::from_fn(|i| low[i] + p[i] * (high[i] - low[i]));
+    mesh.vertices.iter_mut().for_each(|p| *p = place(*p));
+    let inner = sphere(6);
+    let base = mesh.vertices.len() as u32;
+    mesh.vertices.extend(inner.vertices.iter().map(|&p| add(centre, scale(p, 0.5 * radius))));
+    mesh.triangles.nodes.extend(inner.triangles.nodes.iter().map(|nodes| nodes.map(|v| v + base)));
+    mesh.triangles.refs.extend(&inner.triangles.refs);
+    // Boxes are found within a gap, so the radius is only that good.
+    let options = Options { tolerance: Some(1e-4), ..Options::default() };
+    let (result, _) = classify(&mesh, &model, &options).unwrap();
+    assert_eq!(result.ridges.len(), 36, "the box's edges alone");
+    assert_eq!(counts(&result)[..2], [8, 24]);
+    for &v in inner.triangles.nodes.iter().flatten() {
+        assert_eq!(result.entities[(base + v) as usize], Entity::Face(ball as u32));
+    }
+}
