@@ -10,15 +10,19 @@
 #include <IGESControl_Reader.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_CheckIterator.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <STEPConstruct_UnitContext.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepData_StepModel.hxx>
+#include <StepData_UndefinedEntity.hxx>
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <TopExp_Explorer.hxx>
+#include <XSControl_WorkSession.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
@@ -78,6 +82,26 @@ double step_unit(const Handle(StepData_StepModel)& model)
   return 0.0;
 }
 
+/// OCCT goes on when an entity could not be read or has a reference to nothing, and then follows null handles: a
+/// file with such a fail in its geometry or topology is refused. Fails elsewhere (annotations) do no harm.
+void refuse_fails(const STEPControl_Reader& reader)
+{
+  const Handle(StepData_StepModel) model = reader.StepModel();
+  Interface_CheckIterator checks = reader.WS()->ModelCheckList(Standard_True);
+  for (checks.Start(); checks.More(); checks.Next()) {
+    if (!checks.Value()->HasFailed() || checks.Number() < 1) {
+      continue;
+    }
+    const Handle(Standard_Transient) entity = model->Value(checks.Number());
+    const std::string type = entity->DynamicType()->Name();
+    const bool unknown = entity->IsKind(STANDARD_TYPE(StepData_UndefinedEntity));
+    if (unknown || type.rfind("StepGeom_", 0) == 0 || type.rfind("StepShape_", 0) == 0) {
+      throw std::runtime_error("its entity #" + std::to_string(model->IdentLabel(entity)) +
+                               " cannot be read: the file is damaged; copy or export it again");
+    }
+  }
+}
+
 /// OCCT converts lengths to its own unit, by default the millimetre. With its unit set to the file's, the factor
 /// is one: the coordinates come as the file states them.
 TopoDS_Shape read_step(const std::string& path)
@@ -86,6 +110,7 @@ TopoDS_Shape read_step(const std::string& path)
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {
     throw std::runtime_error("OpenCASCADE cannot read it as STEP: it is damaged or cut off; export it again");
   }
+  refuse_fails(reader);
   const double unit = step_unit(reader.StepModel());
   if (unit > 0.0) {
     reader.SetSystemLengthUnit(unit);
@@ -152,9 +177,15 @@ TopoDS_Shape read_iges(const std::string& path)
 TopoDS_Shape read_brep(const std::string& path)
 {
   std::ifstream stream(path);
+  // In a cut file OCCT looks for the next word for ever: let the stream throw.
+  stream.exceptions(std::ios::failbit | std::ios::badbit);
   TopoDS_Shape shape;
-  BRepTools::Read(shape, stream, BRep_Builder());
-  if (stream.fail() || shape.IsNull()) {
+  try {
+    BRepTools::Read(shape, stream, BRep_Builder());
+  } catch (const std::ios::failure&) {
+    shape.Nullify();
+  }
+  if (shape.IsNull()) {
     throw std::runtime_error("OpenCASCADE cannot read it as BREP: it is damaged or cut off; write it again");
   }
   return shape;
