@@ -6,42 +6,13 @@ mod libmeshb;
 use common::shared_case;
 use geo_adapt::mesh::io::{self, FieldKind, Solution, SolutionField};
 use geo_adapt::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
-use libmeshb::{Section, Value, ascii, binary, section};
+use libmeshb::{Section, ascii, binary, section, sections};
 use proptest::prelude::*;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tempfile::TempDir;
 
-/// Two tetrahedra with everything that a mesh file carries.
-fn sections() -> Vec<Section> {
-    vec![
-        section(
-            4,
-            "Vertices",
-            0..3,
-            &[
-                &[0.0, 0.0, 0.0, 1.0],
-                &[1.5, 0.0, -0.0, 2.0],
-                &[0.0, 1.25, 0.0, 3.0],
-                &[0.0, 0.0, 1.0, -4.0],
-                &[1.0, 1.0, 0.375, 5.0],
-            ],
-        ),
-        section(5, "Edges", 0..0, &[&[1.0, 2.0, 7.0], &[2.0, 3.0, 8.0]]),
-        section(6, "Triangles", 0..0, &[&[1.0, 3.0, 2.0, 1.0], &[1.0, 2.0, 4.0, 2.0], &[2.0, 3.0, 5.0, 3.0]]),
-        section(8, "Tetrahedra", 0..0, &[&[1.0, 2.0, 3.0, 4.0, 1.0], &[2.0, 3.0, 4.0, 5.0, 2.0]]),
-        section(13, "Corners", 0..0, &[&[1.0], &[5.0]]),
-        section(14, "Ridges", 0..0, &[&[2.0]]),
-        section(15, "RequiredVertices", 0..0, &[&[3.0]]),
-        section(16, "RequiredEdges", 0..0, &[&[1.0]]),
-        section(17, "RequiredTriangles", 0..0, &[&[3.0], &[1.0]]),
-        section(40, "VerticesOnGeometricVertices", 0..0, &[&[1.0, 9.0]]),
-        section(41, "VerticesOnGeometricEdges", 2..4, &[&[2.0, 4.0, 0.5, 1.0]]),
-        section(42, "VerticesOnGeometricTriangles", 2..5, &[&[3.0, 6.0, 0.25, -2.0, 0.0], &[2.0, 7.0, 1.0, 2.0, 3.0]]),
-    ]
-}
-
-/// The same as arrays. All reals are exact in 32 bits, so that version 1 holds them, too.
+/// The mesh of [`sections`] as arrays. All reals are exact in 32 bits, so that version 1 holds them, too.
 fn mesh() -> TetMesh {
     let mut mesh = TetMesh {
         vertices: vec![[0.0; 3], [1.5, 0.0, -0.0], [0.0, 1.25, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 0.375]],
@@ -88,23 +59,6 @@ impl Folder {
     fn read(&self, bytes: impl AsRef<[u8]>) -> io::Read<TetMesh> {
         io::read_mesh(&self.file(bytes)).unwrap()
     }
-
-    /// The error of reading a mesh, without the file's name in front.
-    fn error(&self, bytes: impl AsRef<[u8]>) -> String {
-        let path = self.file(bytes);
-        strip(&path, io::read_mesh(&path).expect_err("the file should be refused"))
-    }
-
-    /// The error of reading a solution, without the file's name in front.
-    fn solution_error(&self, bytes: impl AsRef<[u8]>) -> String {
-        let path = self.file(bytes);
-        strip(&path, io::read_solution(&path).expect_err("the file should be refused"))
-    }
-}
-
-fn strip(path: &Path, error: io::Error) -> String {
-    let (text, name) = (error.to_string(), format!("{}: ", path.display()));
-    text.strip_prefix(&name).unwrap_or_else(|| panic!("{text} does not name the file")).to_owned()
 }
 
 /// Bits of all reals, for comparisons that tell 0 from −0.
@@ -228,4 +182,92 @@ fn a_solution_of_several_fields_reads_and_writes() {
     assert_eq!(fs::read(folder.path("out.solb")).unwrap(), binary(2, false, &sections));
     io::write_solution(&folder.path("out.sol"), &solution).unwrap();
     assert_eq!(io::read_solution(&folder.path("out.sol")).unwrap().content, solution);
+}
+
+#[test]
+fn keywords_that_are_not_known_are_skipped_with_a_notice() {
+    let folder = Folder::new();
+    let mut more = sections();
+    more.insert(1, section(10, "Hexahedra", 0..0, &[&[1.0, 2.0, 3.0, 4.0, 5.0, 1.0, 2.0, 3.0, 0.0]]));
+    more.insert(3, section(7777, "FutureThings", 0..2, &[&[0.5, 0.5], &[-0.5, 2.0]]));
+    more.push(section(126, "ByteFlow", 0..0, &[&[1.0], &[2.0]]));
+    let text =
+        ascii(&more).replace("\nEdges", "\nComments 2\nVertices 7 of the world\nEnd of comments\n# Tetrahedra\nEdges");
+    for (bytes, places) in [
+        (binary(2, false, &more), ["byte 172", "byte 256", "byte 632"]),
+        (binary(3, true, &more), ["byte 180", "byte 272", "byte 692"]),
+    ] {
+        let read = folder.read(bytes);
+        assert_eq!(read.content, mesh());
+        let names = ["Hexahedra (keyword 10)", "keyword 7777", "ByteFlow (keyword 126)"];
+        assert_eq!(read.notices.len(), 3);
+        for ((notice, name), place) in read.notices.iter().zip(names).zip(places) {
+            assert!(notice.contains(&format!("{place}: {name} is not read, skipped")), "{notice}");
+        }
+    }
+    let read = folder.read(text);
+    assert_eq!(read.content, mesh());
+    let words: Vec<_> = read.notices.iter().map(|n| n.split(": ").skip(1).collect::<Vec<_>>().join(" ")).collect();
+    let expected = ["line 13 'Hexahedra'", "line 17 'Comments'", "line 26 'FutureThings'", "line 77 'ByteFlow'"];
+    assert_eq!(words, expected.map(|w| format!("{w} is not read, skipped")));
+}
+
+#[test]
+fn the_ways_in_which_tools_differ_are_read() {
+    let folder = Folder::new();
+    let text = ascii(&sections());
+    // blanks, line ends, comments, a byte order mark, Fortran's exponents, no newline at the end
+    assert_eq!(folder.read(text.replace('\n', "\r\n")).content, mesh());
+    assert_eq!(folder.read(text.replace(' ', "\t\t")).content, mesh());
+    assert_eq!(folder.read(text.split_whitespace().collect::<Vec<_>>().join(" ")).content, mesh());
+    assert_eq!(folder.read(text.replace('\n', " # Vertices 5\n")).content, mesh());
+    assert_eq!(folder.read(format!("\u{feff}# by hand\n{text}")).content, mesh());
+    assert_eq!(folder.read(text.replace("e0", "D+00")).content, mesh());
+    assert_eq!(folder.read(text.trim_end()).content, mesh());
+    // edges and triangles before the vertices that they name
+    let mut turned = sections();
+    turned.reverse();
+    assert_eq!(folder.read(binary(2, false, &turned)).content, mesh());
+    assert_eq!(folder.read(ascii(&turned)).content, mesh());
+    // mmg's binary files end with the keyword End alone
+    let bytes = binary(2, false, &sections());
+    assert_eq!(folder.read(&bytes[..bytes.len() - 4]).content, mesh());
+    // version 2 with reals of 32 bits, as libMeshb's GmfSetFloatPrecision writes it
+    let mut short = sections();
+    short.insert(0, section(155, "FloatingPointPrecision", 0..0, &[]));
+    let mut bytes = binary(1, false, &short);
+    bytes[4] = 2;
+    bytes[28..32].copy_from_slice(&32_i32.to_le_bytes());
+    assert_eq!(folder.read(bytes).content, mesh());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Any finite reals and any references come back bit by bit from a text and from a binary file.
+    #[test]
+    fn round_trips_are_exact(
+        vertices in prop::collection::vec((any::<[f64; 3]>(), any::<i32>()), 1..20),
+        tensors in prop::collection::vec(any::<[f64; 6]>(), 1..20),
+    ) {
+        let finite = |x: f64| if x.is_finite() { x } else { f64::MIN_POSITIVE / 3.0 };
+        let mesh = TetMesh {
+            vertices: vertices.iter().map(|v| v.0.map(finite)).collect(),
+            vertex_refs: vertices.iter().map(|v| v.1).collect(),
+            ..TetMesh::default()
+        };
+        let metric = Solution::metric(&tensors.iter().map(|t| t.map(finite)).collect::<Vec<_>>());
+        let folder = Folder::new();
+        for (mesh_name, solution_name) in [("a.mesh", "a.sol"), ("a.meshb", "a.solb")] {
+            let (mesh_path, solution_path) = (folder.path(mesh_name), folder.path(solution_name));
+            io::write_mesh(&mesh_path, &mesh).unwrap();
+            io::write_solution(&solution_path, &metric).unwrap();
+            let read = io::read_mesh(&mesh_path).unwrap().content;
+            prop_assert_eq!(bits(&read), bits(&mesh));
+            prop_assert_eq!(read, mesh.clone());
+            let read = io::read_solution(&solution_path).unwrap().content;
+            let words = |s: &Solution| s.fields[0].values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            prop_assert_eq!(words(&read), words(&metric));
+        }
+    }
 }

@@ -1,11 +1,90 @@
 //! `geo-adapt classify`.
 use super::Outcome;
+use crate::geometry::Model;
+use crate::geometry::classify::{Associated, Options, Report, associate, classify};
+use crate::geometry::discrete::complete_boundary;
+use crate::mesh::io;
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
 
 /// Arguments of `geo-adapt classify`.
 #[derive(clap::Args)]
-pub struct Arguments {}
+pub struct Arguments {
+    /// The mesh: .mesh or .meshb
+    mesh: PathBuf,
+    /// The model: .step, .stp, .iges, .igs, .brep or .egads
+    #[arg(long, value_name = "MODEL")]
+    cad: PathBuf,
+    /// Where the mesh with its association goes
+    #[arg(short, long, short_alias = 'x', value_name = "OUT")]
+    output: PathBuf,
+    /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model
+    /// states for an entity]
+    #[arg(long, value_name = "T", value_parser = super::positive)]
+    tolerance: Option<f64>,
+}
 
 /// Runs the subcommand.
-pub fn run(_arguments: &Arguments) -> Outcome {
-    Err("not there yet".into())
+pub fn run(arguments: &Arguments) -> Outcome {
+    let mut read = io::read_mesh(&arguments.mesh)?;
+    let mesh = &mut read.content;
+    let model = Model::read(&arguments.cad)?;
+    let added = complete_boundary(mesh);
+    if added > 0 {
+        read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
+    }
+    let options = Options { tolerance: arguments.tolerance, ..Options::default() };
+    let (classification, report) = classify(mesh, &model, &options)
+        .map_err(|error| format!("{} on {}: {error}", arguments.mesh.display(), arguments.cad.display()))?;
+    let associated = associate(mesh, &classification);
+    io::write_mesh(&arguments.output, mesh)?;
+    for notice in read.notices.iter().chain(&report.notices) {
+        eprintln!("geo-adapt: note: {notice}");
+    }
+    super::print(&table(&report, associated));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The report as text.
+fn table(report: &Report, associated: Associated) -> String {
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "{:<10}{:>10}{:>12}{:>14}{:>16}{:>14}",
+        "on", "vertices", "as in file", "by geometry", "greatest dist.", "mean dist."
+    );
+    for (name, dimension) in ["vertices", "edges", "faces"].iter().zip(&report.dimensions) {
+        let geometry = dimension.count - dimension.from_file;
+        let _ = writeln!(
+            text,
+            "{name:<10}{:>10}{:>12}{geometry:>14}{:>16.3e}{:>14.3e}",
+            dimension.count, dimension.from_file, dimension.greatest, dimension.mean
+        );
+    }
+    let _ = writeln!(
+        text,
+        "ridges: {}; triangles: {}, {} with the number of their face as reference; tolerance {:.3e}",
+        report.ridges, report.triangles, report.faces_from_file, report.tolerance
+    );
+    for offset in report.worst.iter().take(3).filter(|offset| offset.distance > 0.0) {
+        let [x, y, z] = offset.point;
+        let _ = writeln!(
+            text,
+            "farthest: vertex {} at ({x:.6}, {y:.6}, {z:.6}), {:.3e} from {}",
+            offset.vertex + 1,
+            offset.distance,
+            offset.entity
+        );
+    }
+    if associated.references_replaced {
+        text.push_str(
+            "the triangles' references did not tell the model's faces apart: they are now the faces' numbers\n",
+        );
+    }
+    if associated.edges_dropped > 0 {
+        let _ =
+            writeln!(text, "{} listed edges lie on no edge of the model and were dropped", associated.edges_dropped);
+    }
+    text
 }

@@ -48,3 +48,16 @@ pub fn main() -> ExitCode {
         ExitCode::from(BAD_INPUT)
     })
 }
+
+/// Writes to standard output; a closed pipe (`| head`) is no error.
+fn print(text: &str) {
+    let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
+}
+
+/// Parses a positive number.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("give a positive number".into()),
+    }
+}

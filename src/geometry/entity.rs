@@ -28,6 +28,18 @@ impl Entity {
     }
 }
 
+/// Prints it as messages do, from 1.
+impl std::fmt::Display for Entity {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Entity::Vertex(i) => write!(f, "vertex {}", i + 1),
+            Entity::Edge(i) => write!(f, "edge {}", i + 1),
+            Entity::Face(i) => write!(f, "face {}", i + 1),
+            Entity::Interior => write!(f, "the inside"),
+        }
+    }
+}
+
 /// The kind of a face's surface, as shown by `geo-adapt model`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

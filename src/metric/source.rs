@@ -1,6 +1,12 @@
 //! Where a new vertex takes its metric from.
+use super::field::complexity_of_logs;
 use super::{Analytic, Background, Sym3};
-use crate::mesh::vector::Vec3;
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::EDGES;
+use crate::mesh::vector::{Vec3, add, distance, lerp, scale, volume6};
+
+/// Samples of an analytic field when its complexity is measured, about.
+const SAMPLES: usize = 1 << 20;
 
 /// The source of the metric at any point. Shared by all threads.
 pub enum Source {
@@ -23,6 +29,36 @@ impl Source {
             Self::Analytic { field, log_scale } => field.log_at(p).plus_identity(*log_scale),
             Self::Background(background) => background.log_at(p, hint),
         }
+    }
+
+    /// Complexity of the field on a mesh, for the background the mesh it came with. An analytic field is integrated by the
+    /// midpoint rule over bisected tetrahedra, since a coarse mesh's vertices do not resolve it.
+    pub fn complexity(&self, mesh: &TetMesh) -> f64 {
+        match self {
+            Self::Background(background) => complexity_of_logs(mesh, background.logs()),
+            Self::Analytic { .. } => {
+                let depth = (SAMPLES / mesh.tets.len().max(1)).max(1).ilog2();
+                let corners = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
+                mesh.tets.nodes.iter().map(|tet| self.integrate(corners(tet), depth)).sum()
+            }
+        }
+    }
+
+    /// ∫ √det M over a tetrahedron, bisected `depth` times across its longest edge.
+    fn integrate(&self, x: [Vec3; 4], depth: u32) -> f64 {
+        if depth == 0 {
+            let centroid = scale(add(add(x[0], x[1]), add(x[2], x[3])), 0.25);
+            let density = (0.5 * self.log_at(centroid, &mut 0).trace()).exp();
+            return density * volume6(x[0], x[1], x[2], x[3]).abs() / 6.0;
+        }
+        let length = |[i, j]: [usize; 2]| distance(x[i], x[j]);
+        let longest = EDGES.into_iter().max_by(|&a, &b| length(a).total_cmp(&length(b)));
+        let [i, j] = longest.unwrap_or([0, 1]);
+        let middle = lerp(x[i], x[j], 0.5);
+        let (mut left, mut right) = (x, x);
+        left[i] = middle;
+        right[j] = middle;
+        self.integrate(left, depth - 1) + self.integrate(right, depth - 1)
     }
 
     /// Scales M by e^log_factor.

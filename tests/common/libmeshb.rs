@@ -1,4 +1,4 @@
-//! An encoder of libMeshb files for tests, independent of the library's own: any version, either byte order.
+//! A small mesh, and an encoder of libMeshb files for tests, independent of the library's own: any version, either byte order.
 
 /// A value of a row.
 #[derive(Clone, Copy, Debug)]
@@ -105,4 +105,33 @@ pub fn ascii(sections: &[Section]) -> String {
         }
     }
     text + "\nEnd\n"
+}
+
+/// Two tetrahedra with everything that a mesh file carries.
+pub fn sections() -> Vec<Section> {
+    vec![
+        section(
+            4,
+            "Vertices",
+            0..3,
+            &[
+                &[0.0, 0.0, 0.0, 1.0],
+                &[1.5, 0.0, -0.0, 2.0],
+                &[0.0, 1.25, 0.0, 3.0],
+                &[0.0, 0.0, 1.0, -4.0],
+                &[1.0, 1.0, 0.375, 5.0],
+            ],
+        ),
+        section(5, "Edges", 0..0, &[&[1.0, 2.0, 7.0], &[2.0, 3.0, 8.0]]),
+        section(6, "Triangles", 0..0, &[&[1.0, 3.0, 2.0, 1.0], &[1.0, 2.0, 4.0, 2.0], &[2.0, 3.0, 5.0, 3.0]]),
+        section(8, "Tetrahedra", 0..0, &[&[1.0, 2.0, 3.0, 4.0, 1.0], &[2.0, 3.0, 4.0, 5.0, 2.0]]),
+        section(13, "Corners", 0..0, &[&[1.0], &[5.0]]),
+        section(14, "Ridges", 0..0, &[&[2.0]]),
+        section(15, "RequiredVertices", 0..0, &[&[3.0]]),
+        section(16, "RequiredEdges", 0..0, &[&[1.0]]),
+        section(17, "RequiredTriangles", 0..0, &[&[3.0], &[1.0]]),
+        section(40, "VerticesOnGeometricVertices", 0..0, &[&[1.0, 9.0]]),
+        section(41, "VerticesOnGeometricEdges", 2..4, &[&[2.0, 4.0, 0.5, 1.0]]),
+        section(42, "VerticesOnGeometricTriangles", 2..5, &[&[3.0, 6.0, 0.25, -2.0, 0.0], &[2.0, 7.0, 1.0, 2.0, 3.0]]),
+    ]
 }

@@ -28,7 +28,7 @@ pub enum Error {
     /// A vertex is not where its entity is.
     #[error(
         "vertex {} at {} is {distance:.6e} away from {} of the model (tolerance {tolerance:.3e}){}; move it onto the model, \
-         or raise the tolerance if the mesh was made on a coarser model", vertex + 1, Place(*point), Name(*entity), Others(*others)
+         or raise the tolerance if the mesh was made on a coarser model", vertex + 1, Place(*point), entity, Others(*others)
     )]
     VertexOff {
         /// The mesh vertex.
@@ -163,20 +163,6 @@ struct Place(Vec3);
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "({:.6}, {:.6}, {:.6})", self.0[0], self.0[1], self.0[2])
-    }
-}
-
-/// Prints an entity, from 1.
-pub(super) struct Name(pub Entity);
-
-impl fmt::Display for Name {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self.0 {
-            Entity::Vertex(i) => write!(f, "vertex {}", i + 1),
-            Entity::Edge(i) => write!(f, "edge {}", i + 1),
-            Entity::Face(i) => write!(f, "face {}", i + 1),
-            Entity::Interior => write!(f, "the inside"),
-        }
     }
 }
 

@@ -77,18 +77,28 @@ pub(super) struct Fit<'a> {
 impl Fit<'_> {
     /// How far a vertex may be from an entity.
     pub fn allowed(&self, entity: Entity) -> f64 {
+        if self.given { self.tolerance } else { self.usual(entity) }
+    }
+
+    /// How far a vertex is from its entity at most in a mesh that was made on the model.
+    fn usual(&self, entity: Entity) -> f64 {
         let stated = match entity {
             Entity::Vertex(i) => self.topology.vertices[i as usize].tolerance,
             Entity::Edge(i) => self.topology.edges[i as usize].tolerance,
             Entity::Face(i) => self.topology.faces[i as usize].tolerance,
             Entity::Interior => 0.0,
         };
-        if self.given { self.tolerance } else { self.tolerance.max(2.0 * stated) }
+        (TOLERANCE * self.topology.diagonal()).max(2.0 * stated)
     }
 
     /// How far it may be while the entity is looked for.
     pub fn reach(&self, entity: Entity) -> f64 {
-        SLACK * self.allowed(entity)
+        self.allowed(entity).max(self.sure(entity))
+    }
+
+    /// How near is too near for chance. A tolerance that the user gives may span several entities.
+    pub fn sure(&self, entity: Entity) -> f64 {
+        SLACK * self.usual(entity)
     }
 
     /// A point of the mesh.

@@ -1,6 +1,5 @@
 //! What the file itself says about the model: believed only as far as the model agrees.
 use super::Classification;
-use super::error::Name;
 use crate::geometry::{Entity, Topology};
 use crate::mesh::TetMesh;
 use std::collections::HashMap;
@@ -81,8 +80,8 @@ impl Hints {
                 wrong.len(),
                 self.lowest.len(),
                 vertex + 1,
-                Name(entity),
-                Name(result.entities[vertex as usize])
+                entity,
+                result.entities[vertex as usize]
             ));
         }
         notices

@@ -79,6 +79,7 @@ fn match_patch(fit: &Fit, evaluator: &mut Evaluator, patch: &[u32], on_ridge: &[
     // A patch without a vertex inside may have all of them on the border of another face: no hint settles that.
     if let (Some(face), false) = (hinted, inside.is_empty())
         && let Ok(landings) = land_patch(fit, evaluator, patch, face)
+        && landings.iter().all(|(_, on)| on.distance <= fit.sure(Entity::Face(face)))
     {
         return Some(Match { face, landings });
     }

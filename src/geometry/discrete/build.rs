@@ -24,6 +24,10 @@ pub struct Discrete {
     pub(super) patches: Vec<Patch>,
     /// Per edge and segment the faces beside it, each with the triangle of that face.
     pub(super) beside: Vec<Vec<Vec<(u32, u32)>>>,
+    /// Reference of the triangles of each face.
+    pub(super) face_refs: Vec<i32>,
+    /// Reference of the listed edges of each edge.
+    pub(super) edge_refs: Vec<Option<i32>>,
 }
 
 impl Discrete {
@@ -94,7 +98,15 @@ impl<'a> Builder<'a> {
         self.list_vertices(&mut topology);
         self.list_edges(&mut topology, &curves, &beside);
         self.list_faces(&mut topology, &patches);
-        Discrete { topology, curves, patches, beside }
+        let listed = |chain: &Chain| self.features.listed[self.ridges[chain.edges[0] as usize] as usize];
+        Discrete {
+            topology,
+            curves,
+            patches,
+            beside,
+            face_refs: members.iter().map(|members| self.mesh.triangles.refs[members[0] as usize]).collect(),
+            edge_refs: self.chains.iter().map(listed).collect(),
+        }
     }
 
     fn points(&self, vertices: &[u32]) -> Vec<Vec3> {

@@ -32,7 +32,7 @@ pub(crate) fn trace_chains(edges: &[[u32; 2]], corner: impl Fn(u32) -> bool) -> 
         let (mut edge, mut vertex) = (first, start);
         loop {
             used[edge] = true;
-            vertex = edges[edge][0] ^ edges[edge][1] ^ vertex;
+            vertex ^= edges[edge][0] ^ edges[edge][1];
             chain.vertices.push(vertex);
             chain.edges.push(edge as u32);
             if corner(vertex) {

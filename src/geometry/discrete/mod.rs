@@ -7,6 +7,9 @@ mod evaluate;
 mod features;
 mod patch;
 mod polyline;
+mod restore;
+#[cfg(test)]
+pub(crate) mod samples;
 #[cfg(test)]
 mod tests;
 mod tree;

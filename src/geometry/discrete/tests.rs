@@ -1,51 +1,10 @@
 //! Tests of the discrete geometry on meshes built here.
+use super::samples::{cube, sphere};
 use super::{DEFAULT_RIDGE_ANGLE, Discrete, complete_boundary, outward_triangles};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Geometry};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, area2, distance, dot, norm, sub, unit};
-
-/// The unit cube, n³ cells of six tetrahedra around their diagonal; no triangles.
-fn cube(n: u32) -> TetMesh {
-    let mut mesh = TetMesh::default();
-    let side = n + 1;
-    let at = |i: u32, j: u32, k: u32| (k * side + j) * side + i;
-    for k in 0..side {
-        for j in 0..side {
-            for i in 0..side {
-                mesh.vertices.push([i, j, k].map(|x| f64::from(x) / f64::from(n)));
-            }
-        }
-    }
-    mesh.vertex_refs = vec![0; mesh.vertices.len()];
-    for cell in 0..n * n * n {
-        let base = [cell % n, cell / n % n, cell / n / n];
-        for order in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
-            let mut corner = base;
-            let mut tet = [at(base[0], base[1], base[2]); 4];
-            for (step, axis) in order.into_iter().enumerate() {
-                corner[axis] += 1;
-                tet[step + 1] = at(corner[0], corner[1], corner[2]);
-            }
-            if order[1] == (order[0] + 2) % 3 {
-                tet.swap(2, 3);
-            }
-            mesh.tets.push(tet, 0);
-        }
-    }
-    mesh
-}
-
-/// The sphere of radius 2 about the origin: a cube's surface blown up, triangles only.
-fn sphere(n: u32) -> TetMesh {
-    let mut mesh = cube(n);
-    complete_boundary(&mut mesh);
-    for p in &mut mesh.vertices {
-        *p = unit(sub(*p, [0.5; 3])).map(|x| 2.0 * x);
-    }
-    mesh.tets = Default::default();
-    mesh
-}
 
 fn discrete(mesh: &TetMesh) -> (Discrete, Classification) {
     Discrete::from_mesh(mesh, DEFAULT_RIDGE_ANGLE).unwrap()
@@ -252,4 +211,28 @@ fn outward_triangles_do_not_depend_on_the_order_of_a_tetrahedron() {
 fn a_mesh_without_triangles_is_an_error() {
     let error = Discrete::from_mesh(&cube(1), DEFAULT_RIDGE_ANGLE).err().unwrap();
     assert!(error.to_string().contains("no boundary triangles"), "{error}");
+}
+
+#[test]
+fn features_come_back_with_their_references() {
+    let mut mesh = cube(2);
+    complete_boundary(&mut mesh);
+    let at = |mesh: &TetMesh, p: Vec3| mesh.vertices.iter().position(|&q| q == p).unwrap() as u32;
+    let (a, b, c) = (at(&mesh, [0.0; 3]), at(&mesh, [0.5, 0.0, 0.0]), at(&mesh, [1.0, 0.0, 0.0]));
+    for (t, nodes) in mesh.triangles.nodes.iter().enumerate() {
+        let low = nodes.iter().all(|&v| mesh.vertices[v as usize][2] == 0.0);
+        mesh.triangles.refs[t] = if low { 12 } else { 5 };
+    }
+    // The upper half of the edge along x is listed with another reference than the lower one.
+    mesh.edges = crate::mesh::Elements { nodes: vec![[a, b], [c, b]], refs: vec![8, 9] };
+    let (model, classification) = discrete(&mesh);
+    assert_eq!(model.topology().vertices.len(), 9, "the reference changes at the ninth");
+    let mut copy = mesh.clone();
+    copy.triangles.refs.fill(0);
+    model.restore(&mut copy, &classification);
+    assert_eq!(copy.triangles, mesh.triangles);
+    assert_eq!((copy.edges.len(), copy.corners.len()), (24, 9));
+    let mut refs = copy.edges.refs.clone();
+    refs.sort_unstable();
+    assert_eq!(refs[21..], [0, 8, 9]);
 }

@@ -3,6 +3,7 @@
 mod bridge;
 mod cells;
 mod curve;
+mod entities;
 mod evaluator;
 mod load;
 mod newton;

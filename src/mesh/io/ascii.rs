@@ -139,7 +139,6 @@ pub(super) fn contents<'a>(path: &'a Path, bytes: &'a [u8]) -> Result<Contents<'
 /// The text must begin as libMeshb's do.
 fn check_version(source: &Source, tokens: &mut Tokens) -> Result<(), Error> {
     let first = tokens.token().map_or(&[][..], |t| &tokens.bytes[t]);
-    // written by the first tools, MeshVersionFormatted is one word and its number another
     if first != b"MeshVersionFormatted" {
         let message = "no mesh or solution file of libMeshb: a text that begins with MeshVersionFormatted is expected, \
                        or a binary file that begins with the four bytes of the number 1";

@@ -3,7 +3,7 @@ use super::Error;
 use super::keyword::Keyword;
 use super::source::{Section, Source};
 
-/// Walks through the values of a section. Errors are the message alone: [`rows`] adds the place.
+/// Walks through the values of a section. Errors are the message alone; [`rows`] adds the place.
 pub(super) trait Cursor<'a> {
     /// At the first value.
     fn new(source: &Source<'a>, section: &Section) -> Self;

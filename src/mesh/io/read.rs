@@ -11,13 +11,12 @@ use std::path::Path;
 /// A mesh from the bytes of a file.
 pub(super) fn mesh_from(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
     let contents = Contents::of(path, bytes)?;
-    let vertices = contents.count(Keyword::Vertices);
-    if vertices == 0 {
+    let Some(vertices) = contents.section(Keyword::Vertices).filter(|s| s.count > 0) else {
         let message = "no Vertices: a mesh is expected (a solution file is none)";
         return Err(Error::content(path, "whole file", message));
-    }
-    if vertices > u32::MAX as usize {
-        let message = format!("{vertices} vertices; at most {} are supported", u32::MAX);
+    };
+    if room(vertices) > u32::MAX as usize {
+        let message = format!("{} vertices; at most {} are supported", vertices.count, u32::MAX);
         return Err(Error::content(path, "Vertices", message));
     }
     let content = match contents.source.encoding {

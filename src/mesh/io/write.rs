@@ -245,3 +245,31 @@ fn check_finite(keyword: Keyword, rows: impl IntoIterator<Item = impl AsRef<[f64
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::read::{mesh_from, solution_from};
+    use super::*;
+    use crate::mesh::OnFace;
+
+    /// Versions 3 and 4 are chosen for files that are too big for a test; what they look like is tested here.
+    #[test]
+    fn every_version_that_is_written_reads_back() {
+        let mut mesh =
+            TetMesh { vertices: vec![[0.1, -2.5e-300, 7.0]; 4], vertex_refs: vec![-1; 4], ..Default::default() };
+        mesh.tets.push([3, 1, 0, 2], i32::MIN);
+        mesh.association.faces.push(OnFace { vertex: 3, id: 2, uv: [0.5, 0.25], r: 1.0 });
+        let solution = Solution::metric(&[[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]; 3]);
+        for (version, position, int) in [(2, 4, 4), (3, 8, 4), (4, 8, 8)] {
+            let mut bytes = Vec::new();
+            write_sections(&mut bytes, true, version, &mesh_sections(&mesh), &Content::Mesh(&mesh)).unwrap();
+            let rows = 4 * (24 + int) + 5 * int + 2 * int + 24;
+            assert_eq!(bytes.len(), 8 + 5 * (4 + position) + 4 + 3 * int + rows, "version {version}");
+            assert_eq!(mesh_from(Path::new("m"), &bytes).unwrap().content, mesh);
+            let (sections, content) = (solution_sections(&solution), Content::Solution(&solution));
+            let mut bytes = Vec::new();
+            write_sections(&mut bytes, true, version, &sections, &content).unwrap();
+            assert_eq!(solution_from(Path::new("s"), &bytes).unwrap().content, solution);
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What all threads share during a run: the mesh, the metric, the model, the limits.
+use super::ids::VertexId;
+use super::store::Store;
+use crate::geometry::{Evaluate, Geometry, Model, SurfaceKind};
+use crate::mesh::vector::Vec3;
+use crate::metric::Source;
+
+/// √2 and 1/√2: an edge between them has unit length.
+pub const LONG: f64 = std::f64::consts::SQRT_2;
+/// See [`LONG`].
+pub const SHORT: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Limits that the passes set for the operations.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Edges longer than this are split.
+    pub long: f64,
+    /// Edges shorter than this are collapsed.
+    pub short: f64,
+    /// No insertion makes an edge shorter than this.
+    pub shortest_new: f64,
+    /// No collapse makes an edge longer than this.
+    pub longest_new: f64,
+    /// An insertion may lower the worst mean ratio of its cavity to this, but no further unless it was worse already.
+    pub insert_floor: f64,
+    /// As above, for a collapse.
+    pub collapse_floor: f64,
+    /// Reconnection and smoothing look at tetrahedra below this mean ratio.
+    pub improve_below: f64,
+    /// Cosines above this are good enough for any surface triangle.
+    pub cosine: f64,
+    /// Most tetrahedra in an enlarged cavity.
+    pub cavity: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            long: LONG,
+            short: SHORT,
+            shortest_new: 0.5,
+            longest_new: LONG,
+            insert_floor: 0.1,
+            collapse_floor: 0.2,
+            improve_below: 1.0,
+            cosine: 0.94,
+            cavity: 96,
+        }
+    }
+}
+
+/// Shared, read by all threads; written between sweeps.
+pub struct Context<'m> {
+    /// The mesh.
+    pub store: Store,
+    /// Where new vertices take their metric from.
+    pub source: &'m Source,
+    /// The model the boundary lies on.
+    pub model: &'m Model,
+    /// Outward normals of the faces that are planes.
+    pub planes: Vec<Option<Vec3>>,
+    /// Vertices (by id) that must neither move nor go.
+    pub frozen: Vec<bool>,
+    /// Limits of the present pass.
+    pub limits: Limits,
+}
+
+impl<'m> Context<'m> {
+    /// A context on a filled store.
+    pub fn new(store: Store, source: &'m Source, model: &'m Model) -> Self {
+        let mut evaluator = model.evaluator();
+        let faces = model.topology().faces.iter().enumerate();
+        let planes = faces.map(|(i, face)| {
+            let middle = face.range.map(|[low, high]| 0.5 * (low + high));
+            (face.kind == SurfaceKind::Plane).then(|| evaluator.face_normal(i as u32, middle))
+        });
+        let planes = planes.collect();
+        Self { store, source, model, planes, frozen: Vec::new(), limits: Limits::default() }
+    }
+
+    /// Whether the vertex must neither move nor go.
+    #[inline(always)]
+    pub fn is_frozen(&self, v: VertexId) -> bool {
+        self.frozen.get(v.index()).copied().unwrap_or(false)
+    }
+}

@@ -1,0 +1,41 @@
+//! The 2-3 flip: a face goes, the edge between the two vertices opposite to it comes.
+use super::access::Access;
+use super::cavity::NewTet;
+use super::criteria::Criterion;
+use super::ids::{FACE, TetId};
+use super::outcome::Refusal;
+use super::worker::Worker;
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Removes the face opposite to local vertex i of a tetrahedron that is owned, when the criterion gains by it.
+    pub fn remove_face(&mut self, t: TetId, i: usize, criterion: Criterion) -> Result<(), Refusal> {
+        let other = self.store.neighbour(t, i);
+        if !other.is_some() || self.store.tags(t)[i] != 0 {
+            return Err(Refusal::Geometry);
+        }
+        let v = self.store.vertices(t);
+        let w = self.claim_tet(other)?;
+        let below = w.into_iter().find(|x| !v.contains(x)).ok_or(Refusal::Topology)?;
+        let face = FACE[i].map(|k| v[k]);
+        let above = v[i];
+        let cavity = [face[0], face[1], face[2], above, below];
+        let score = |tet| self.score(criterion, tet, &cavity);
+        let old = self.present_score(criterion, t, &cavity).min(self.present_score(criterion, other, &cavity));
+        let wanted = old + 1e-3 * old.abs().max(1e-3);
+        // (face, above) is positive, so each side of the face makes a positive tetrahedron with below and above.
+        let new = [0, 1, 2].map(|k| [face[k], face[(k + 1) % 3], below, above]);
+        for tet in new {
+            if score(tet).is_none_or(|score| score <= wanted) {
+                return Err(Refusal::Shape);
+            }
+        }
+        let region = self.store.region(t);
+        self.state.replacement.clear();
+        self.state.replacement.old.extend([t, other]);
+        for vertices in new {
+            let quality = self.shape(vertices);
+            self.state.replacement.new.push(NewTet { vertices, region, quality });
+        }
+        self.commit()
+    }
+}

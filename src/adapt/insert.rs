@@ -1,0 +1,114 @@
+//! Insertion of new vertices: a star about the new point over the tetrahedra that hold it.
+use super::access::Access;
+use super::ids::{TetId, VertexId};
+use super::outcome::Refusal;
+use super::star::Seed;
+use super::surface::Placed;
+use super::worker::Worker;
+use crate::geometry::Entity;
+use crate::mesh::vector::{Vec3, lerp, sub};
+
+/// An edge to be looked at, and a tetrahedron that held it when it was listed.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeItem {
+    /// One end.
+    pub a: VertexId,
+    /// The other end.
+    pub b: VertexId,
+    /// Where to find the edge.
+    pub tet: TetId,
+}
+
+/// Where along a–b the metric length from both ends is equal, for sizes that change geometrically: l_a, l_b are the
+/// lengths of the whole edge in the metrics of its ends.
+fn middle(la: f64, lb: f64) -> f64 {
+    let ratio = lb / la;
+    if (ratio - 1.0).abs() < 1e-3 { 0.5 } else { (((1.0 + ratio) * 0.5).ln() / ratio.ln()).clamp(0.1, 0.9) }
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Splits an edge that is too long, at its middle in the metric, on its entity of the model.
+    pub fn split_edge(&mut self, item: EdgeItem) -> Result<(), Refusal> {
+        let EdgeItem { a, b, tet } = item;
+        self.claim_live(a)?;
+        self.claim_live(b)?;
+        let tet = self.tet_with_edge(a, b, tet)?;
+        let length = self.length(a, b);
+        if length <= self.context.limits.long {
+            return Err(Refusal::Stale);
+        }
+        self.gather_shell(a, b, tet)?;
+        let entity = self.entity_of_edge(a, b);
+        let straight = self.middle_of(a, b);
+        let placed = self.place(entity, straight, &[a, b]);
+        let seeds = std::mem::take(&mut self.state.shell.tets);
+        let mut result = self.insert(Seed::Edge(a, b), &seeds, placed, a);
+        if matches!(result, Err(Refusal::Inverted | Refusal::Topology)) && placed.point != straight {
+            // No room on the model: the point waits on the straight edge until there is (project.rs).
+            result = self.insert(Seed::Edge(a, b), &seeds, Placed { point: straight, ..placed }, a);
+            if let Ok(v) = result {
+                self.state.waiting.push(v);
+            }
+        }
+        self.state.shell.tets = seeds;
+        let v = result?;
+        if let Entity::Edge(_) = entity {
+            self.store.set_ridge(v, [a, b]);
+            self.store.redirect_ridge(a, b, v);
+            self.store.redirect_ridge(b, a, v);
+        }
+        Ok(())
+    }
+
+    fn middle_of(&self, a: VertexId, b: VertexId) -> Vec3 {
+        let (p, q) = (self.store.position(a), self.store.position(b));
+        let v = sub(q, p);
+        let la = self.store.metric(a).quadratic(v).sqrt();
+        let lb = self.store.metric(b).quadratic(v).sqrt();
+        lerp(p, q, middle(la, lb))
+    }
+
+    /// Inserts a vertex into the star over `seeds`; returns it.
+    ///
+    /// # Errors
+    /// Besides those of the star: `Length` when an edge would be too short, `Shape` when a tetrahedron would
+    /// be worse than the floor and than what stood there, `Normal` on the surface.
+    pub fn insert(&mut self, seed: Seed, seeds: &[TetId], placed: Placed, near: VertexId) -> Result<VertexId, Refusal> {
+        let v = self.new_vertex()?;
+        self.set_point(v, placed.point, self.store.hint(near));
+        self.store.set_place(v, placed.entity, placed.parameters);
+        let result = self.try_insert(seed, seeds, v).and_then(|()| self.commit());
+        match result {
+            Ok(()) => Ok(v),
+            Err(refusal) => {
+                self.state.pool.free_vertex(v);
+                Err(refusal)
+            }
+        }
+    }
+
+    fn try_insert(&mut self, seed: Seed, seeds: &[TetId], v: VertexId) -> Result<(), Refusal> {
+        let limits = self.context.limits;
+        let mut worst = self.build_star(seed, v, seeds, 0.0)?;
+        let allowed = |worker: &Self| limits.insert_floor.min(0.5 * worker.worst_old());
+        if worst < allowed(self) {
+            worst = self.build_star(seed, v, seeds, limits.insert_floor)?;
+            if worst < allowed(self) {
+                return Err(Refusal::Shape);
+            }
+        }
+        if self.star_lengths(v).0 < limits.shortest_new {
+            return Err(Refusal::Length);
+        }
+        self.check_normals(0.3)
+    }
+
+    /// Moves a claimed vertex, with the metric that belongs to the point.
+    pub fn set_point(&mut self, v: VertexId, point: Vec3, hint: u32) {
+        let mut hint = hint;
+        let log = self.context.source.log_at(point, &mut hint);
+        self.store.set_position(v, point);
+        self.store.set_metric(v, &log, &log.exp());
+        self.store.set_hint(v, hint);
+    }
+}

@@ -1,0 +1,73 @@
+//! What becomes of an attempted operation, and how it is counted.
+use serde::Serialize;
+
+/// Why an operation was not carried out. Every refusal leaves the mesh as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[repr(usize)]
+pub enum Refusal {
+    /// Another thread holds a vertex: to be tried again.
+    Conflict,
+    /// The item is gone, or no longer needs the operation.
+    Stale,
+    /// The model forbids it (corner, another face, frozen).
+    Geometry,
+    /// An edge would be too short or too long.
+    Length,
+    /// A tetrahedron would be inverted or flat.
+    Inverted,
+    /// A tetrahedron would be worse than the limit.
+    Shape,
+    /// A surface triangle would leave its face's normal.
+    Normal,
+    /// The cavity would not stay a ball, or grew beyond the limit.
+    Topology,
+    /// The store has no room left before the next sweep.
+    Full,
+}
+
+impl Refusal {
+    /// All kinds, in the order of their counters.
+    pub const ALL: [Refusal; 9] = [
+        Refusal::Conflict,
+        Refusal::Stale,
+        Refusal::Geometry,
+        Refusal::Length,
+        Refusal::Inverted,
+        Refusal::Shape,
+        Refusal::Normal,
+        Refusal::Topology,
+        Refusal::Full,
+    ];
+}
+
+/// Counts of one operation over one or more sweeps.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Counts {
+    /// Items tried, conflicts and their repeats included.
+    pub attempts: u64,
+    /// Carried out.
+    pub done: u64,
+    /// Refused, by reason, in the order of [`Refusal::ALL`].
+    pub refused: [u64; 9],
+}
+
+impl Counts {
+    /// Counts one attempt.
+    #[inline]
+    pub fn record(&mut self, result: Result<(), Refusal>) {
+        self.attempts += 1;
+        match result {
+            Ok(()) => self.done += 1,
+            Err(refusal) => self.refused[refusal as usize] += 1,
+        }
+    }
+
+    /// Adds another count.
+    pub fn add(&mut self, other: &Counts) {
+        self.attempts += other.attempts;
+        self.done += other.done;
+        for (mine, theirs) in self.refused.iter_mut().zip(other.refused) {
+            *mine += theirs;
+        }
+    }
+}

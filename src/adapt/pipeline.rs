@@ -1,0 +1,287 @@
+//! The passes: what is done, in which order, until the mesh is a unit mesh.
+use super::build;
+use super::context::{Context, Limits};
+use super::criteria::Criterion;
+use super::ids::{EDGE, TetId, VertexId};
+use super::insert::EdgeItem;
+use super::outcome::Counts;
+use super::schedule::{self, Collapse, Operation, Project, Reconnect, Smooth, Split};
+use super::worker::State;
+use crate::mesh::vector::sub;
+use crate::metric::quality::edge_length;
+use crate::tasks::Pool;
+use std::time::{Duration, Instant};
+
+/// Passes of refinement and coarsening at most.
+const PASSES: usize = 12;
+
+/// A kind of operation, for progress and report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Insertion.
+    Split,
+    /// Collapse.
+    Collapse,
+    /// Reconnection.
+    Reconnect,
+    /// Smoothing.
+    Smooth,
+    /// Projection on the model.
+    Project,
+}
+
+impl Kind {
+    /// All kinds, in the order of their counters.
+    pub const ALL: [Kind; 5] = [Kind::Split, Kind::Collapse, Kind::Reconnect, Kind::Smooth, Kind::Project];
+
+    /// The name in progress and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Split => "insertion",
+            Kind::Collapse => "collapse",
+            Kind::Reconnect => "reconnection",
+            Kind::Smooth => "smoothing",
+            Kind::Project => "projection",
+        }
+    }
+}
+
+/// Time and counts of one kind of operation.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize)]
+pub struct Work {
+    /// Counts over all sweeps.
+    pub counts: Counts,
+    /// Sweeps.
+    pub sweeps: u32,
+    /// Wall time.
+    pub time: Duration,
+}
+
+/// Is told what happens; called from several threads.
+pub trait Observer: Sync {
+    /// A sweep begins.
+    fn begin(&self, kind: Kind, pass: usize, items: usize);
+    /// So many more items are done.
+    fn advance(&self, items: usize);
+    /// The sweep is over.
+    fn end(&self, counts: &Counts);
+    /// Whether to stop after this sweep.
+    fn stop(&self) -> bool;
+}
+
+/// The passes on one mesh.
+pub struct Pipeline<'c, 'm> {
+    /// Mesh, metric, model, limits.
+    pub context: &'c mut Context<'m>,
+    /// One a thread.
+    pub states: Vec<State<'m>>,
+    /// The threads.
+    pub pool: &'c Pool,
+    /// Who is told.
+    pub observer: &'c dyn Observer,
+    /// Criterion of the flips that follow refinement.
+    pub criterion: Criterion,
+    /// By kind of operation.
+    pub work: [Work; 5],
+    /// Boundary vertices that are not on the model yet.
+    pub waiting: Vec<VertexId>,
+    /// When each kind of operation last looked at everything, on the store's clock.
+    looked: [u32; 5],
+    pass: usize,
+}
+
+impl<'c, 'm> Pipeline<'c, 'm> {
+    /// A pipeline on a filled store.
+    pub fn new(
+        context: &'c mut Context<'m>,
+        pool: &'c Pool,
+        observer: &'c dyn Observer,
+        criterion: Criterion,
+        waiting: Vec<VertexId>,
+    ) -> Self {
+        let states = (0..pool.threads()).map(|_| State::new(context)).collect();
+        Self { context, states, pool, observer, criterion, work: [Work::default(); 5], waiting, looked: [0; 5], pass: 0 }
+    }
+
+    /// Adapts the mesh.
+    pub fn run(&mut self) {
+        self.context.limits = Limits::default();
+        for pass in 0..PASSES {
+            self.pass = pass;
+            // Long edges that were refused are tried again: room may have come from farther away.
+            self.looked[Kind::Split as usize] = 0;
+            let before = self.changes();
+            self.collapse();
+            let split = self.refine();
+            self.collapse();
+            self.reconnect(Criterion::MeanRatio, 2);
+            self.smooth(2);
+            self.reconnect(Criterion::MeanRatio, 1);
+            if self.observer.stop() || (split == 0 && self.changes() - before < 1) {
+                break;
+            }
+        }
+    }
+
+    fn changes(&self) -> u64 {
+        self.work[Kind::Split as usize].counts.done + self.work[Kind::Collapse as usize].counts.done
+    }
+
+    /// Splits long edges until none is left or none can be split.
+    fn refine(&mut self) -> u64 {
+        let mut total = 0;
+        for _ in 0..4 {
+            if self.observer.stop() {
+                break;
+            }
+            let items = self.long_edges();
+            let done = self.sweep(Kind::Split, &Split, &items).done;
+            self.project();
+            self.reconnect(self.criterion, 1);
+            total += done;
+            if (done as f64) < 0.02 * items.len() as f64 || done == 0 {
+                break;
+            }
+        }
+        total
+    }
+
+    fn collapse(&mut self) {
+        for _ in 0..3 {
+            let items = self.short_edges();
+            if self.observer.stop() || self.sweep(Kind::Collapse, &Collapse, &items).done == 0 {
+                break;
+            }
+        }
+    }
+
+    /// Flips at the tetrahedra that changed since the last time, until little is gained.
+    fn reconnect(&mut self, criterion: Criterion, sweeps: usize) {
+        for _ in 0..sweeps {
+            let since = self.begin(Kind::Reconnect);
+            let store = &self.context.store;
+            let limit = self.context.limits.improve_below;
+            let items: Vec<TetId> =
+                store.live_tets().filter(|&t| store.stamp(t) >= since && store.quality(t) < limit).collect();
+            if self.observer.stop() || self.sweep(Kind::Reconnect, &Reconnect(criterion), &items).done == 0 {
+                break;
+            }
+        }
+    }
+
+    /// Smooths the vertices whose tetrahedra changed since the last time.
+    fn smooth(&mut self, sweeps: usize) {
+        for _ in 0..sweeps {
+            let since = self.begin(Kind::Smooth);
+            let changed = self.changed(since);
+            let live = self.context.store.live_vertices();
+            let items: Vec<VertexId> = live.filter(|v| changed[v.index()]).collect();
+            if self.observer.stop() || self.sweep(Kind::Smooth, &Smooth, &items).done == 0 {
+                break;
+            }
+        }
+    }
+
+    /// Notes that an operation looks at everything now; returns when it did so last.
+    fn begin(&mut self, kind: Kind) -> u32 {
+        std::mem::replace(&mut self.looked[kind as usize], self.context.store.clock() + 1)
+    }
+
+    /// For each vertex whether one of its tetrahedra changed at or after the time.
+    fn changed(&self, since: u32) -> Vec<bool> {
+        let store = &self.context.store;
+        let mut changed = vec![false; store.vertex_bound()];
+        for t in store.live_tets().filter(|&t| store.stamp(t) >= since) {
+            store.vertices(t).iter().for_each(|v| changed[v.index()] = true);
+        }
+        changed
+    }
+
+    /// Tries to bring the waiting vertices to the model.
+    fn project(&mut self) {
+        for state in &mut self.states {
+            self.waiting.append(&mut state.waiting);
+        }
+        if self.waiting.is_empty() {
+            return;
+        }
+        let items = std::mem::take(&mut self.waiting);
+        self.sweep(Kind::Project, &Project, &items);
+        for state in &mut self.states {
+            self.waiting.append(&mut state.waiting);
+        }
+    }
+
+    /// One sweep of an operation over its items.
+    fn sweep<O: Operation>(&mut self, kind: Kind, operation: &O, items: &[O::Item]) -> Counts {
+        if items.is_empty() {
+            return Counts::default();
+        }
+        let (vertices, tets) = (self.context.store.vertex_bound(), self.context.store.tet_bound());
+        let room = self.context.store.room();
+        if room.0 < vertices / 2 || room.1 < tets / 2 {
+            self.context.store.reserve(vertices, tets);
+        }
+        self.context.store.tick();
+        let start = Instant::now();
+        self.observer.begin(kind, self.pass, items.len());
+        let advance = |n: usize| self.observer.advance(n);
+        let counts = schedule::run(operation, items, self.context, &mut self.states, self.pool, &advance);
+        self.observer.end(&counts);
+        let work = &mut self.work[kind as usize];
+        work.counts.add(&counts);
+        work.sweeps += 1;
+        work.time += start.elapsed();
+        counts
+    }
+
+    /// Edges whose length passes the test, each once, with their length; only those with an end where something changed.
+    fn edges(&self, since: u32, wanted: impl Fn(f64) -> bool) -> Vec<(EdgeItem, f64)> {
+        let store = &self.context.store;
+        let changed = self.changed(since);
+        let mut found = Vec::new();
+        for t in store.live_tets() {
+            let v = store.vertices(t);
+            if !v.iter().any(|x| changed[x.index()]) {
+                continue;
+            }
+            let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
+            for [i, j] in EDGE {
+                if !changed[v[i].index()] && !changed[v[j].index()] {
+                    continue;
+                }
+                let length = edge_length(sub(p[j], p[i]), &m[i], &m[j]);
+                if wanted(length) {
+                    found.push((EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t }, length));
+                }
+            }
+        }
+        found.sort_unstable_by_key(|(item, _)| (item.a, item.b, item.tet));
+        found.dedup_by_key(|(item, _)| (item.a, item.b));
+        found
+    }
+
+    /// Edges to be split: those of the model's edges first, then of its faces, then inside; long ones first.
+    fn long_edges(&mut self) -> Vec<EdgeItem> {
+        let since = self.begin(Kind::Split);
+        let mut found = self.edges(since, |length| length > self.context.limits.long);
+        let store = &self.context.store;
+        let rank = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
+        found.sort_by(|(x, lx), (y, ly)| rank(x).cmp(&rank(y)).then(ly.total_cmp(lx)));
+        found.into_iter().map(|(item, _)| item).collect()
+    }
+
+    /// Edges to be collapsed, short ones first.
+    fn short_edges(&mut self) -> Vec<EdgeItem> {
+        let since = self.begin(Kind::Collapse);
+        let mut found = self.edges(since, |length| length < self.context.limits.short);
+        found.sort_by(|(_, lx), (_, ly)| lx.total_cmp(ly));
+        found.into_iter().map(|(item, _)| item).collect()
+    }
+}
+
+/// Measures everything anew: after the limits or the field changed.
+pub fn remeasure(context: &Context<'_>) {
+    build::measure(&context.store, context.source);
+}

@@ -1,0 +1,32 @@
+//! Local reconnection: each bad tetrahedron tries to remove its edges and its faces.
+use super::access::Access;
+use super::criteria::Criterion;
+use super::ids::{EDGE, TetId};
+use super::outcome::Refusal;
+use super::worker::Worker;
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Flips what the criterion gains by at one tetrahedron: the first edge, else face, whose removal gains.
+    pub fn reconnect(&mut self, t: TetId, criterion: Criterion) -> Result<(), Refusal> {
+        let v = self.claim_moving_tet(t)?;
+        if self.store.quality(t) >= self.context.limits.improve_below {
+            return Err(Refusal::Stale);
+        }
+        let mut refusal = Refusal::Shape;
+        for [i, j] in EDGE {
+            match self.remove_edge(v[i], v[j], t, criterion) {
+                Ok(()) => return Ok(()),
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                Err(other) => refusal = other,
+            }
+        }
+        for i in 0..4 {
+            match self.remove_face(t, i, criterion) {
+                Ok(()) => return Ok(()),
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                Err(other) => refusal = other,
+            }
+        }
+        Err(refusal)
+    }
+}

@@ -1,0 +1,70 @@
+//! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
+use super::build::{self, Extracted};
+use super::context::Context;
+use super::criteria::Criterion;
+use super::pipeline::{Observer, Pipeline, Work};
+use crate::geometry::classify::Classification;
+use crate::geometry::{Geometry, Model};
+use crate::mesh::TetMesh;
+use crate::metric::Source;
+use crate::tasks::Pool;
+
+/// How to adapt.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Criterion of the flips that follow each sweep of insertion.
+    pub criterion: Criterion,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { criterion: Criterion::MeanRatio }
+    }
+}
+
+/// What came of it.
+pub struct Adapted {
+    /// The mesh with its classification and metric.
+    pub extracted: Extracted,
+    /// Time and counts by operation, in the order of [`super::Kind`].
+    pub work: [Work; 5],
+    /// Boundary vertices that could not be put on the model.
+    pub off_model: usize,
+}
+
+/// Adapts a classified mesh to the metric of `source`, on `model`. The boundary triangles are complete
+/// ([`crate::geometry::Discrete`]'s `complete_boundary` adds missing ones).
+///
+/// # Errors
+/// When the mesh is no valid tetrahedral mesh.
+pub fn adapt(
+    mesh: &TetMesh,
+    place: &Classification,
+    model: &Model,
+    source: &Source,
+    options: &Options,
+    pool: &Pool,
+    observer: &dyn Observer,
+) -> Result<Adapted, build::Error> {
+    let (store, waiting) = build::fill(mesh, place, source)?;
+    let mut context = Context::new(store, source, model);
+    context.frozen = vec![false; mesh.vertices.len()];
+    for &v in &mesh.required_vertices {
+        context.frozen[v as usize] = true;
+    }
+    let mut pipeline = Pipeline::new(&mut context, pool, observer, options.criterion, waiting);
+    pipeline.run();
+    let (work, off_model) = (pipeline.work, pipeline.waiting.len());
+    let refs = face_refs(mesh, place, model);
+    let extracted = build::extract(&context.store, model.topology(), &refs, &mesh.vertex_refs);
+    Ok(Adapted { extracted, work, off_model })
+}
+
+/// The reference of each model face: that of its first triangle.
+fn face_refs(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<i32> {
+    let mut refs: Vec<Option<i32>> = vec![None; model.topology().faces.len()];
+    for (&face, &reference) in place.faces.iter().zip(&mesh.triangles.refs) {
+        refs[face as usize].get_or_insert(reference);
+    }
+    refs.iter().enumerate().map(|(face, reference)| reference.unwrap_or(face as i32 + 1)).collect()
+}

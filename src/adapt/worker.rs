@@ -1,0 +1,204 @@
+//! What one thread has in hand while it works: the store, its access, its pools, its scratch.
+use super::access::Access;
+use super::cavity::Replacement;
+use super::context::Context;
+use super::ids::{TetId, VertexId};
+use super::local::{FaceMap, LocalSet};
+use super::outcome::Refusal;
+use super::star::Star;
+use super::store::Store;
+use crate::geometry::{Evaluator, Geometry};
+
+/// Ids are taken from the store in blocks of this size.
+const BLOCK: usize = 64;
+
+/// Ids that a thread may use for new vertices and tetrahedra.
+#[derive(Default)]
+pub struct Pool {
+    vertices: Vec<VertexId>,
+    tets: Vec<TetId>,
+}
+
+impl Pool {
+    /// A free vertex id.
+    pub fn vertex(&mut self, store: &Store) -> Result<VertexId, Refusal> {
+        if self.vertices.is_empty() {
+            let block = store.take_vertices(BLOCK).ok_or(Refusal::Full)?;
+            self.vertices.extend(block.rev().map(VertexId));
+        }
+        self.vertices.pop().ok_or(Refusal::Full)
+    }
+
+    /// Makes sure that `count` tetrahedron ids are at hand.
+    pub fn provide_tets(&mut self, store: &Store, count: usize) -> Result<(), Refusal> {
+        while self.tets.len() < count {
+            let block = store.take_tets(BLOCK).ok_or(Refusal::Full)?;
+            // Fresh ids go to the bottom: freed ones are used again first.
+            self.tets.splice(0..0, block.rev().map(TetId));
+        }
+        Ok(())
+    }
+
+    /// A free tetrahedron id; after [`Pool::provide_tets`].
+    pub fn tet(&mut self) -> TetId {
+        self.tets.pop().expect("ids were provided")
+    }
+
+    /// Gives a vertex id back.
+    pub fn free_vertex(&mut self, v: VertexId) {
+        self.vertices.push(v);
+    }
+
+    /// Gives a tetrahedron id back.
+    pub fn free_tet(&mut self, t: TetId) {
+        self.tets.push(t);
+    }
+}
+
+/// What a thread keeps from sweep to sweep.
+pub struct State<'m> {
+    /// Its own evaluator of the model.
+    pub evaluator: Evaluator<'m>,
+    /// Free ids.
+    pub pool: Pool,
+    /// The replacement that is being prepared.
+    pub replacement: Replacement,
+    /// The star cavity that is being prepared.
+    pub star: Star,
+    /// Faces seen while committing.
+    pub face_map: FaceMap<super::cavity::FaceSlot>,
+    /// A set for any use within one function.
+    pub set: LocalSet,
+    /// The tetrahedra at a vertex.
+    pub ball: Vec<TetId>,
+    /// The ring about an edge.
+    pub shell: super::shell::Shell,
+    /// Boundary vertices that are not yet on the model.
+    pub waiting: Vec<VertexId>,
+    /// Tables of the edge removal.
+    pub ring: super::edge_removal::RingTables,
+}
+
+impl<'m> State<'m> {
+    /// The state of a new thread.
+    pub fn new(context: &Context<'m>) -> Self {
+        Self {
+            evaluator: context.model.evaluator(),
+            pool: Pool::default(),
+            replacement: Replacement::default(),
+            star: Star::default(),
+            face_map: FaceMap::default(),
+            set: LocalSet::default(),
+            ball: Vec::with_capacity(128),
+            shell: super::shell::Shell::default(),
+            waiting: Vec::new(),
+            ring: super::edge_removal::RingTables::default(),
+        }
+    }
+}
+
+/// A thread at work on a sweep.
+pub struct Worker<'w, 'm, A: Access> {
+    /// What all threads share.
+    pub context: &'w Context<'m>,
+    /// The mesh.
+    pub store: &'w Store,
+    /// What belongs to this thread.
+    pub state: &'w mut State<'m>,
+    /// How it claims vertices.
+    pub access: A,
+}
+
+impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
+    /// A worker on the context's store.
+    pub fn new(context: &'w Context<'m>, state: &'w mut State<'m>, access: A) -> Self {
+        Self { context, store: &context.store, state, access }
+    }
+
+    /// Claims a vertex.
+    #[inline(always)]
+    pub fn claim(&mut self, v: VertexId) -> Result<(), Refusal> {
+        self.access.claim(self.store, v)
+    }
+
+    /// Claims the vertices of a tetrahedron that is known to hold still.
+    #[inline(always)]
+    pub fn claim_tet(&mut self, t: TetId) -> Result<[VertexId; 4], Refusal> {
+        let vertices = self.store.vertices(t);
+        for v in vertices {
+            self.claim(v)?;
+        }
+        Ok(vertices)
+    }
+
+    /// Claims a tetrahedron that may be changing: its vertices are read, claimed, and read again.
+    pub fn claim_moving_tet(&mut self, t: TetId) -> Result<[VertexId; 4], Refusal> {
+        let vertices = self.store.vertices(t);
+        for v in vertices {
+            if !v.is_some() || v.index() >= self.store.vertex_bound() {
+                return Err(Refusal::Stale);
+            }
+            self.claim(v)?;
+        }
+        if self.store.vertices(t) == vertices { Ok(vertices) } else { Err(Refusal::Stale) }
+    }
+
+    /// Claims a vertex and makes sure that it is alive.
+    #[inline]
+    pub fn claim_live(&mut self, v: VertexId) -> Result<(), Refusal> {
+        self.claim(v)?;
+        if self.store.is_vertex(v) { Ok(()) } else { Err(Refusal::Stale) }
+    }
+
+    /// Collects the tetrahedra at a claimed vertex into `state.ball` and claims all their vertices.
+    pub fn gather_ball(&mut self, v: VertexId) -> Result<(), Refusal> {
+        self.collect_ball(v);
+        for i in 0..self.state.ball.len() {
+            self.claim_tet(self.state.ball[i])?;
+        }
+        Ok(())
+    }
+
+    /// Collects the tetrahedra at a claimed vertex into `state.ball`, claiming no other.
+    pub fn collect_ball(&mut self, v: VertexId) {
+        let State { ball, set, .. } = &mut *self.state;
+        ball.clear();
+        set.clear();
+        let first = self.store.tet_of(v);
+        ball.push(first);
+        set.insert(first.0);
+        let mut next = 0;
+        while next < ball.len() {
+            let t = ball[next];
+            next += 1;
+            let (vertices, neighbours) = (self.store.vertices(t), self.store.neighbours(t));
+            for i in 0..4 {
+                let n = neighbours[i];
+                if vertices[i] != v && n.is_some() && set.insert(n.0) {
+                    ball.push(n);
+                }
+            }
+        }
+    }
+
+    /// A tetrahedron that holds both claimed vertices; stale when they are not joined by an edge.
+    pub fn tet_with_edge(&mut self, a: VertexId, b: VertexId, guess: TetId) -> Result<TetId, Refusal> {
+        let holds = |t: TetId| {
+            let vertices = self.store.vertices(t);
+            vertices.contains(&a) && vertices.contains(&b)
+        };
+        if holds(guess) {
+            return Ok(guess);
+        }
+        self.collect_ball(a);
+        let store = self.store;
+        self.state.ball.iter().copied().find(|&t| store.vertices(t).contains(&b)).ok_or(Refusal::Stale)
+    }
+
+    /// A new vertex, claimed.
+    pub fn new_vertex(&mut self) -> Result<VertexId, Refusal> {
+        let v = self.state.pool.vertex(self.store)?;
+        self.claim(v).inspect_err(|_| self.state.pool.free_vertex(v))?;
+        Ok(v)
+    }
+}

@@ -1,0 +1,58 @@
+//! The files of a run: checked before it, written after it.
+use super::Arguments;
+use super::report::Report;
+use crate::mesh::io;
+use crate::metric::Field;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The metric of the adapted mesh goes beside it.
+pub fn metric_path(arguments: &Arguments) -> PathBuf {
+    arguments.output.with_extension("solb")
+}
+
+/// Refuses before the work what would fail after it: outputs that cannot be written, or that are inputs.
+pub fn check(arguments: &Arguments) -> Result<(), String> {
+    let output = &arguments.output;
+    let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    if !["mesh", "meshb"].contains(&extension) {
+        return Err(format!("{}: the output must end in .mesh or .meshb", output.display()));
+    }
+    let metric = metric_path(arguments);
+    let outputs = [Some(output), Some(&metric), arguments.report.as_ref()];
+    let inputs = [Some(&arguments.mesh), arguments.cad.as_ref(), arguments.field.metric.as_ref()];
+    for written in outputs.into_iter().flatten() {
+        let folder = written.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if !folder.is_dir() {
+            return Err(format!("{}: there is no folder {}; make it first", written.display(), folder.display()));
+        }
+        for read in inputs.into_iter().flatten() {
+            if let (Ok(a), Ok(b)) = (written.canonicalize(), read.canonicalize())
+                && a == b
+            {
+                return Err(format!("{}: is an input and would be overwritten; give another -o", written.display()));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Writes mesh, metric and report; `times` since the start: when the work began, when it ended, now.
+pub fn write(
+    arguments: &Arguments,
+    mut report: Report,
+    times: [Duration; 3],
+) -> Result<Report, Box<dyn std::error::Error>> {
+    let metrics = std::mem::take(&mut report.metrics);
+    io::write_mesh(&arguments.output, &report.mesh)?;
+    Field { metrics }.write(&metric_path(arguments))?;
+    let [prepared, finished, measured] = times.map(|time| time.as_secs_f64());
+    report.seconds.read_and_classify = prepared;
+    report.seconds.adapt = finished - prepared;
+    report.seconds.total = measured;
+    if let Some(path) = &arguments.report {
+        let text = serde_json::to_vec_pretty(&report)?;
+        io::write_beside(path, |file| file.write_all(&text).and_then(|()| file.write_all(b"\n")))?;
+    }
+    Ok(report)
+}

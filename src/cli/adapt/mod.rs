@@ -1,0 +1,149 @@
+//! `geo-adapt adapt`.
+mod files;
+mod progress;
+mod report;
+
+use super::Outcome;
+use crate::adapt::{self, Criterion, Options};
+use crate::geometry::classify::{self, Classification};
+use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
+use crate::geometry::{Discrete, Model};
+use crate::mesh::{TetMesh, io};
+use crate::metric::{Analytic, Background, Field, Source, field};
+use crate::tasks::Pool;
+use progress::Progress;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Exit code after an interrupt: 128 + SIGINT, as shells have it. The last valid mesh is written all the same.
+const INTERRUPTED: u8 = 130;
+
+/// Arguments of `geo-adapt adapt`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The mesh: .mesh or .meshb
+    mesh: PathBuf,
+    /// Where the adapted mesh goes; its metric is written beside it as .solb
+    #[arg(short, long, short_alias = 'x', value_name = "OUT")]
+    output: PathBuf,
+    /// The CAD model the boundary lies on: .step, .stp, .iges, .igs, .brep or .egads. Without it the surface of the input mesh
+    #[arg(long, value_name = "MODEL")]
+    cad: Option<PathBuf>,
+    #[command(flatten)]
+    field: FieldArguments,
+    /// Scale the metric to this complexity: about half the number of vertices
+    #[arg(long, value_name = "C", value_parser = super::positive)]
+    complexity: Option<f64>,
+    /// Threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Write what was done as JSON
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    /// How far a vertex of the input may be from the model, in its units
+    #[arg(long, value_name = "T", value_parser = super::positive)]
+    tolerance: Option<f64>,
+    /// Criterion of the flips that follow each sweep of insertion
+    #[arg(long, value_enum, default_value_t = Criterion::MeanRatio)]
+    criterion: Criterion,
+    /// No progress and no table; errors only
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// The metric: exactly one of the two.
+#[derive(clap::Args)]
+#[group(required = true, multiple = false)]
+struct FieldArguments {
+    /// The metric at the vertices of the mesh: .sol or .solb
+    #[arg(long, value_name = "FILE")]
+    metric: Option<PathBuf>,
+    /// An analytic metric: linear, polar-1 or polar-2
+    #[arg(long, value_name = "NAME")]
+    analytic: Option<Analytic>,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let start = Instant::now();
+    files::check(arguments)?;
+    let stop = progress::stop_on_interrupt();
+    let mut read = io::read_mesh(&arguments.mesh)?;
+    let added = complete_boundary(&mut read.content);
+    if added > 0 {
+        read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
+    }
+    let mesh = read.content;
+    let mut source = source(arguments, &mesh, &mut read.notices)?;
+    scale(arguments, &mesh, &mut source);
+    let (model, place) = place(arguments, &mesh, &mut read.notices)?;
+    let progress = Progress::new(!arguments.quiet, stop);
+    for notice in read.notices.iter().filter(|_| !arguments.quiet) {
+        eprintln!("geo-adapt: note: {notice}");
+    }
+    let threads = arguments.threads.map_or_else(available, usize::from);
+    let pool = Pool::new(threads)?;
+    let prepared = start.elapsed();
+    let options = Options { criterion: arguments.criterion };
+    let adapted = adapt::adapt(&mesh, &place, &model, &source, &options, &pool, &progress)
+        .map_err(|error| format!("{}: {error}", arguments.mesh.display()))?;
+    progress.finish();
+    let finished = start.elapsed();
+    let report = report::Report::new(arguments, &mesh, &model, adapted, threads);
+    let report = files::write(arguments, report, [prepared, finished, start.elapsed()])?;
+    if !arguments.quiet {
+        super::print(&report.text(arguments));
+    }
+    Ok(if progress.interrupted() { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+}
+
+fn available() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// The metric's source: the analytic field, or the input mesh with the file's metric as background.
+fn source(
+    arguments: &Arguments,
+    mesh: &TetMesh,
+    notices: &mut Vec<String>,
+) -> Result<Source, Box<dyn std::error::Error>> {
+    if let Some(field) = arguments.field.analytic {
+        return Ok(Source::Analytic { field, log_scale: 0.0 });
+    }
+    let path = arguments.field.metric.as_ref().ok_or("neither --metric nor --analytic")?;
+    let read = Field::read(path, mesh.vertices.len())?;
+    notices.extend(read.notices);
+    if mesh.tets.is_empty() {
+        return Err(format!("{}: {}", arguments.mesh.display(), adapt::Error::Empty).into());
+    }
+    let logs = read.content.logs();
+    Ok(Source::Background(Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs)))
+}
+
+/// Scales the source to the complexity that is asked for.
+fn scale(arguments: &Arguments, mesh: &TetMesh, source: &mut Source) {
+    if let Some(target) = arguments.complexity {
+        source.scale(field::complexity_factor(source.complexity(mesh), target).ln());
+    }
+}
+
+/// The model, and where the mesh lies on it.
+fn place(
+    arguments: &Arguments,
+    mesh: &TetMesh,
+    notices: &mut Vec<String>,
+) -> Result<(Model, Classification), Box<dyn std::error::Error>> {
+    let name = arguments.mesh.display();
+    let Some(path) = &arguments.cad else {
+        let (model, place) =
+            Discrete::from_mesh(mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
+        return Ok((Model::Discrete(model), place));
+    };
+    let model = Model::read(path)?;
+    let options = classify::Options { tolerance: arguments.tolerance, ..classify::Options::default() };
+    let (place, report) = classify::classify(mesh, &model, &options)
+        .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
+    notices.extend(report.notices);
+    Ok((model, place))
+}

@@ -1,0 +1,108 @@
+//! Progress on the terminal: a bar a pass, with counts; and the interrupt.
+use crate::adapt::{Counts, Kind, Observer};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+
+/// Set by the first interrupt.
+pub type Stop = Arc<AtomicBool>;
+
+/// Lets the first interrupt end the work after the running sweep, and a second one end the program at once.
+pub fn stop_on_interrupt() -> Stop {
+    let stop = Stop::default();
+    let seen = Arc::clone(&stop);
+    let handler = move || {
+        if seen.swap(true, Relaxed) {
+            std::process::exit(i32::from(super::INTERRUPTED));
+        }
+        eprintln!("\ngeo-adapt: interrupted: ends after this sweep and writes the mesh (again: ends at once)");
+    };
+    // Where no handler can be set an interrupt ends the program, and the inputs are untouched all the same.
+    let _ = ctrlc::set_handler(handler);
+    stop
+}
+
+/// Shows what the adapter does.
+pub struct Progress {
+    shown: bool,
+    stop: Stop,
+    state: Mutex<State>,
+    waited: AtomicU32,
+}
+
+struct State {
+    bar: ProgressBar,
+    pass: Option<usize>,
+    kind: Kind,
+    done: [u64; 5],
+}
+
+impl Progress {
+    /// Draws if `wanted` and standard error is a terminal.
+    pub fn new(wanted: bool, stop: Stop) -> Self {
+        let state = State { bar: ProgressBar::hidden(), pass: None, kind: Kind::Split, done: [0; 5] };
+        let shown = wanted && std::io::IsTerminal::is_terminal(&std::io::stderr());
+        Self { shown, stop, state: Mutex::new(state), waited: AtomicU32::new(0) }
+    }
+
+    /// The work is over.
+    pub fn finish(&self) {
+        self.state.lock().expect("no panic while drawing").bar.abandon();
+    }
+
+    /// Whether the user ended it.
+    pub fn interrupted(&self) -> bool {
+        self.stop.load(Relaxed)
+    }
+}
+
+impl State {
+    fn describe(&self) -> String {
+        let [split, collapse, reconnect, smooth, _] = self.done;
+        let name = self.kind.name();
+        format!("{name:<12} inserted {split}, collapsed {collapse}, flipped {reconnect}, smoothed {smooth}")
+    }
+}
+
+impl Observer for Progress {
+    fn begin(&self, kind: Kind, pass: usize, items: usize) {
+        let mut state = self.state.lock().expect("no panic while drawing");
+        state.kind = kind;
+        if self.shown && state.pass != Some(pass) {
+            state.bar.abandon();
+            let style = ProgressStyle::with_template("pass {prefix:>2} [{bar:24}] {msg}");
+            let style = style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> ");
+            let target = ProgressDrawTarget::stderr();
+            state.bar = ProgressBar::with_draw_target(Some(0), target).with_style(style);
+            state.bar.set_prefix(format!("{}", pass + 1));
+            state.done = [0; 5];
+        }
+        state.pass = Some(pass);
+        state.bar.set_length(items as u64);
+        state.bar.set_position(0);
+        let text = state.describe();
+        state.bar.set_message(text);
+    }
+
+    fn advance(&self, items: usize) {
+        self.waited.fetch_add(1, Relaxed);
+        if let Ok(state) = self.state.try_lock() {
+            state.bar.inc(items as u64);
+        }
+    }
+
+    fn end(&self, counts: &Counts) {
+        let mut state = self.state.lock().expect("no panic while drawing");
+        let kind = state.kind as usize;
+        state.done[kind] += counts.done;
+        let text = state.describe();
+        state.bar.set_message(text);
+        if std::env::var_os("GEO_ADAPT_TRACE").is_some() {
+            eprintln!("{:?} {:?} {} {} {:?}", state.pass, state.kind, counts.attempts, counts.done, counts.refused);
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.interrupted()
+    }
+}

@@ -1,0 +1,132 @@
+//! What was done: the table on the terminal and the JSON.
+use super::{Arguments, files};
+use crate::adapt::{Adapted, Kind, Refusal, Work};
+use crate::cli::table::Table;
+use crate::geometry::Model;
+use crate::geometry::classify::associate;
+use crate::mesh::TetMesh;
+use crate::metric::Sym3;
+use crate::metric::statistics::Statistics;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Wall times, s.
+#[derive(Default, Serialize)]
+pub struct Seconds {
+    /// Reading the inputs and putting the mesh on the model.
+    pub read_and_classify: f64,
+    /// Adaptation.
+    pub adapt: f64,
+    /// Everything, the writing of this report apart.
+    pub total: f64,
+}
+
+/// One operation over the run.
+#[derive(Serialize)]
+struct Operation {
+    attempts: u64,
+    done: u64,
+    refused: BTreeMap<String, u64>,
+    sweeps: u32,
+    seconds: f64,
+}
+
+/// The report of a run.
+#[derive(Serialize)]
+pub struct Report {
+    version: &'static str,
+    input: std::path::PathBuf,
+    output: std::path::PathBuf,
+    threads: usize,
+    complexity_wanted: Option<f64>,
+    input_vertices: usize,
+    input_tets: usize,
+    statistics: Statistics,
+    off_model: usize,
+    operations: BTreeMap<&'static str, Operation>,
+    /// Wall times.
+    pub seconds: Seconds,
+    /// The adapted mesh.
+    #[serde(skip)]
+    pub mesh: TetMesh,
+    /// The metric at its vertices.
+    #[serde(skip)]
+    pub metrics: Vec<Sym3>,
+}
+
+impl Report {
+    /// Associates the adapted mesh with the model and measures it.
+    pub fn new(
+        arguments: &Arguments,
+        input: &TetMesh,
+        _model: &Model,
+        adapted: Adapted,
+        threads: usize,
+    ) -> Self {
+        let extracted = adapted.extracted;
+        let mut mesh = extracted.mesh;
+        associate(&mut mesh, &extracted.classification);
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            input: arguments.mesh.clone(),
+            output: arguments.output.clone(),
+            threads,
+            complexity_wanted: arguments.complexity,
+            input_vertices: input.vertices.len(),
+            input_tets: input.tets.len(),
+            statistics: Statistics::in_metric(&mesh, &extracted.metrics),
+            off_model: adapted.off_model,
+            operations: operations(&adapted.work),
+            seconds: Seconds::default(),
+            mesh,
+            metrics: extracted.metrics,
+        }
+    }
+
+    /// The table for the terminal.
+    pub fn text(&self, arguments: &Arguments) -> String {
+        let mut table = Table::new();
+        table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
+        table.statistics(&self.statistics);
+        if self.off_model > 0 {
+            table.row("not on the model", self.off_model);
+        }
+        table.line("");
+        table.line(&format!("{:<14}{:>12}{:>12}{:>9}{:>10}", "operation", "attempts", "done", "sweeps", "seconds"));
+        for kind in Kind::ALL {
+            let o = &self.operations[kind.name()];
+            let line = format!(
+                "{:<14}{:>12}{:>12}{:>9}{:>10.2}",
+                kind.name(),
+                o.attempts,
+                o.done,
+                o.sweeps,
+                o.seconds
+            );
+            table.line(&line);
+        }
+        let Seconds { read_and_classify, adapt, total } = self.seconds;
+        table.row(
+            "seconds",
+            format_args!("{total:.2} (reading {read_and_classify:.2}, adapting {adapt:.2}), {} threads", self.threads),
+        );
+        let metric = files::metric_path(arguments);
+        table.row("written", format_args!("{}, {}", self.output.display(), metric.display()));
+        table.text().to_owned()
+    }
+}
+
+fn operations(work: &[Work; 5]) -> BTreeMap<&'static str, Operation> {
+    let named = |work: &Work| Operation {
+        attempts: work.counts.attempts,
+        done: work.counts.done,
+        refused: Refusal::ALL
+            .iter()
+            .map(|&r| (format!("{r:?}").to_lowercase(), work.counts.refused[r as usize]))
+            .filter(|&(_, count)| count > 0)
+            .collect(),
+        sweeps: work.sweeps,
+        seconds: work.time.as_secs_f64(),
+    };
+    Kind::ALL.iter().map(|&kind| (kind.name(), named(&work[kind as usize]))).collect()
+}

@@ -1,0 +1,33 @@
+//! Writing the features of a discrete geometry back into a mesh.
+use super::Discrete;
+use crate::geometry::Entity;
+use crate::geometry::classify::Classification;
+use crate::mesh::{Association, Elements, TetMesh};
+
+impl Discrete {
+    /// Reference of a face's triangles in the mesh that the geometry was made of.
+    pub fn face_reference(&self, face: u32) -> i32 {
+        self.face_refs[face as usize]
+    }
+
+    /// Reference of the listed mesh edges that an edge was made of; none if the file did not list it.
+    pub fn edge_reference(&self, edge: u32) -> Option<i32> {
+        self.edge_refs[edge as usize]
+    }
+
+    /// Writes the features into a mesh that is classified on this geometry, as the first mesh had them: references of
+    /// triangles, and the ridges as edges (0 where the file had not listed them), all marked as ridges; corners. There
+    /// is no association: the entities of a discrete geometry mean nothing outside this run.
+    pub fn restore(&self, mesh: &mut TetMesh, classification: &Classification) {
+        mesh.association = Association::default();
+        mesh.triangles.refs = classification.faces.iter().map(|&face| self.face_reference(face)).collect();
+        mesh.edges = Elements::default();
+        for &(nodes, edge) in &classification.ridges {
+            mesh.edges.push(nodes, self.edge_reference(edge).unwrap_or(0));
+        }
+        mesh.ridges = (0..mesh.edges.len() as u32).collect();
+        mesh.required_edges.clear();
+        let is_corner = |v: &u32| matches!(classification.entities[*v as usize], Entity::Vertex(_));
+        mesh.corners = (0..mesh.vertices.len() as u32).filter(is_corner).collect();
+    }
+}

@@ -1,0 +1,168 @@
+//! The entities of a loaded model as a [`Topology`], and its analytic shapes in Rust.
+use super::bridge::ffi;
+use super::curve::Curve;
+use super::surface::Surface;
+use super::{OcctModel, Shape};
+use crate::geometry::{CurveKind, EdgeEntity, FaceEntity, SurfaceKind, Topology, VertexEntity};
+use crate::mesh::vector::distance;
+use cxx::{Exception, UniquePtr};
+
+/// Where the p-curves give only a numerical range, this share of it is added at each end.
+const RANGE_MARGIN: f64 = 1e-7;
+
+/// Lists the entities and copies the analytic shapes.
+pub fn build(occt: cxx::SharedPtr<ffi::Model>) -> Result<OcctModel, Exception> {
+    let mut evaluator = ffi::new_evaluator(&occt)?;
+    let mut topology = Topology { bounds: corners(occt.bounds()?), solids: occt.solid_count()?, ..Topology::default() };
+    let [low, high] = topology.bounds;
+    let size = low.iter().chain(&high).fold(topology.diagonal(), |size, x| size.max(x.abs()));
+    let (mut surfaces, mut curves) = (Vec::new(), Vec::new());
+    for i in 0..occt.vertex_count()? {
+        let record = occt.vertex_record(i)?;
+        topology.vertices.push(VertexEntity { point: record.point, edges: Vec::new(), tolerance: record.tolerance });
+    }
+    for i in 0..occt.edge_count()? {
+        let record = occt.edge_record(i)?;
+        let curve = closed_curve(&mut evaluator, i, &record, size)?;
+        curves.push(Shape::new(curve, (4 * record.spans as usize).clamp(16, 512), 0));
+        topology.edges.push(edge_entity(&record));
+    }
+    for i in 0..occt.face_count()? {
+        let record = occt.face_record(i)?;
+        let surface = closed_surface(&mut evaluator, i, &record, size)?;
+        let counts = record.spans.map(|n| (2 * n as usize).clamp(8, 48));
+        surfaces.push(Shape::new(surface, counts[0], counts[1]));
+        add_face(&mut topology, i, &record);
+    }
+    connect(&mut topology);
+    Ok(OcctModel { topology, occt, surfaces, curves, size })
+}
+
+/// Agreement with OCCT, relative to the model's size, without which a closed form is not used: a scaled location
+/// changes a line's parameters, for one.
+const AGREEMENT: f64 = 1e-13;
+
+/// An edge's line or circle, if it has the points that OCCT has.
+fn closed_curve(
+    evaluator: &mut UniquePtr<ffi::Evaluator>,
+    edge: u32,
+    record: &ffi::EdgeRecord,
+    size: f64,
+) -> Result<Curve, Exception> {
+    if record.degenerate || record.kind > 1 {
+        return Ok(Curve::General);
+    }
+    let curve = Curve::new(record.kind, &evaluator.pin_mut().curve_form(edge)?);
+    for s in [0.0, 0.3, 1.0] {
+        let t = record.range[0] * (1.0 - s) + record.range[1] * s;
+        let mut out = [0.0; 9];
+        evaluator.pin_mut().curve_d2(edge, t, &mut out)?;
+        let agrees = |frame: crate::geometry::CurveFrame| {
+            distance(frame.point, [out[0], out[1], out[2]]) <= AGREEMENT * size
+                && distance(frame.d1, [out[3], out[4], out[5]]) <= AGREEMENT * (1.0 + size)
+        };
+        if !curve.frame(t).is_some_and(agrees) {
+            return Ok(Curve::General);
+        }
+    }
+    Ok(curve)
+}
+
+/// A face's analytic surface, if it has the points that OCCT has.
+fn closed_surface(
+    evaluator: &mut UniquePtr<ffi::Evaluator>,
+    face: u32,
+    record: &ffi::FaceRecord,
+    size: f64,
+) -> Result<Surface, Exception> {
+    if record.kind > 4 {
+        return Ok(Surface::General);
+    }
+    let surface = Surface::new(record.kind, &evaluator.pin_mut().surface_form(face)?);
+    let [u0, u1, v0, v1] = record.range;
+    for [s, r] in [[0.0, 0.0], [1.0, 0.4], [0.3, 1.0]] {
+        let uv = [u0 * (1.0 - s) + u1 * s, v0 * (1.0 - r) + v1 * r];
+        let mut out = [0.0; 3];
+        evaluator.pin_mut().surface_d0(face, uv[0], uv[1], &mut out)?;
+        if !surface.jet(uv).is_some_and(|jet| distance(jet.point, out) <= AGREEMENT * size) {
+            return Ok(Surface::General);
+        }
+    }
+    Ok(surface)
+}
+
+fn edge_entity(record: &ffi::EdgeRecord) -> EdgeEntity {
+    use CurveKind::*;
+    const KINDS: [CurveKind; 9] = [Line, Circle, Ellipse, Hyperbola, Parabola, Bezier, BSpline, Offset, Other];
+    EdgeEntity {
+        kind: if record.degenerate { None } else { KINDS.get(record.kind as usize).copied().unwrap_or(Other) },
+        vertices: record.vertices.map(|v| u32::try_from(v).ok()),
+        faces: Vec::new(),
+        range: record.range,
+        period: (record.period > 0.0).then_some(record.period),
+        degenerate: record.degenerate,
+        seam: false,
+        tolerance: record.tolerance,
+    }
+}
+
+/// Adds a face, and itself to its edges: twice to those it has twice, which [`connect`] makes seams.
+fn add_face(topology: &mut Topology, index: u32, record: &ffi::FaceRecord) {
+    use SurfaceKind::*;
+    const KINDS: [SurfaceKind; 11] =
+        [Plane, Cylinder, Cone, Sphere, Torus, Bezier, BSpline, Revolution, Extrusion, Offset, Other];
+    let mut edges = Vec::new();
+    for &edge in &record.edges {
+        topology.edges[edge as usize].faces.push(index);
+        if !edges.contains(&edge) {
+            edges.push(edge);
+        }
+    }
+    let period = record.period.map(|p| (p > 0.0).then_some(p));
+    topology.faces.push(FaceEntity {
+        kind: KINDS.get(record.kind as usize).copied().unwrap_or(Other),
+        edges,
+        range: [0, 1].map(|k: usize| face_range(record, k, period[k])),
+        period,
+        reversed: record.reversed,
+        tolerance: record.tolerance,
+        bounds: corners(record.bounds),
+    });
+}
+
+/// The range of u (0) or v (1), wide enough for every point of the face.
+fn face_range(record: &ffi::FaceRecord, k: usize, period: Option<f64>) -> [f64; 2] {
+    let [low, high] = [record.range[2 * k], record.range[2 * k + 1]];
+    if record.exact_range {
+        return [low, high];
+    }
+    let margin = RANGE_MARGIN * (high - low);
+    match period {
+        Some(period) if high - low + 2.0 * margin >= period => [low, low + period],
+        Some(_) => [low - margin, high + margin],
+        None => [(low - margin).max(record.natural[2 * k]), (high + margin).min(record.natural[2 * k + 1])],
+    }
+}
+
+/// Marks the seams, leaves each face once in an edge, tells the vertices their edges, and finds the largest tolerance.
+fn connect(topology: &mut Topology) {
+    for (i, edge) in topology.edges.iter_mut().enumerate() {
+        let count = edge.faces.len();
+        edge.faces.dedup();
+        edge.seam = !edge.degenerate && count == 2 && edge.faces.len() == 1;
+        for vertex in edge.vertices.into_iter().flatten() {
+            let edges = &mut topology.vertices[vertex as usize].edges;
+            if edges.last() != Some(&(i as u32)) {
+                edges.push(i as u32);
+            }
+        }
+    }
+    let tolerances = topology.vertices.iter().map(|v| v.tolerance);
+    let tolerances = tolerances.chain(topology.edges.iter().map(|e| e.tolerance));
+    topology.tolerance = tolerances.chain(topology.faces.iter().map(|f| f.tolerance)).fold(0.0, f64::max);
+}
+
+fn corners(bounds: [f64; 6]) -> [[f64; 3]; 2] {
+    let [a, b, c, d, e, f] = bounds;
+    [[a, b, c], [d, e, f]]
+}
