@@ -42,6 +42,7 @@ fn over<T, R>(c: &mut Criterion, name: &str, inputs: &[T], kernel: impl Fn(&T) -
     });
 }
 
+/// Tensor maps.
 fn tensors(c: &mut Criterion) {
     let mut numbers = Numbers(1);
     for anisotropy in [1.05, 100.0, 1e5] {
@@ -133,5 +134,10 @@ fn location(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, tensors, quality, location);
-criterion_main!(benches);
+#[allow(missing_docs, reason = "the macro writes a public function")]
+mod group {
+    use super::*;
+    criterion_group!(benches, tensors, quality, location);
+}
+
+criterion_main!(group::benches);

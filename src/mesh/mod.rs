@@ -1,6 +1,7 @@
 //! Tetrahedral meshes as plain arrays: what goes in and what comes out.
 pub mod adjacency;
 mod box_tree;
+mod flaw;
 pub mod io;
 pub mod locate;
 pub mod predicate;
@@ -10,4 +11,5 @@ mod tet_mesh;
 pub mod validity;
 pub mod vector;
 
+pub use flaw::{Flaw, FlawKind, Offender};
 pub use tet_mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};

@@ -27,22 +27,19 @@ fn coefficients(s: &Sym3) -> Coefficients {
     if p < SERIES * SERIES {
         return series(p, r);
     }
-    let x = roots(p, r);
-    // The sum of the roots is 0: the third exponential is the inverse of the others' product.
-    let (low, high) = (x[0].exp(), x[2].exp());
-    let middle = 1.0 / (low * high);
-    let f01 = divided_difference(x[1] - x[0], low, middle);
-    let f12 = divided_difference(x[2] - x[1], middle, high);
-    let spread = x[2] - x[0];
-    let f012 = (f12 - f01) / spread;
-    // e0 + f01 (S − x0) + f012 (S − x0)(S − x1), with x0 + x1 = −x2.
-    Coefficients { a: [low - f01 * x[0] + f012 * x[0] * x[1], f01 + f012 * x[2], f012], spread }
-}
-
-/// (e^(x+d) − e^x)/d from the two exponentials.
-#[inline(always)]
-fn divided_difference(d: f64, first: f64, second: f64) -> f64 {
-    if d > 1e-5 { (second - first) / d } else { first * (1.0 + d * (0.5 + d / 6.0)) }
+    // Newton's form at the isolated root x and the others y ≤ z: no difference but z − y can be small.
+    let [x, y, z] = roots(p, r);
+    let close = z - y;
+    let (to_y, to_z, apart) = (1.0 / (y - x), 1.0 / (z - x), 1.0 / close);
+    let (ex, ey, ez) = (x.exp(), y.exp(), z.exp());
+    let fxy = (ey - ex) * to_y;
+    let fyz = if close > 1e-5 { (ez - ey) * apart } else { ey * (1.0 + close * (0.5 + close / 6.0)) };
+    let fxyz = (fyz - fxy) * to_z;
+    // e^x + fxy (S − x) + fxyz (S − x)(S − y), and x + y = −z as S is traceless.
+    Coefficients {
+        a: [ex - fxy * x + fxyz * x * y, fxy + fxyz * z, fxyz],
+        spread: close.max(1.5 * x.abs() + 0.5 * close),
+    }
 }
 
 /// Σ Sⁿ/n! up to n = 9, in Horner's scheme in the ring of polynomials modulo x³ − 3p x − 2r.

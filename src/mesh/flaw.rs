@@ -1,0 +1,95 @@
+//! What can be wrong with a mesh, and how it is told.
+use super::vector::Vec3;
+use serde::Serialize;
+
+/// What can be wrong with a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FlawKind {
+    /// A tetrahedron or triangle names a node twice.
+    RepeatedNodes,
+    /// A tetrahedron's volume is negative, by an exact test.
+    InvertedTet,
+    /// A tetrahedron's volume is zero, by an exact test.
+    FlatTet,
+    /// Two tetrahedra have the same nodes.
+    DuplicateTet,
+    /// A face belongs to more than two tetrahedra.
+    CrowdedFace,
+    /// Two tetrahedra lie on the same side of their common face.
+    FoldedFace,
+    /// A face with one tetrahedron has no triangle: a hole in the boundary, or a neighbour that is subdivided otherwise.
+    OpenBoundary,
+    /// A triangle is no face of a tetrahedron.
+    LooseTriangle,
+    /// Two triangles have the same nodes.
+    DuplicateTriangle,
+    /// The boundary is no surface along an edge: other than two of its triangles meet there, and the edge is not tagged.
+    NonManifoldEdge,
+    /// A tagged edge is no edge of a tetrahedron.
+    LooseEdge,
+    /// The tetrahedra at a vertex hang together at no more than the vertex or an edge.
+    PinchedVertex,
+    /// A vertex of no tetrahedron.
+    HangingVertex,
+}
+
+impl FlawKind {
+    /// In words, for a count of them.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::RepeatedNodes => "elements that name a node twice",
+            Self::InvertedTet => "inverted tetrahedra",
+            Self::FlatTet => "flat tetrahedra",
+            Self::DuplicateTet => "duplicate tetrahedra",
+            Self::CrowdedFace => "faces of more than two tetrahedra",
+            Self::FoldedFace => "faces with both tetrahedra on one side",
+            Self::OpenBoundary => "boundary faces without a triangle",
+            Self::LooseTriangle => "triangles that are no face of a tetrahedron",
+            Self::DuplicateTriangle => "duplicate triangles",
+            Self::NonManifoldEdge => "non-manifold boundary edges",
+            Self::LooseEdge => "tagged edges that are no edge of a tetrahedron",
+            Self::PinchedVertex => "vertices where the mesh is pinched",
+            Self::HangingVertex => "hanging vertices (of no tetrahedron)",
+        }
+    }
+}
+
+/// One of the offenders. Indices count from 0.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Offender {
+    /// Index of the element or vertex; of a face that is no element, of its tetrahedron; none for an edge of no element.
+    pub index: Option<usize>,
+    /// Its nodes.
+    pub nodes: Vec<u32>,
+    /// Its middle, model units.
+    pub at: Vec3,
+}
+
+/// A kind of flaw that the mesh has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Flaw {
+    /// The kind.
+    pub kind: FlawKind,
+    /// How often.
+    pub count: usize,
+    /// The first few.
+    pub first: Vec<Offender>,
+}
+
+/// For people: numbers from 1, as in files.
+impl std::fmt::Display for Flaw {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} {}", self.count, self.kind.words())?;
+        for (i, offender) in self.first.iter().enumerate() {
+            f.write_str(if i == 0 { ": " } else { "; " })?;
+            if let Some(index) = offender.index {
+                write!(f, "no. {}, ", index + 1)?;
+            }
+            let [x, y, z] = offender.at;
+            let nodes: Vec<u32> = offender.nodes.iter().map(|v| v + 1).collect();
+            write!(f, "nodes {nodes:?} at ({x:.6}, {y:.6}, {z:.6})")?;
+        }
+        Ok(())
+    }
+}
