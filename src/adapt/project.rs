@@ -21,6 +21,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let (start, hint) = (self.store.position(v), self.store.hint(v));
         let goal = self.place(self.store.entity(v), start, &[v]);
         let result = self.carry(v, &ball, goal).or_else(|refusal| {
+            if std::env::var_os("DBG").is_some() { eprintln!("carry {v:?} {:?} {refusal:?} dist {:.2e} at {:?} ball {} cavity {} worst {:?} cos {:?}", self.store.entity(v), crate::mesh::vector::distance(start, goal.point), start, ball.len(), self.state.replacement.old.len(), ball.iter().map(|&t| self.store.quality(t)).fold(1.0, f64::min), {let s = std::mem::take(&mut self.state.star.surface); let c: Vec<f64> = s.iter().map(|&(f,t)| self.cosine(f,t-1)).collect(); self.state.star.surface = s; c}); }
             self.set_point(v, start, hint);
             if refusal == Refusal::Conflict { Err(refusal) } else { self.approach(v, &ball, goal) }
         });
