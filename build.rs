@@ -10,7 +10,7 @@ fn main() {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 3] = ["cpp/load.cpp", "cpp/model.cpp", "cpp/evaluate.cpp"];
+    const SOURCES: [&str; 4] = ["cpp/load.cpp", "cpp/damage.cpp", "cpp/model.cpp", "cpp/evaluate.cpp"];
 
     /// Toolkits that the bridge calls, callers first.
     const LIBRARIES: [&str; 14] = [
@@ -45,7 +45,7 @@ mod occt {
             .flag("-Wall")
             .flag("-Wextra")
             .compile("geo-adapt-occt");
-        for source in SOURCES.iter().chain(&["cpp/occt.hpp", "src/geometry/occt/bridge.rs"]) {
+        for source in SOURCES.iter().chain(&["cpp/occt.hpp", "cpp/damage.hpp", "src/geometry/occt/bridge.rs"]) {
             println!("cargo:rerun-if-changed={source}");
         }
         if let Ok(folder) = std::env::var("OCCT_LIB") {

@@ -1,4 +1,5 @@
 // Reading of STEP, IGES and BREP files.
+#include "geo-adapt/cpp/damage.hpp"
 #include "geo-adapt/cpp/occt.hpp"
 
 #include <BRepBuilderAPI_MakeSolid.hxx>
@@ -10,19 +11,15 @@
 #include <IGESControl_Reader.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESModel.hxx>
-#include <Interface_Check.hxx>
-#include <Interface_CheckIterator.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <STEPConstruct_UnitContext.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepData_StepModel.hxx>
-#include <StepData_UndefinedEntity.hxx>
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <TopExp_Explorer.hxx>
-#include <XSControl_WorkSession.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
@@ -80,26 +77,6 @@ double step_unit(const Handle(StepData_StepModel)& model)
     }
   }
   return 0.0;
-}
-
-/// OCCT goes on when an entity could not be read or has a reference to nothing, and then follows null handles: a
-/// file with such a fail in its geometry or topology is refused. Fails elsewhere (annotations) do no harm.
-void refuse_fails(const STEPControl_Reader& reader)
-{
-  const Handle(StepData_StepModel) model = reader.StepModel();
-  Interface_CheckIterator checks = reader.WS()->ModelCheckList(Standard_True);
-  for (checks.Start(); checks.More(); checks.Next()) {
-    if (!checks.Value()->HasFailed() || checks.Number() < 1) {
-      continue;
-    }
-    const Handle(Standard_Transient) entity = model->Value(checks.Number());
-    const std::string type = entity->DynamicType()->Name();
-    const bool unknown = entity->IsKind(STANDARD_TYPE(StepData_UndefinedEntity));
-    if (unknown || type.rfind("StepGeom_", 0) == 0 || type.rfind("StepShape_", 0) == 0) {
-      throw std::runtime_error("its entity #" + std::to_string(model->IdentLabel(entity)) +
-                               " cannot be read: the file is damaged; copy or export it again");
-    }
-  }
 }
 
 /// OCCT converts lengths to its own unit, by default the millimetre. With its unit set to the file's, the factor
@@ -163,6 +140,7 @@ TopoDS_Shape read_iges(const std::string& path)
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {
     throw std::runtime_error("OpenCASCADE cannot read it as IGES: it is damaged or cut off; export it again");
   }
+  refuse_cycles(reader);
   const Handle(IGESData_IGESModel) model = reader.IGESModel();
   IGESData_GlobalSection header = model->GlobalSection();
   if (header.UnitValue() > 0.0) {
@@ -176,6 +154,7 @@ TopoDS_Shape read_iges(const std::string& path)
 
 TopoDS_Shape read_brep(const std::string& path)
 {
+  refuse_unknown_types();
   std::ifstream stream(path);
   // In a cut file OCCT looks for the next word for ever: let the stream throw.
   stream.exceptions(std::ios::failbit | std::ios::badbit);
