@@ -29,6 +29,8 @@ pub struct Replacement {
     pub faces: Vec<([VertexId; 3], u32)>,
     /// Vertices that go.
     pub dead: Vec<VertexId>,
+    /// Declared faces may be boundary triangles that were there before: the vertex in their middle only moves.
+    pub keeps_surface: bool,
     links: Vec<[Link; 4]>,
     ids: Vec<TetId>,
 }
@@ -40,6 +42,7 @@ impl Replacement {
         self.new.clear();
         self.faces.clear();
         self.dead.clear();
+        self.keeps_surface = false;
     }
 }
 
@@ -115,14 +118,18 @@ impl<A: Access> Worker<'_, '_, A> {
                 }
             }
         }
-        for &(face, tag) in &state.replacement.faces {
+        let keeps = state.replacement.keeps_surface;
+        let mut doubled = false;
+        state.replacement.faces.retain(|&(face, tag)| {
             let (slot, new) = state.face_map.entry(face.map(|v| v.0));
-            if !new {
-                return Err(Refusal::Topology);
+            if new {
+                *slot = FaceSlot { seen: Seen::Declared, tag, ..FaceSlot::default() };
+                return true;
             }
-            *slot = FaceSlot { seen: Seen::Declared, tag, ..FaceSlot::default() };
-        }
-        Ok(())
+            doubled |= !(keeps && slot.seen == Seen::Boundary && slot.tag == tag && !TetId(slot.tet).is_some());
+            false
+        });
+        if doubled { Err(Refusal::Topology) } else { Ok(()) }
     }
 
     /// Finds what lies behind each face of each new tetrahedron.

@@ -5,10 +5,13 @@ use super::outcome::Refusal;
 use super::star::{Bounds, Seed};
 use super::surface::Placed;
 use super::worker::Worker;
-use crate::mesh::vector::lerp;
+use crate::mesh::vector::{distance, lerp, norm};
 
 /// Halvings of the way to the model within one attempt.
 const HALVINGS: u32 = 5;
+
+/// A vertex this near to its entity, in parts of its distance from the origin, is on it: the rounding of a projection.
+const ARRIVED: f64 = 1e-15;
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Moves a waiting vertex to the closest point of its entity, its cavity growing where it must; if that fails, as far
@@ -20,8 +23,12 @@ impl<A: Access> Worker<'_, '_, A> {
         let ball = std::mem::take(&mut self.state.ball);
         let (start, hint) = (self.store.position(v), self.store.hint(v));
         let goal = self.place(self.store.entity(v), start, &[v]);
+        if distance(start, goal.point) <= ARRIVED * norm(start) {
+            // Smoothing was here before.
+            self.state.ball = ball;
+            return Ok(());
+        }
         let result = self.carry(v, &ball, goal).or_else(|refusal| {
-            if std::env::var_os("DBG").is_some() { eprintln!("carry {v:?} {:?} {refusal:?} dist {:.2e} at {:?} ball {} cavity {} worst {:?} cos {:?}", self.store.entity(v), crate::mesh::vector::distance(start, goal.point), start, ball.len(), self.state.replacement.old.len(), ball.iter().map(|&t| self.store.quality(t)).fold(1.0, f64::min), {let s = std::mem::take(&mut self.state.star.surface); let c: Vec<f64> = s.iter().map(|&(f,t)| self.cosine(f,t-1)).collect(); self.state.star.surface = s; c}); }
             self.set_point(v, start, hint);
             if refusal == Refusal::Conflict { Err(refusal) } else { self.approach(v, &ball, goal) }
         });
@@ -34,6 +41,7 @@ impl<A: Access> Worker<'_, '_, A> {
         self.set_point(v, goal.point, self.store.hint(v));
         self.build_star(Seed::Vertex(v), v, ball, Bounds::default())?;
         self.check_normals(2.0)?;
+        self.state.replacement.keeps_surface = true;
         self.commit()?;
         self.store.set_place(v, goal.entity, goal.parameters);
         Ok(())
