@@ -97,10 +97,13 @@ impl<A: Access> Worker<'_, '_, A> {
                 return Err(Refusal::Shape);
             }
         }
-        if self.star_lengths(v).0 < limits.shortest_new {
-            return Err(Refusal::Length);
-        }
-        self.check_normals(0.3)
+        let (shortest, _) = self.star_lengths(v);
+        // A much too long edge is worth a short one: collapse finds a better place for that.
+        let shortest_new = match seed {
+            Seed::Edge(a, b) => limits.shortest_new * (limits.long / self.length(a, b)).powi(2).min(1.0),
+            _ => limits.shortest_new,
+        };
+        if shortest < shortest_new { Err(Refusal::Length) } else { self.check_normals(0.3) }
     }
 
     /// Moves a claimed vertex, with the metric that belongs to the point.

@@ -138,7 +138,8 @@ impl<T: Copy + Default> FaceMap<T> {
     #[inline]
     fn find(&self, key: [u32; 3]) -> (usize, bool) {
         let mask = self.slots.len() - 1;
-        let mixed = (u64::from(key[0]) << 32 | u64::from(key[1])) ^ (u64::from(key[2]).wrapping_mul(0xD6E8_FEB8_6659_FD93));
+        let mixed =
+            (u64::from(key[0]) << 32 | u64::from(key[1])) ^ (u64::from(key[2]).wrapping_mul(0xD6E8_FEB8_6659_FD93));
         let mut at = spread(mixed) & mask;
         loop {
             let slot = &self.slots[at];

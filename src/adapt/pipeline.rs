@@ -106,7 +106,17 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         waiting: Vec<VertexId>,
     ) -> Self {
         let states = (0..pool.threads()).map(|_| State::new(context)).collect();
-        Self { context, states, pool, observer, criterion, work: [Work::default(); 5], waiting, looked: [0; 5], pass: 0 }
+        Self {
+            context,
+            states,
+            pool,
+            observer,
+            criterion,
+            work: [Work::default(); 5],
+            waiting,
+            looked: [0; 5],
+            pass: 0,
+        }
     }
 
     /// Adapts the mesh: first to the sizes, then to the shapes, then what is left off the model.

@@ -56,5 +56,4 @@ impl<A: Access> Worker<'_, '_, A> {
         let logs = [&logs[0], &logs[1], &logs[2], &logs[3]];
         if may_exceed(points, logs, floor) { mean_ratio(points, logs) } else { 0.0 }
     }
-
 }

@@ -142,8 +142,8 @@ fn place(
     };
     let model = Model::read(path)?;
     let options = classify::Options { tolerance: arguments.tolerance, ..classify::Options::default() };
-    let (place, report) = classify::classify(mesh, &model, &options)
-        .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
+    let (place, report) =
+        classify::classify(mesh, &model, &options).map_err(|error| format!("{name} on {}: {error}", path.display()))?;
     notices.extend(report.notices);
     Ok((model, place))
 }

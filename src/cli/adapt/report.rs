@@ -56,13 +56,7 @@ pub struct Report {
 
 impl Report {
     /// Associates the adapted mesh with the model and measures it.
-    pub fn new(
-        arguments: &Arguments,
-        input: &TetMesh,
-        _model: &Model,
-        adapted: Adapted,
-        threads: usize,
-    ) -> Self {
+    pub fn new(arguments: &Arguments, input: &TetMesh, _model: &Model, adapted: Adapted, threads: usize) -> Self {
         let extracted = adapted.extracted;
         let mut mesh = extracted.mesh;
         associate(&mut mesh, &extracted.classification);
@@ -95,14 +89,7 @@ impl Report {
         table.line(&format!("{:<14}{:>12}{:>12}{:>9}{:>10}", "operation", "attempts", "done", "sweeps", "seconds"));
         for kind in Kind::ALL {
             let o = &self.operations[kind.name()];
-            let line = format!(
-                "{:<14}{:>12}{:>12}{:>9}{:>10.2}",
-                kind.name(),
-                o.attempts,
-                o.done,
-                o.sweeps,
-                o.seconds
-            );
+            let line = format!("{:<14}{:>12}{:>12}{:>9}{:>10.2}", kind.name(), o.attempts, o.done, o.sweeps, o.seconds);
             table.line(&line);
         }
         let Seconds { read_and_classify, adapt, total } = self.seconds;
