@@ -11,6 +11,7 @@ mod ids;
 mod insert;
 mod local;
 mod mend;
+mod merge;
 mod outcome;
 mod pipeline;
 mod project;

@@ -73,6 +73,8 @@ pub struct State<'m> {
     pub ball: Vec<TetId>,
     /// The vertices about a vertex, while they are tried in turn.
     pub neighbours: Vec<VertexId>,
+    /// The tetrahedra at either of two vertices.
+    pub union: Vec<TetId>,
     /// The ring about an edge.
     pub shell: super::shell::Shell,
     /// Boundary vertices that are not yet on the model.
@@ -93,6 +95,7 @@ impl<'m> State<'m> {
             set: LocalSet::default(),
             ball: Vec::with_capacity(128),
             neighbours: Vec::with_capacity(64),
+            union: Vec::with_capacity(128),
             shell: super::shell::Shell::default(),
             waiting: Vec::new(),
             ring: super::edge_removal::RingTables::default(),
