@@ -1,6 +1,5 @@
 //! `geo-adapt classify`.
-use super::Outcome;
-use crate::geometry::Model;
+use super::{Outcome, load};
 use crate::geometry::classify::{Associated, Options, Report, associate, classify};
 use crate::geometry::discrete::complete_boundary;
 use crate::mesh::io;
@@ -29,7 +28,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let mut read = io::read_mesh(&arguments.mesh)?;
     let mesh = &mut read.content;
-    let model = Model::read(&arguments.cad)?;
+    let model = load::model(&arguments.cad)?;
     let added = complete_boundary(mesh);
     if added > 0 {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));

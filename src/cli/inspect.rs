@@ -1,5 +1,5 @@
 //! `geo-adapt inspect`.
-use super::Outcome;
+use super::{Outcome, load};
 use super::table::{Table, figure};
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Entity, Model, classify};
@@ -70,7 +70,7 @@ struct Inspection {
 /// Runs the subcommand: code 0 for a valid mesh (that fits the model, if one is given), else 1.
 pub fn run(arguments: &Arguments) -> Outcome {
     let mesh = read(&arguments.mesh)?;
-    let model = arguments.cad.as_deref().map(Model::read).transpose()?;
+    let model = arguments.cad.as_deref().map(load::model).transpose()?;
     let statistics = match metrics(arguments, &mesh)? {
         Some(metrics) => Statistics::in_metric(&mesh, &metrics),
         None => Statistics::in_space(&mesh),

@@ -3,7 +3,7 @@ mod files;
 mod progress;
 mod report;
 
-use super::Outcome;
+use super::{Outcome, load};
 use crate::adapt::{self, Criterion, Options};
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
@@ -140,7 +140,7 @@ fn place(
             Discrete::from_mesh(mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
         return Ok((Model::Discrete(model), place));
     };
-    let model = Model::read(path)?;
+    let model = load::model(path)?;
     let options = classify::Options { tolerance: arguments.tolerance, ..classify::Options::default() };
     let (place, report) =
         classify::classify(mesh, &model, &options).map_err(|error| format!("{name} on {}: {error}", path.display()))?;
