@@ -1,9 +1,11 @@
 //! From the plain mesh to the store, and back.
+use super::context::Context;
 use super::ids::{FACE, TetId, VertexId};
+use super::required::Required;
 use super::shape::is_positive;
 use super::store::Store;
 use crate::geometry::classify::Classification;
-use crate::geometry::{Entity, Topology};
+use crate::geometry::{Entity, Geometry, Topology};
 use crate::mesh::adjacency::sorted_faces;
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::quality::mean_ratio;
@@ -45,7 +47,7 @@ pub enum Error {
     },
 }
 
-/// A tag is a model face counted from 1; this bit marks a required triangle, which stays as it is.
+/// Vertices and tetrahedra at least that there is room for beside those of the input.
 const ROOM: usize = 1 << 16;
 
 /// Fills a store: every vertex gets its place on the model and its metric, every face its neighbour or tag.
@@ -194,7 +196,7 @@ pub fn measure(store: &Store, source: &Source) {
 
 /// The store as a plain mesh with its classification, and the metric at its vertices.
 pub struct Extracted {
-    /// The mesh, without association.
+    /// The mesh, without association; of its edges those that are required.
     pub mesh: TetMesh,
     /// Where its boundary lies.
     pub classification: Classification,
@@ -202,9 +204,10 @@ pub struct Extracted {
     pub metrics: Vec<Sym3>,
 }
 
-/// Takes the mesh out of the store, in the order of its ids. `face_refs` gives each model face its reference,
-/// `vertex_refs` each vertex that was there at the start.
-pub fn extract(store: &Store, topology: &Topology, face_refs: &[i32], vertex_refs: &[i32]) -> Extracted {
+/// Takes the mesh out of the store, in the order of its ids, with what `input` required. `face_refs` gives each model
+/// face its reference.
+pub fn extract(context: &Context, input: &TetMesh, face_refs: &[i32]) -> Extracted {
+    let store = &context.store;
     let mut number = vec![u32::MAX; store.vertex_bound()];
     let mut mesh = TetMesh::default();
     let mut classification = Classification::default();
@@ -212,8 +215,9 @@ pub fn extract(store: &Store, topology: &Topology, face_refs: &[i32], vertex_ref
     for v in store.live_vertices() {
         number[v.index()] = mesh.vertices.len() as u32;
         mesh.vertices.push(store.position(v));
-        // Only corners surely are what they were: other ids may have been used again.
-        let kept = matches!(store.entity(v), Entity::Vertex(_)).then(|| vertex_refs.get(v.index())).flatten();
+        // Only corners and frozen vertices surely are what they were: other ids may have been used again.
+        let is_old = matches!(store.entity(v), Entity::Vertex(_)) || context.is_frozen(v);
+        let kept = is_old.then(|| input.vertex_refs.get(v.index())).flatten();
         mesh.vertex_refs.push(kept.copied().unwrap_or(0));
         classification.entities.push(store.entity(v));
         classification.parameters.push(store.parameters(v));
@@ -230,7 +234,8 @@ pub fn extract(store: &Store, topology: &Topology, face_refs: &[i32], vertex_ref
             classification.faces.push(tags[i] - 1);
         }
     }
-    classification.ridges = ridges(store, topology, renumber);
+    classification.ridges = ridges(store, context.model.topology(), renumber);
+    Required::list(input, &mut mesh, renumber);
     Extracted { mesh, classification, metrics }
 }
 

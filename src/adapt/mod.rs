@@ -14,6 +14,7 @@ mod outcome;
 mod pipeline;
 mod project;
 mod reconnect;
+mod required;
 mod run;
 mod schedule;
 mod shape;

@@ -3,6 +3,7 @@ use super::build::{self, Extracted};
 use super::context::Context;
 use super::criteria::Criterion;
 use super::pipeline::{Observer, Pipeline, Work};
+use super::required::Required;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
@@ -48,15 +49,12 @@ pub fn adapt(
 ) -> Result<Adapted, build::Error> {
     let (store, waiting) = build::fill(mesh, place, source)?;
     let mut context = Context::new(store, source, model);
-    context.frozen = vec![false; mesh.vertices.len()];
-    for &v in &mesh.required_vertices {
-        context.frozen[v as usize] = true;
-    }
+    context.required = Required::of(mesh);
     let mut pipeline = Pipeline::new(&mut context, pool, observer, options.criterion, waiting);
     pipeline.run();
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());
     let refs = face_refs(mesh, place, model);
-    let extracted = build::extract(&context.store, model.topology(), &refs, &mesh.vertex_refs);
+    let extracted = build::extract(&context, mesh, &refs);
     Ok(Adapted { extracted, work, off_model })
 }
 

@@ -1,7 +1,7 @@
 //! Writing a classification into a mesh.
 use super::Classification;
 use crate::geometry::Entity;
-use crate::mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};
+use crate::mesh::{Association, OnEdge, OnFace, OnVertex, TetMesh};
 use std::collections::{HashMap, HashSet};
 
 /// What changed besides the association.
@@ -17,7 +17,8 @@ pub struct Associated {
 /// Writes a classification into its mesh, numbers from 1: the association of each vertex with its entity of lowest
 /// dimension; `edges` are the mesh edges on model edges, with the edge's number as the reference, all of them
 /// ridges; `corners` are the vertices on model vertices. Triangles keep their references where each stands
-/// for one face, else they get the face's number. Required edges stay required.
+/// for one face, else they get the face's number. Required edges stay, also where they lie on no edge of the
+/// model: these come last, with their old references.
 pub fn associate(mesh: &mut TetMesh, classification: &Classification) -> Associated {
     write_vertices(mesh, classification);
     let edges_dropped = write_edges(mesh, classification);
@@ -49,24 +50,14 @@ fn write_vertices(mesh: &mut TetMesh, classification: &Classification) {
     }
 }
 
-/// Replaces the listed edges by the ridges; returns how many of them were none.
+/// Replaces the listed edges by the ridges; returns how many of them were none. Required edges stay, ridges or not.
 fn write_edges(mesh: &mut TetMesh, classification: &Classification) -> usize {
     let sorted = |nodes: [u32; 2]| [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])];
-    let required: HashSet<[u32; 2]> =
-        mesh.required_edges.iter().map(|&e| sorted(mesh.edges.nodes[e as usize])).collect();
     let listed: HashSet<[u32; 2]> = mesh.edges.nodes.iter().map(|&nodes| sorted(nodes)).collect();
-    let mut kept = 0;
-    mesh.edges = Elements::default();
-    mesh.required_edges.clear();
-    for &(nodes, edge) in &classification.ridges {
-        if required.contains(&sorted(nodes)) {
-            mesh.required_edges.push(mesh.edges.len() as u32);
-        }
-        kept += usize::from(listed.contains(&sorted(nodes)));
-        mesh.edges.push(nodes, edge as i32 + 1);
-    }
-    mesh.ridges = (0..mesh.edges.len() as u32).collect();
-    listed.len() - kept
+    let ridges = classification.ridges.iter();
+    let dropped = listed.len() - ridges.filter(|(nodes, _)| listed.contains(&sorted(*nodes))).count();
+    let ridges = classification.ridges.iter().map(|&(nodes, edge)| (nodes, edge as i32 + 1));
+    dropped - mesh.replace_edges(ridges)
 }
 
 fn is_one_to_one(refs: &[i32], faces: &[u32]) -> bool {
