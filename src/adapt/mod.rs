@@ -16,6 +16,7 @@ mod outcome;
 mod pipeline;
 mod project;
 mod reconnect;
+mod required;
 mod run;
 mod schedule;
 mod shape;
