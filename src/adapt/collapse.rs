@@ -119,7 +119,11 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let surface = &self.state.star.surface;
         let beside = |x: VertexId| surface.iter().any(|(face, _)| [v, w, x].iter().all(|y| face.contains(y)));
-        let around = surface.iter().filter(|(face, _)| face.contains(&v)).flat_map(|&(face, _)| face).filter(|&x| x != v && x != w);
+        let around = surface
+            .iter()
+            .filter(|(face, _)| face.contains(&v))
+            .flat_map(|&(face, _)| face)
+            .filter(|&x| x != v && x != w);
         let mut pinched = false;
         for x in around {
             pinched |= near_w.contains(x.0) && !beside(x);

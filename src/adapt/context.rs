@@ -30,6 +30,8 @@ pub struct Limits {
     pub collapse_floor: f64,
     /// Reconnection and smoothing look at tetrahedra below this mean ratio.
     pub improve_below: f64,
+    /// Reconnection looks at tetrahedra that changed at or after this time.
+    pub since: u32,
     /// Cosines above this are good enough for any surface triangle.
     pub cosine: f64,
     /// Most tetrahedra in an enlarged cavity.
@@ -47,6 +49,7 @@ impl Default for Limits {
             insert_loss: 0.5,
             collapse_floor: 0.2,
             improve_below: 1.0,
+            since: 0,
             cosine: 0.94,
             cavity: 96,
         }

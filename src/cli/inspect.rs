@@ -1,6 +1,6 @@
 //! `geo-adapt inspect`.
-use super::{Outcome, load};
 use super::table::{Table, figure};
+use super::{Outcome, load};
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Entity, Model, classify};
 use crate::mesh::TetMesh;
