@@ -20,7 +20,7 @@ pub struct Arguments {
     output: PathBuf,
     /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model
     /// states for an entity]
-    #[arg(long, value_name = "T", value_parser = super::positive)]
+    #[arg(long, value_name = "T", value_parser = super::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
 }
 
