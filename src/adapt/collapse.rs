@@ -18,6 +18,10 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Stale);
         }
         let onto_a = self.try_collapse(b, a, 0.0);
+        if onto_a == Err(Refusal::Conflict) {
+            // To be tried again, whatever becomes of the other end.
+            return Err(Refusal::Conflict);
+        }
         match (onto_a, self.try_collapse(a, b, onto_a.unwrap_or(0.0))) {
             (_, Ok(_)) => self.finish_collapse(a, b),
             (Ok(_), Err(_)) => self.try_collapse(b, a, 0.0).and_then(|_| self.finish_collapse(b, a)),
@@ -82,6 +86,10 @@ impl<A: Access> Worker<'_, '_, A> {
                 }
                 let [x, y] = self.store.ridge(v);
                 let other = if x == w { y } else { x };
+                if !other.is_some() {
+                    // The input's ridge ends here.
+                    return Err(Refusal::Geometry);
+                }
                 self.claim(other)?;
                 // A closed edge keeps at least three mesh edges; two corners may be joined once only.
                 match self.store.ridge_curve(other, w) {

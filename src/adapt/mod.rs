@@ -2,14 +2,18 @@
 mod access;
 mod build;
 mod cavity;
+#[cfg(test)]
+mod check;
 mod collapse;
 mod context;
 mod criteria;
+mod discipline;
 mod edge_removal;
 mod face_removal;
 mod ids;
 mod insert;
 mod local;
+mod lock;
 mod mend;
 mod merge;
 mod outcome;
@@ -25,7 +29,12 @@ mod smooth;
 mod star;
 mod store;
 mod surface;
+#[cfg(test)]
+mod tests;
 mod worker;
+
+// The atomics of the lock words; tests/lock_protocol.rs has loom's in their place.
+use std::sync::atomic;
 
 pub use build::{Error, Extracted};
 pub use criteria::Criterion;
