@@ -4,6 +4,7 @@ mod build;
 mod cavity;
 mod collapse;
 mod context;
+mod create;
 mod criteria;
 mod edge_removal;
 mod face_removal;
@@ -25,6 +26,7 @@ mod surface;
 mod worker;
 
 pub use build::{Error, Extracted};
+pub use create::PointCreation;
 pub use criteria::Criterion;
 pub use outcome::{Counts, Refusal};
 pub use pipeline::{Kind, Observer, Work};

@@ -1,10 +1,11 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
 use super::context::{Context, Limits};
+use super::create::{self, PointCreation};
 use super::criteria::Criterion;
 use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
-use super::schedule::{self, Collapse, Operation, Project, Reconnect, Retire, Smooth, Split};
+use super::schedule::{self, Collapse, Create, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::worker::State;
 use crate::mesh::vector::sub;
 use crate::metric::quality::edge_length;
@@ -13,6 +14,9 @@ use std::time::{Duration, Instant};
 
 /// Passes at most that bring the edges to their length.
 const SIZE_PASSES: usize = 20;
+
+/// Where fewer than one in so many active tetrahedra could be refined at centroids, edges are split.
+const CREATION_SHARE: u64 = 20;
 
 /// Passes at most that improve the shapes.
 const SHAPE_PASSES: usize = 6;
@@ -87,6 +91,8 @@ pub struct Pipeline<'c, 'm> {
     pub observer: &'c dyn Observer,
     /// Criterion of the flips that follow refinement.
     pub criterion: Criterion,
+    /// Where refinement puts new vertices.
+    pub points: PointCreation,
     /// By kind of operation.
     pub work: [Work; 5],
     /// Boundary vertices that are not on the model yet.
@@ -112,6 +118,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             pool,
             observer,
             criterion,
+            points: PointCreation::default(),
             work: [Work::default(); 5],
             waiting,
             looked: [0; 5],
@@ -186,6 +193,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Splits long edges in so many sweeps, or until few are split.
     fn refine(&mut self, sweeps: usize) {
+        if self.points == PointCreation::Centroid && self.create() {
+            return;
+        }
         for _ in 0..sweeps {
             let items = self.long_edges();
             if self.observer.stop() || self.sweep(Kind::Split, &Split, &items).done * 50 <= items.len() as u64 {
@@ -194,6 +204,15 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.project();
             self.reconnect(self.criterion, 1);
         }
+    }
+
+    /// Refines at centroids; whether that went well, so that edges need not be split yet.
+    fn create(&mut self) -> bool {
+        let items = create::active_tets(self.context);
+        let done = self.sweep(Kind::Split, &Create, &items).done;
+        self.project();
+        self.reconnect(self.criterion, 1);
+        done * CREATION_SHARE > items.len() as u64
     }
 
     /// Collapses short edges in so many sweeps, or until none is collapsed.

@@ -1,6 +1,7 @@
 //! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
 use super::build::{self, Extracted};
 use super::context::Context;
+use super::create::PointCreation;
 use super::criteria::Criterion;
 use super::pipeline::{Observer, Pipeline, Work};
 use crate::geometry::classify::Classification;
@@ -14,11 +15,13 @@ use crate::tasks::Pool;
 pub struct Options {
     /// Criterion of the flips that follow each sweep of insertion.
     pub criterion: Criterion,
+    /// Where refinement puts new vertices.
+    pub points: PointCreation,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { criterion: Criterion::MeanRatio }
+        Self { criterion: Criterion::MeanRatio, points: PointCreation::default() }
     }
 }
 
@@ -53,6 +56,7 @@ pub fn adapt(
         context.frozen[v as usize] = true;
     }
     let mut pipeline = Pipeline::new(&mut context, pool, observer, options.criterion, waiting);
+    pipeline.points = options.points;
     pipeline.run();
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());
     let refs = face_refs(mesh, place, model);
