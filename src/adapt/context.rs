@@ -23,7 +23,9 @@ pub struct Limits {
     pub longest_new: f64,
     /// An insertion may lower the worst mean ratio of its cavity to this, but no further unless it was worse already.
     pub insert_floor: f64,
-    /// As above, for a collapse.
+    /// Part of the worst mean ratio that must be left where it is below the floor already.
+    pub insert_loss: f64,
+    /// As the floor of insertion, for a collapse; nothing may be lost below it.
     pub collapse_floor: f64,
     /// Reconnection and smoothing look at tetrahedra below this mean ratio.
     pub improve_below: f64,
@@ -41,6 +43,7 @@ impl Default for Limits {
             shortest_new: 0.5,
             longest_new: LONG,
             insert_floor: 0.1,
+            insert_loss: 0.5,
             collapse_floor: 0.2,
             improve_below: 1.0,
             cosine: 0.94,

@@ -32,9 +32,14 @@ pub enum PointCreation {
     Centroid,
 }
 
-/// No candidate lies nearer than this, in the metric, to a vertex of its tetrahedron or of the neighbours of that.
-fn near() -> f64 {
-    std::env::var("NEAR").ok().and_then(|x| x.parse().ok()).unwrap_or(std::f64::consts::FRAC_1_SQRT_2)
+/// A point that may become a vertex.
+struct Candidate<'a> {
+    seed: Seed,
+    entity: Entity,
+    point: Vec3,
+    metric: Sym3,
+    /// The vertices it is the centroid of.
+    around: &'a [VertexId],
 }
 
 /// The tetrahedra with an edge that is too long: those at the surface first, then by their longest edge.
@@ -101,7 +106,10 @@ impl<A: Access> Worker<'_, '_, A> {
             let ridges = EDGE.map(|[i, j]| [v[i], v[j]]);
             result = self.split_encroached(&metric, &ridges, point, t);
         }
-        result.unwrap_or_else(|| self.insert_apart(Seed::Inside, &[t], Entity::Interior, point, &v))
+        result.unwrap_or_else(|| {
+            let candidate = Candidate { seed: Seed::Inside, entity: Entity::Interior, point, metric, around: &v };
+            self.insert_apart(&candidate, &[t])
+        })
     }
 
     /// Candidates of the surface triangle opposite local vertex i of a claimed tetrahedron; none when no edge of it is too long.
@@ -112,15 +120,16 @@ impl<A: Access> Worker<'_, '_, A> {
         let long = edges.map(|[a, b]| self.is_long(a, b));
         if long != [true; 3] {
             let long = edges.into_iter().zip(long).filter(|&(_, long)| long);
-            return long.fold(None, |result, ([a, b], _)| better(result, Some(self.split_edge(EdgeItem { a, b, tet: t }))));
+            return long
+                .fold(None, |result, ([a, b], _)| better(result, Some(self.split_edge(EdgeItem { a, b, tet: t }))));
         }
-        let point = centroid(face.map(|x| self.store.position(x)));
-        let split = self.split_encroached(&self.mean_metric(face), &edges, point, t);
+        let (point, metric) = (centroid(face.map(|x| self.store.position(x))), self.mean_metric(face));
+        let split = self.split_encroached(&metric, &edges, point, t);
         Some(split.unwrap_or_else(|| {
-            let behind = self.store.neighbour(t, i);
-            let seeds = [t, behind];
-            let seeds = if behind.is_some() { &seeds[..] } else { &seeds[..1] };
-            self.insert_apart(Seed::Face(face), seeds, Entity::Face(tag - 1), point, &face)
+            let (seed, entity) = (Seed::Face(face), Entity::Face(tag - 1));
+            let seeds = [t, self.store.neighbour(t, i)];
+            let seeds = if seeds[1].is_some() { &seeds[..] } else { &seeds[..1] };
+            self.insert_apart(&Candidate { seed, entity, point, metric, around: &face }, seeds)
         }))
     }
 
@@ -142,19 +151,13 @@ impl<A: Access> Worker<'_, '_, A> {
         result
     }
 
-    /// Inserts a candidate, the centroid of `around`, unless it is too near to a vertex.
-    fn insert_apart(
-        &mut self,
-        seed: Seed,
-        seeds: &[TetId],
-        entity: Entity,
-        point: Vec3,
-        around: &[VertexId],
-    ) -> Result<(), Refusal> {
+    /// Inserts a candidate into the tetrahedra that hold it, unless it is too near to a vertex.
+    fn insert_apart(&mut self, candidate: &Candidate, seeds: &[TetId]) -> Result<(), Refusal> {
+        let &Candidate { seed, entity, point, around, .. } = candidate;
         for &t in seeds {
             self.claim_tet(t)?;
         }
-        if self.is_near(seeds, point, around)? {
+        if self.is_near(candidate, seeds)? {
             return Err(Refusal::Length);
         }
         let placed = self.place(entity, point, around);
@@ -168,21 +171,16 @@ impl<A: Access> Worker<'_, '_, A> {
         result.map(|_| ())
     }
 
-    /// Whether the point is too near to a vertex of the claimed tetrahedra or of their neighbours.
-    fn is_near(&mut self, tets: &[TetId], point: Vec3, around: &[VertexId]) -> Result<bool, Refusal> {
-        let metric = match *around {
-            [a, b, c] => self.mean_metric([a, b, c]),
-            [a, b, c, d] => self.mean_metric([a, b, c, d]),
-            _ => return Err(Refusal::Stale),
-        };
-        let near = near();
+    /// Whether the candidate is nearer to a vertex of its tetrahedra or of their neighbours than an edge may be: collapse would
+    /// take it out again.
+    fn is_near(&mut self, candidate: &Candidate, tets: &[TetId]) -> Result<bool, Refusal> {
         for &t in tets {
-            if self.is_near_any(point, &metric, self.store.vertices(t), near) {
+            if self.is_near_any(candidate, self.store.vertices(t)) {
                 return Ok(true);
             }
             for n in self.store.neighbours(t).into_iter().filter(|n| n.is_some()) {
                 let vertices = self.claim_tet(n)?;
-                if self.is_near_any(point, &metric, vertices, near) {
+                if self.is_near_any(candidate, vertices) {
                     return Ok(true);
                 }
             }
@@ -190,9 +188,10 @@ impl<A: Access> Worker<'_, '_, A> {
         Ok(false)
     }
 
-    fn is_near_any(&self, point: Vec3, metric: &Sym3, vertices: [VertexId; 4], near: f64) -> bool {
-        let length = |v: VertexId| edge_length(sub(self.store.position(v), point), metric, &self.store.metric(v));
-        vertices.into_iter().any(|v| length(v) < near)
+    fn is_near_any(&self, candidate: &Candidate, vertices: [VertexId; 4]) -> bool {
+        let to = |v: VertexId| sub(self.store.position(v), candidate.point);
+        let length = |v: VertexId| edge_length(to(v), &candidate.metric, &self.store.metric(v));
+        vertices.into_iter().any(|v| length(v) < self.context.limits.short)
     }
 
     fn is_long(&self, a: VertexId, b: VertexId) -> bool {
@@ -214,3 +213,6 @@ fn better(one: Option<Result<(), Refusal>>, other: Option<Result<(), Refusal>>) 
         (_, other) => other,
     }
 }
+
+#[cfg(test)]
+mod tests;

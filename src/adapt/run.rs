@@ -3,7 +3,7 @@ use super::build::{self, Extracted};
 use super::context::Context;
 use super::create::PointCreation;
 use super::criteria::Criterion;
-use super::pipeline::{Observer, Pipeline, Work};
+use super::pipeline::{KINDS, Observer, Pipeline, Work};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
@@ -30,7 +30,7 @@ pub struct Adapted {
     /// The mesh with its classification and metric.
     pub extracted: Extracted,
     /// Time and counts by operation, in the order of [`super::Kind`].
-    pub work: [Work; 5],
+    pub work: [Work; KINDS],
     /// Boundary vertices that could not be put on the model.
     pub off_model: usize,
 }

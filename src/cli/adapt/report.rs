@@ -1,6 +1,6 @@
 //! What was done: the table on the terminal and the JSON.
 use super::{Arguments, files};
-use crate::adapt::{Adapted, Kind, Refusal, Work};
+use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
 use crate::cli::table::Table;
 use crate::geometry::Model;
 use crate::geometry::classify::associate;
@@ -103,7 +103,7 @@ impl Report {
     }
 }
 
-fn operations(work: &[Work; 5]) -> BTreeMap<&'static str, Operation> {
+fn operations(work: &[Work; KINDS]) -> BTreeMap<&'static str, Operation> {
     let named = |work: &Work| Operation {
         attempts: work.counts.attempts,
         done: work.counts.done,
