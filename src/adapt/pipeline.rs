@@ -236,11 +236,13 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Refines at centroids; whether that went well, so that edges need not be split yet.
     fn create(&mut self) -> bool {
+        if self.observer.stop() {
+            return false;
+        }
         let items = create::active_tets(self.context);
         let done = self.sweep(Kind::Split, &Create, &items).done;
         self.project();
         self.reconnect(self.criterion, 1);
-
         done as f64 >= LITTLE * self.context.store.vertex_bound() as f64
     }
 
