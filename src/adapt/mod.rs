@@ -6,6 +6,7 @@ mod cavity;
 mod check;
 mod collapse;
 mod context;
+mod create;
 mod criteria;
 mod discipline;
 mod edge_removal;
@@ -37,6 +38,7 @@ mod worker;
 use std::sync::atomic;
 
 pub use build::{Error, Extracted};
+pub use create::PointCreation;
 pub use criteria::Criterion;
 pub use outcome::{Counts, Refusal};
 pub use pipeline::{KINDS, Kind, Observer, Work};

@@ -1,10 +1,11 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
 use super::context::{Context, LONG, Limits};
+use super::create::{self, PointCreation};
 use super::criteria::Criterion;
 use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
-use super::schedule::{self, Collapse, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
+use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::worker::State;
 use crate::mesh::vector::sub;
 use crate::metric::quality::edge_length;
@@ -13,6 +14,9 @@ use std::time::{Duration, Instant};
 
 /// Passes at most that bring the edges to their length.
 const SIZE_PASSES: usize = 20;
+
+/// A size pass that changes less than this part of the vertices is the last.
+const LITTLE: f64 = 0.05;
 
 /// Passes at most that improve the shapes.
 const SHAPE_PASSES: usize = 6;
@@ -102,6 +106,8 @@ pub struct Pipeline<'c, 'm> {
     pub observer: &'c dyn Observer,
     /// Criterion of the flips that follow refinement.
     pub criterion: Criterion,
+    /// Where refinement puts new vertices.
+    pub points: PointCreation,
     /// By kind of operation.
     pub work: [Work; KINDS],
     /// Boundary vertices that are not on the model yet.
@@ -127,6 +133,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             pool,
             observer,
             criterion,
+            points: PointCreation::default(),
             work: [Work::default(); KINDS],
             waiting,
             looked: [0; KINDS],
@@ -164,7 +171,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.collapse(1);
         self.reconnect(self.criterion, 1);
         self.smooth(1);
-        ((self.changes() - before) as f64) < 0.05 * self.context.store.vertex_bound() as f64
+        ((self.changes() - before) as f64) < LITTLE * self.context.store.vertex_bound() as f64
     }
 
     /// One pass of all operations; whether it changed little.
@@ -214,6 +221,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Splits long edges in so many sweeps, or until few are split.
     fn refine(&mut self, sweeps: usize) {
+        if self.points == PointCreation::Centroid && self.create() {
+            return;
+        }
         for _ in 0..sweeps {
             let items = self.long_edges();
             if self.observer.stop() || self.sweep(Kind::Split, &Split, &items).done * 50 <= items.len() as u64 {
@@ -222,6 +232,18 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.project();
             self.reconnect(self.criterion, 1);
         }
+    }
+
+    /// Refines at centroids; whether that went well, so that edges need not be split yet.
+    fn create(&mut self) -> bool {
+        if self.observer.stop() {
+            return false;
+        }
+        let items = create::active_tets(self.context);
+        let done = self.sweep(Kind::Split, &Create, &items).done;
+        self.project();
+        self.reconnect(self.criterion, 1);
+        done as f64 >= LITTLE * self.context.store.vertex_bound() as f64
     }
 
     /// Collapses short edges in so many sweeps, or until none is collapsed.

@@ -1,6 +1,7 @@
 //! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
 use super::build::{self, Extracted, References};
 use super::context::Context;
+use super::create::PointCreation;
 use super::criteria::Criterion;
 use super::pipeline::{KINDS, Observer, Pipeline, Work};
 use super::required::Required;
@@ -16,11 +17,13 @@ use std::collections::HashMap;
 pub struct Options {
     /// Criterion of the flips that follow each sweep of insertion.
     pub criterion: Criterion,
+    /// Where refinement puts new vertices.
+    pub points: PointCreation,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { criterion: Criterion::MeanRatio }
+        Self { criterion: Criterion::MeanRatio, points: PointCreation::default() }
     }
 }
 
@@ -52,6 +55,7 @@ pub fn adapt(
     let mut context = Context::new(store, source, model);
     context.required = Required::of(mesh);
     let mut pipeline = Pipeline::new(&mut context, pool, observer, options.criterion, waiting);
+    pipeline.points = options.points;
     pipeline.run();
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());
     let refs = References { faces: face_refs(mesh, place, model), edges: edge_refs(mesh, place, model) };

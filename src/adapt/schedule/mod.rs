@@ -49,6 +49,17 @@ impl Operation for Split {
     }
 }
 
+/// Refines tetrahedra at their centroids.
+pub struct Create;
+
+impl Operation for Create {
+    type Item = TetId;
+
+    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: TetId) -> Result<(), Refusal> {
+        worker.refine_tet(item)
+    }
+}
+
 /// Collapses edges that are too short.
 pub struct Collapse;
 

@@ -4,7 +4,7 @@ mod progress;
 mod report;
 
 use super::{Outcome, load};
-use crate::adapt::{self, Criterion, Options};
+use crate::adapt::{self, Criterion, Options, PointCreation};
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
 use crate::geometry::{Discrete, Model};
@@ -50,6 +50,9 @@ pub struct Arguments {
     /// Criterion of the flips that follow each sweep of insertion
     #[arg(long, value_enum, default_value_t = Criterion::MeanRatio)]
     criterion: Criterion,
+    /// Where refinement puts new vertices
+    #[arg(long, value_enum, default_value_t = PointCreation::Edge)]
+    points: PointCreation,
     /// No progress and no table; errors only
     #[arg(short, long)]
     quiet: bool,
@@ -88,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let threads = arguments.threads.map_or_else(available, usize::from);
     let pool = Pool::new(threads)?;
     let prepared = start.elapsed();
-    let options = Options { criterion: arguments.criterion };
+    let options = Options { criterion: arguments.criterion, points: arguments.points };
     let adapted = adapt::adapt(&mesh, &place, &model, &source, &options, &pool, &progress)
         .map_err(|error| format!("{}: {error}", arguments.mesh.display()))?;
     progress.finish();
