@@ -31,6 +31,10 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         self.gather_shell(a, b, t)?;
         let shell = std::mem::take(&mut self.state.shell);
+        if !shell.tets.iter().all(|&other| self.goes_first(t, other)) {
+            self.state.shell = shell;
+            return Err(Refusal::Stale);
+        }
         let result = self.remove_shell(a, b, &shell, criterion);
         self.state.shell = shell;
         result

@@ -89,20 +89,21 @@ impl<A: Access> Worker<'_, '_, A> {
 
     fn try_insert(&mut self, seed: Seed, seeds: &[TetId], v: VertexId) -> Result<(), Refusal> {
         let limits = self.context.limits;
-        let allowed = |worker: &Self| limits.insert_floor.min(0.5 * worker.worst_old());
+        // A much too long edge is worth a bad tetrahedron or a short edge: what comes after it finds better places for those.
+        let excess = match seed {
+            Seed::Edge(a, b) => (limits.long / self.length(a, b)).min(1.0),
+            _ => 1.0,
+        };
+        let allowed = |worker: &Self| excess.powi(3) * limits.insert_floor.min(limits.insert_loss * worker.worst_old());
         let worst = self.build_star(seed, v, seeds, Bounds::default())?;
         if worst < allowed(self) {
             let larger = Bounds { wanted: limits.insert_floor, floor: 0.0 };
-            if self.build_star(seed, v, seeds, larger)? < allowed(self) {
+            if self.build_star(seed, v, seeds, larger).map_err(Refusal::or_shape)? < allowed(self) {
                 return Err(Refusal::Shape);
             }
         }
         let (shortest, _) = self.star_lengths(v);
-        // A much too long edge is worth a short one: collapse finds a better place for that.
-        let shortest_new = match seed {
-            Seed::Edge(a, b) => limits.shortest_new * (limits.long / self.length(a, b)).powi(2).min(1.0),
-            _ => limits.shortest_new,
-        };
+        let shortest_new = limits.shortest_new * excess * excess;
         if shortest < shortest_new { Err(Refusal::Length) } else { self.check_normals(0.3) }
     }
 

@@ -26,6 +26,11 @@ pub enum Refusal {
 }
 
 impl Refusal {
+    /// The refusal of a second, larger attempt: the first one was refused for its shape, unless a thread is in the way.
+    pub fn or_shape(self) -> Self {
+        if self == Refusal::Conflict { self } else { Refusal::Shape }
+    }
+
     /// All kinds, in the order of their counters.
     pub const ALL: [Refusal; 9] = [
         Refusal::Conflict,

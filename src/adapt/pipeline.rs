@@ -1,10 +1,10 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
-use super::context::{Context, Limits};
+use super::context::{Context, LONG, Limits};
 use super::criteria::Criterion;
 use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
-use super::schedule::{self, Collapse, Operation, Project, Reconnect, Retire, Smooth, Split};
+use super::schedule::{self, Collapse, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::worker::State;
 use crate::mesh::vector::sub;
 use crate::metric::quality::edge_length;
@@ -17,8 +17,14 @@ const SIZE_PASSES: usize = 20;
 /// Passes at most that improve the shapes.
 const SHAPE_PASSES: usize = 6;
 
-/// Tries at most to bring every boundary vertex to the model.
-const SETTLE_PASSES: usize = 4;
+/// Passes of the shapes after which vertices that wait for room on the model are taken out.
+const PATIENCE: usize = 1;
+
+/// Tetrahedra below this mean ratio go through the end-game.
+const MEND_BELOW: f64 = 0.3;
+
+/// Number of kinds of operations.
+pub const KINDS: usize = 6;
 
 /// A kind of operation, for progress and report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -34,11 +40,14 @@ pub enum Kind {
     Smooth,
     /// Projection on the model.
     Project,
+    /// The end-game on the worst tetrahedra.
+    Mend,
 }
 
 impl Kind {
     /// All kinds, in the order of their counters.
-    pub const ALL: [Kind; 5] = [Kind::Split, Kind::Collapse, Kind::Reconnect, Kind::Smooth, Kind::Project];
+    pub const ALL: [Kind; KINDS] =
+        [Kind::Split, Kind::Collapse, Kind::Reconnect, Kind::Smooth, Kind::Project, Kind::Mend];
 
     /// The name in progress and reports.
     pub fn name(self) -> &'static str {
@@ -48,6 +57,7 @@ impl Kind {
             Kind::Reconnect => "reconnection",
             Kind::Smooth => "smoothing",
             Kind::Project => "projection",
+            Kind::Mend => "mending",
         }
     }
 }
@@ -75,6 +85,11 @@ pub trait Observer: Sync {
     fn stop(&self) -> bool;
 }
 
+/// Limits while shapes are improved: nothing may become bad that is not.
+fn shape_limits() -> Limits {
+    Limits { improve_below: 0.9, insert_floor: 0.2, insert_loss: 1.0, ..Limits::default() }
+}
+
 /// The passes on one mesh.
 pub struct Pipeline<'c, 'm> {
     /// Mesh, metric, model, limits.
@@ -88,11 +103,11 @@ pub struct Pipeline<'c, 'm> {
     /// Criterion of the flips that follow refinement.
     pub criterion: Criterion,
     /// By kind of operation.
-    pub work: [Work; 5],
+    pub work: [Work; KINDS],
     /// Boundary vertices that are not on the model yet.
     pub waiting: Vec<VertexId>,
     /// When each kind of operation last looked at everything, on the store's clock.
-    looked: [u32; 5],
+    looked: [u32; KINDS],
     pass: usize,
 }
 
@@ -112,14 +127,14 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             pool,
             observer,
             criterion,
-            work: [Work::default(); 5],
+            work: [Work::default(); KINDS],
             waiting,
-            looked: [0; 5],
+            looked: [0; KINDS],
             pass: 0,
         }
     }
 
-    /// Adapts the mesh: first to the sizes, then to the shapes, then what is left off the model.
+    /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
         self.context.limits = Limits { improve_below: 0.4, ..Limits::default() };
         for _ in 0..SIZE_PASSES {
@@ -128,15 +143,17 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             }
             self.pass += 1;
         }
-        self.context.limits.improve_below = 0.9;
-        self.looked = [0; 5];
-        for _ in 0..SHAPE_PASSES {
+        self.looked = [0; KINDS];
+        for pass in 0..SHAPE_PASSES {
             self.pass += 1;
-            if self.shape_pass() || self.observer.stop() {
+            self.context.limits = shape_limits();
+            let quiet = self.shape_pass();
+            self.mend();
+            self.settle(pass);
+            if (quiet && self.waiting.is_empty()) || self.observer.stop() {
                 break;
             }
         }
-        self.settle();
     }
 
     /// One pass of insertion and collapse, with as much reconnection as they need; whether it changed little.
@@ -161,23 +178,34 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.refine(2);
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth(1);
-        ((self.changes() - before) as f64) < 1e-3 * self.context.store.vertex_bound() as f64
+        ((self.changes() - before) as f64) < 2e-3 * self.context.store.vertex_bound() as f64
     }
 
-    /// Brings the last waiting vertices to the model, or takes them out.
-    fn settle(&mut self) {
-        for _ in 0..SETTLE_PASSES {
-            self.project();
-            if self.waiting.is_empty() {
-                return;
+    /// The end-game on the tetrahedra below the limit, with edges a little longer than elsewhere allowed.
+    fn mend(&mut self) {
+        self.context.limits = Limits { improve_below: MEND_BELOW, longest_new: 1.3 * LONG, ..shape_limits() };
+        for _ in 0..3 {
+            let store = &self.context.store;
+            let mut items: Vec<TetId> = store.live_tets().filter(|&t| store.quality(t) < MEND_BELOW).collect();
+            items.sort_by(|&x, &y| store.quality(x).total_cmp(&store.quality(y)));
+            if self.observer.stop() || self.sweep(Kind::Mend, &Mend, &items).done == 0 {
+                break;
             }
-            self.context.limits.collapse_floor = 0.0;
-            self.context.limits.longest_new = f64::INFINITY;
-            let items = std::mem::take(&mut self.waiting);
-            self.sweep(Kind::Project, &Retire, &items);
-            self.gather_waiting();
-            self.reconnect(Criterion::MeanRatio, 1);
+            self.reconnect(Criterion::MeanRatio, 2);
         }
+    }
+
+    /// Brings waiting vertices to the model; after some passes they are taken out instead.
+    fn settle(&mut self, pass: usize) {
+        self.project();
+        if self.waiting.is_empty() || pass < PATIENCE {
+            return;
+        }
+        self.context.limits.collapse_floor = 0.0;
+        self.context.limits.longest_new = f64::INFINITY;
+        let items = std::mem::take(&mut self.waiting);
+        self.sweep(Kind::Project, &Retire, &items);
+        self.gather_waiting();
     }
 
     fn changes(&self) -> u64 {
@@ -210,6 +238,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn reconnect(&mut self, criterion: Criterion, sweeps: usize) {
         for _ in 0..sweeps {
             let since = self.begin(Kind::Reconnect);
+            self.context.limits.since = since;
             let store = &self.context.store;
             let limit = self.context.limits.improve_below;
             let items: Vec<TetId> =

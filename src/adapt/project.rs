@@ -65,25 +65,4 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         Err(Refusal::Inverted)
     }
-
-    /// Removes a waiting vertex that never arrived: onto the neighbour that leaves the best elements, whatever the lengths.
-    pub fn retire(&mut self, v: VertexId) -> Result<(), Refusal> {
-        self.claim_live(v)?;
-        self.gather_ball(v)?;
-        let ball = std::mem::take(&mut self.state.ball);
-        self.list_link(v, &ball);
-        self.state.ball = ball;
-        let link = self.state.star.link.clone();
-        let mut best: Option<(f64, VertexId)> = None;
-        for w in link {
-            match self.try_collapse(v, w, best.map_or(0.0, |(quality, _)| quality)) {
-                Ok(quality) => best = Some((quality, w)),
-                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
-                Err(_) => {}
-            }
-        }
-        let (_, w) = best.ok_or(Refusal::Inverted)?;
-        self.try_collapse(v, w, 0.0)?;
-        self.finish_collapse(v, w)
-    }
 }

@@ -71,6 +71,10 @@ pub struct State<'m> {
     pub set: LocalSet,
     /// The tetrahedra at a vertex.
     pub ball: Vec<TetId>,
+    /// The vertices about a vertex, while they are tried in turn.
+    pub neighbours: Vec<VertexId>,
+    /// The tetrahedra at either of two vertices.
+    pub union: Vec<TetId>,
     /// The ring about an edge.
     pub shell: super::shell::Shell,
     /// Boundary vertices that are not yet on the model.
@@ -90,6 +94,8 @@ impl<'m> State<'m> {
             face_map: FaceMap::default(),
             set: LocalSet::default(),
             ball: Vec::with_capacity(128),
+            neighbours: Vec::with_capacity(64),
+            union: Vec::with_capacity(128),
             shell: super::shell::Shell::default(),
             waiting: Vec::new(),
             ring: super::edge_removal::RingTables::default(),

@@ -82,6 +82,17 @@ impl Operation for Smooth {
     }
 }
 
+/// Mends the worst tetrahedra.
+pub struct Mend;
+
+impl Operation for Mend {
+    type Item = TetId;
+
+    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: TetId) -> Result<(), Refusal> {
+        worker.mend(item)
+    }
+}
+
 /// Removes waiting boundary vertices that never arrived.
 pub struct Retire;
 
@@ -89,7 +100,7 @@ impl Operation for Retire {
     type Item = VertexId;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
-        let result = worker.retire(item);
+        let result = worker.claim_live(item).and_then(|()| worker.remove(item, 0.0));
         if result.is_err_and(|refusal| !matches!(refusal, Refusal::Conflict | Refusal::Stale)) {
             worker.state.waiting.push(item);
         }

@@ -1,5 +1,5 @@
 //! Progress on the terminal: a bar a pass, with counts; and the interrupt.
-use crate::adapt::{Counts, Kind, Observer};
+use crate::adapt::{Counts, KINDS, Kind, Observer};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
@@ -34,13 +34,13 @@ struct State {
     bar: ProgressBar,
     pass: Option<usize>,
     kind: Kind,
-    done: [u64; 5],
+    done: [u64; KINDS],
 }
 
 impl Progress {
     /// Draws if `wanted` and standard error is a terminal.
     pub fn new(wanted: bool, stop: Stop) -> Self {
-        let state = State { bar: ProgressBar::hidden(), pass: None, kind: Kind::Split, done: [0; 5] };
+        let state = State { bar: ProgressBar::hidden(), pass: None, kind: Kind::Split, done: [0; KINDS] };
         let shown = wanted && std::io::IsTerminal::is_terminal(&std::io::stderr());
         Self { shown, stop, state: Mutex::new(state), waited: AtomicU32::new(0) }
     }
@@ -58,7 +58,7 @@ impl Progress {
 
 impl State {
     fn describe(&self) -> String {
-        let [split, collapse, reconnect, smooth, _] = self.done;
+        let [split, collapse, reconnect, smooth, ..] = self.done;
         let name = self.kind.name();
         format!("{name:<12} inserted {split}, collapsed {collapse}, flipped {reconnect}, smoothed {smooth}")
     }
@@ -75,7 +75,7 @@ impl Observer for Progress {
             let target = ProgressDrawTarget::stderr();
             state.bar = ProgressBar::with_draw_target(Some(0), target).with_style(style);
             state.bar.set_prefix(format!("{}", pass + 1));
-            state.done = [0; 5];
+            state.done = [0; KINDS];
         }
         state.pass = Some(pass);
         state.bar.set_length(items as u64);

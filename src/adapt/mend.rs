@@ -1,0 +1,89 @@
+//! The end-game on the worst tetrahedra: what reconnection and smoothing left is tried with larger cavities.
+use super::access::Access;
+use super::ids::{TetId, VertexId};
+use super::outcome::Refusal;
+use super::star::{Bounds, Seed};
+use super::worker::Worker;
+use crate::geometry::Entity;
+
+/// How much better, in part, the worst tetrahedron of a larger cavity must become.
+const GAIN: f64 = 1.2;
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Mends one bad tetrahedron: one of its vertices is joined anew to a larger cavity, or removed onto any neighbour, if the
+    /// worst tetrahedron becomes clearly better by it.
+    pub fn mend(&mut self, t: TetId) -> Result<(), Refusal> {
+        let vertices = self.claim_moving_tet(t)?;
+        let quality = self.store.quality(t);
+        if quality >= self.context.limits.improve_below {
+            return Err(Refusal::Stale);
+        }
+        let floor = (GAIN * quality).max(1e-9);
+        for v in vertices {
+            match self.rejoin(v, floor) {
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                Err(_) => {}
+                Ok(()) => return Ok(()),
+            }
+        }
+        for v in vertices {
+            match self.remove(v, floor) {
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                Err(_) => {}
+                Ok(()) => return Ok(()),
+            }
+        }
+        Err(Refusal::Shape)
+    }
+
+    /// Makes the ball of a vertex a star over a cavity that grows where tetrahedra would be bad.
+    fn rejoin(&mut self, v: VertexId, floor: f64) -> Result<(), Refusal> {
+        self.gather_ball(v)?;
+        let ball = std::mem::take(&mut self.state.ball);
+        let bounds = Bounds { wanted: self.context.limits.improve_below, floor };
+        let result = self.build_star(Seed::Vertex(v), v, &ball, bounds);
+        self.state.ball = ball;
+        let worst = result?;
+        if worst < GAIN * self.worst_old() {
+            return Err(Refusal::Shape);
+        }
+        self.check_normals(0.0)?;
+        self.state.replacement.keeps_surface = true;
+        self.commit()
+    }
+
+    /// Removes a vertex onto the neighbour that leaves the best worst tetrahedron, at least `floor`.
+    pub fn remove(&mut self, v: VertexId, floor: f64) -> Result<(), Refusal> {
+        if matches!(self.store.entity(v), Entity::Vertex(_)) {
+            return Err(Refusal::Geometry);
+        }
+        self.gather_ball(v)?;
+        let ball = std::mem::take(&mut self.state.ball);
+        self.list_link(v, &ball);
+        self.state.ball = ball;
+        let link = std::mem::take(&mut self.state.neighbours);
+        let link = self.copy_link(link);
+        let mut best: Result<(f64, VertexId), Refusal> = Err(Refusal::Shape);
+        for &w in &link {
+            let better = best.map_or(floor, |(quality, _)| quality);
+            match self.try_collapse(v, w, better) {
+                Ok(quality) => best = Ok((quality, w)),
+                Err(Refusal::Conflict) => {
+                    best = Err(Refusal::Conflict);
+                    break;
+                }
+                Err(_) => {}
+            }
+        }
+        self.state.neighbours = link;
+        let (_, w) = best?;
+        self.try_collapse(v, w, floor)?;
+        self.finish_collapse(v, w)
+    }
+
+    fn copy_link(&self, mut copy: Vec<VertexId>) -> Vec<VertexId> {
+        copy.clear();
+        copy.extend(&self.state.star.link);
+        copy
+    }
+}
