@@ -272,3 +272,14 @@ fn an_interrupted_run_writes_a_valid_mesh() {
     let unit = found.report["statistics"]["metric"]["unit_edges"].as_f64().unwrap();
     assert!(unit < 0.5, "it was ended before it was done: {unit}");
 }
+
+/// A mesh that does not resolve its metric: sizes differ by 30 within a cell.
+#[test]
+fn the_complexity_is_reached_from_a_coarse_mesh_too() {
+    let work = Workplace::new();
+    let mesh = one(2);
+    let metric = work.metric(&mesh, |p| isotropic((6.8 * p[0]).exp()));
+    let found = work.adapt(&work.mesh(&mesh), &["--metric", &metric, "--complexity", "600"]);
+    let reached = found.report["statistics"]["metric"]["complexity"].as_f64().unwrap();
+    assert!((reached / 600.0 - 1.0).abs() < 0.1, "{reached}");
+}

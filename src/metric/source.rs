@@ -1,5 +1,5 @@
 //! Where a new vertex takes its metric from.
-use super::field::complexity_of_logs;
+use super::field::complexity_between;
 use super::{Analytic, Background, Sym3};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::EDGES;
@@ -31,11 +31,11 @@ impl Source {
         }
     }
 
-    /// Complexity of the field on a mesh, for the background the mesh it came with. An analytic field is integrated by the
+    /// Complexity ∫ √det M of the field on a mesh, for the background the mesh it came with. An analytic field is integrated by the
     /// midpoint rule over bisected tetrahedra, since a coarse mesh's vertices do not resolve it.
     pub fn complexity(&self, mesh: &TetMesh) -> f64 {
         match self {
-            Self::Background(background) => complexity_of_logs(mesh, background.logs()),
+            Self::Background(background) => complexity_between(mesh, background.logs()),
             Self::Analytic { .. } => {
                 let depth = (SAMPLES / mesh.tets.len().max(1)).max(1).ilog2();
                 let corners = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
