@@ -18,10 +18,6 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Stale);
         }
         let onto_a = self.try_collapse(b, a, 0.0);
-        if onto_a == Err(Refusal::Conflict) {
-            // To be tried again, whatever becomes of the other end.
-            return Err(Refusal::Conflict);
-        }
         match (onto_a, self.try_collapse(a, b, onto_a.unwrap_or(0.0))) {
             (_, Ok(_)) => self.finish_collapse(a, b),
             (Ok(_), Err(_)) => self.try_collapse(b, a, 0.0).and_then(|_| self.finish_collapse(b, a)),

@@ -203,8 +203,7 @@ impl<A: Access> Worker<'_, '_, A> {
         for index in 0..replacement.old.len() {
             for v in self.store.vertices(replacement.old[index]) {
                 if linked.insert(v.0) {
-                    let stays = self.store.entity(v) != Entity::Interior || self.context.is_frozen(v);
-                    if stays && !seed.removes(v) {
+                    if !seed.removes(v) && self.store.entity(v) != Entity::Interior {
                         return Err(Refusal::Topology);
                     }
                     replacement.dead.push(v);

@@ -6,7 +6,7 @@ use crate::adapt::criteria::Criterion;
 use crate::adapt::ids::{EDGE, TetId, VertexId};
 use crate::adapt::insert::EdgeItem;
 use crate::adapt::outcome::Counts;
-use crate::adapt::schedule::{self, Collapse, Operation, Project, Reconnect, Retire, Smooth, Split};
+use crate::adapt::schedule::{self, Collapse, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use crate::adapt::worker::State;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary, samples};
@@ -102,10 +102,11 @@ pub enum Task {
     Smooth,
     Project,
     Retire,
+    Mend,
 }
 
 impl Task {
-    pub const ALL: [Task; 8] = [
+    pub const ALL: [Task; 9] = [
         Task::Split,
         Task::Collapse,
         Task::Reconnect(Criterion::Delaunay),
@@ -114,6 +115,7 @@ impl Task {
         Task::Smooth,
         Task::Project,
         Task::Retire,
+        Task::Mend,
     ];
 }
 
@@ -176,6 +178,7 @@ impl<'m> Bench<'m> {
                 self.on_vertices(&Project, true)
             }
             Task::Retire => self.on_vertices(&Retire, true),
+            Task::Mend => self.on_tets(&Mend),
         };
         if task == Task::Project && self.states.iter().any(|state| !state.waiting.is_empty()) {
             // Some stay where they were pushed to, until another operation brings them back.

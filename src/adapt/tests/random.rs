@@ -4,7 +4,7 @@ use crate::adapt::access::{Access, Speculative};
 use crate::adapt::criteria::Criterion;
 use crate::adapt::ids::{TetId, VertexId};
 use crate::adapt::outcome::Refusal;
-use crate::adapt::schedule::{Collapse, Operation, Reconnect, Retire, Smooth, Split};
+use crate::adapt::schedule::{Collapse, Mend, Operation, Reconnect, Retire, Smooth, Split};
 use crate::adapt::store::Store;
 use crate::adapt::worker::Worker;
 use crate::geometry::Entity;
@@ -35,6 +35,7 @@ fn attempt(bench: &mut Bench<'_>, kind: u8, pick: usize) -> Result<(), Refusal> 
         3 => Reconnect(Criterion::EdgeWeight).attempt(&mut worker, edge.tet),
         4 => Reconnect(Criterion::MeanRatio).attempt(&mut worker, edge.tet),
         5 => Smooth.attempt(&mut worker, vertex),
+        6 => Mend.attempt(&mut worker, edge.tet),
         _ => Retire.attempt(&mut worker, vertex),
     };
     worker.access.release(worker.store);
@@ -59,7 +60,7 @@ fn run(shape: Shape, long: f64, operations: Vec<(u8, usize)>) {
 }
 
 fn operations() -> impl Strategy<Value = Vec<(u8, usize)>> {
-    proptest::collection::vec((0..7u8, any::<usize>()), 1..60)
+    proptest::collection::vec((0..8u8, any::<usize>()), 1..60)
 }
 
 proptest! {

@@ -3,13 +3,17 @@ use super::bench::{Bench, Shape, Task, sample};
 use crate::adapt::outcome::Refusal;
 use std::time::{Duration, Instant};
 
-/// Random sweeps for so long, the check after each; returns attempts, successes and conflicts.
+/// Long enough on the slowest machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Random sweeps for so long, on a busy machine until something was seen, the check after each; returns attempts, successes and conflicts.
 fn stress(shape: Shape, n: u32, threads: usize, time: Duration) -> [u64; 3] {
     let sample = sample(shape, n, 0.5);
     let mut bench = Bench::new(&sample, threads, threads as u64);
     let mut sums = [0; 3];
     let begin = Instant::now();
-    while begin.elapsed() < time {
+    let enough = |sums: [u64; 3]| (sums[1] > 100 && sums[2] > 0) || begin.elapsed() > PATIENCE;
+    while begin.elapsed() < time || !enough(sums) {
         let task = Task::ALL[bench.random.below(Task::ALL.len())];
         // Finer and coarser in turn: there is always something to do.
         bench.context.limits.long = [0.7, 1.4, 2.8][bench.random.below(3)];

@@ -2,10 +2,10 @@
 use super::bench::{Bench, Shape, Task, sample};
 
 /// Rounds of all kinds of sweeps; returns how often each was carried out.
-fn rounds(shape: Shape, n: u32, size: f64, rounds: usize) -> [u64; 8] {
+fn rounds(shape: Shape, n: u32, size: f64, rounds: usize) -> [u64; 9] {
     let sample = sample(shape, n, size);
     let mut bench = Bench::new(&sample, 1, 7);
-    let mut done = [0; 8];
+    let mut done = [0; 9];
     for _ in 0..rounds {
         for (task, done) in Task::ALL.into_iter().zip(&mut done) {
             *done += bench.sweep(task).done;
@@ -14,7 +14,7 @@ fn rounds(shape: Shape, n: u32, size: f64, rounds: usize) -> [u64; 8] {
     done
 }
 
-fn each_was_done(done: [u64; 8]) {
+fn each_was_done(done: [u64; 9]) {
     for (task, done) in Task::ALL.into_iter().zip(done) {
         assert!(done > 0, "{task:?} was never carried out");
     }
