@@ -7,13 +7,15 @@
 #include <Geom_Surface.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
-#include <Interface_Check.hxx>
-#include <Interface_CheckIterator.hxx>
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepData_UndefinedEntity.hxx>
-#include <XSControl_WorkSession.hxx>
+#include <StepGeom_CartesianPoint.hxx>
+#include <StepGeom_Direction.hxx>
+#include <StepGeom_Point.hxx>
+#include <StepShape_VertexPoint.hxx>
+#include <TColStd_HArray1OfReal.hxx>
 
 #include <array>
 #include <stdexcept>
@@ -36,6 +38,23 @@ bool is_shape(const Handle(Standard_Transient)& entity)
     }
   }
   return entity->IsKind(STANDARD_TYPE(StepData_UndefinedEntity));
+}
+
+/// Entities that OCCT reads without a word, and then takes for whole: a direction or a point without numbers, a vertex
+/// whose point is none in space.
+bool is_hollow(const Handle(Standard_Transient)& entity)
+{
+  if (const auto direction = Handle(StepGeom_Direction)::DownCast(entity); !direction.IsNull()) {
+    return direction->DirectionRatios().IsNull();
+  }
+  if (const auto point = Handle(StepGeom_CartesianPoint)::DownCast(entity); !point.IsNull()) {
+    return point->NbCoordinates() < 2;
+  }
+  if (const auto vertex = Handle(StepShape_VertexPoint)::DownCast(entity); !vertex.IsNull()) {
+    const auto point = Handle(StepGeom_CartesianPoint)::DownCast(vertex->VertexGeometry());
+    return point.IsNull() || point->NbCoordinates() != 3;
+  }
+  return false;
 }
 
 /// Numbers of the geometric entities (types 100 to 199) that an entity refers to.
@@ -72,12 +91,12 @@ private:
 void refuse_fails(const STEPControl_Reader& reader)
 {
   const Handle(StepData_StepModel) model = reader.StepModel();
-  Interface_CheckIterator checks = reader.WS()->ModelCheckList(Standard_True);
-  for (checks.Start(); checks.More(); checks.Next()) {
-    if (!checks.Value()->HasFailed() || checks.Number() < 1) {
+  // The reader's own findings: OCCT's further checks crash on what these would have told.
+  for (int number = 1; number <= model->NbEntities(); ++number) {
+    const Handle(Standard_Transient) entity = model->Value(number);
+    if (!model->IsErrorEntity(number) && !is_hollow(entity)) {
       continue;
     }
-    const Handle(Standard_Transient) entity = model->Value(checks.Number());
     if (is_shape(entity)) {
       throw std::runtime_error("its entity #" + std::to_string(model->IdentLabel(entity)) +
                                " cannot be read: the file is damaged; copy or export it again");

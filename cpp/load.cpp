@@ -15,6 +15,7 @@
 #include <Message_Messenger.hxx>
 #include <STEPConstruct_UnitContext.hxx>
 #include <STEPControl_Reader.hxx>
+#include <StepData_GlobalFactors.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
@@ -28,6 +29,7 @@
 
 #include <fstream>
 #include <iostream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -88,6 +90,8 @@ TopoDS_Shape read_step(const std::string& path)
     throw std::runtime_error("OpenCASCADE cannot read it as STEP: it is damaged or cut off; export it again");
   }
   refuse_fails(reader);
+  // OCCT's unit is a global that the last file has left behind, and the factors of step_unit are relative to it.
+  StepData_GlobalFactors::Intance().SetCascadeUnit(1.0);
   const double unit = step_unit(reader.StepModel());
   if (unit > 0.0) {
     reader.SetSystemLengthUnit(unit);
@@ -155,9 +159,10 @@ TopoDS_Shape read_iges(const std::string& path)
 TopoDS_Shape read_brep(const std::string& path)
 {
   refuse_unknown_types();
-  std::ifstream stream(path);
-  // In a cut file OCCT looks for the next word for ever: let the stream throw.
-  stream.exceptions(std::ios::failbit | std::ios::badbit);
+  std::stringstream stream;
+  stream << std::ifstream(path, std::ios::binary).rdbuf() << '\n';
+  // In a cut file OCCT looks for the next word for ever: let the stream throw at its end.
+  stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
   TopoDS_Shape shape;
   try {
     BRepTools::Read(shape, stream, BRep_Builder());
@@ -176,7 +181,14 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
 {
   const Silence silence;
   const std::string path(name);
-  const TopoDS_Shape shape = format == 0 ? read_step(path) : format == 1 ? read_iges(path) : read_brep(path);
+  TopoDS_Shape shape;
+  try {
+    shape = format == 0 ? read_step(path) : format == 1 ? read_iges(path) : read_brep(path);
+  } catch (const Standard_Failure& failure) {
+    const std::string reason = failure.GetMessageString();
+    throw std::runtime_error("OpenCASCADE stopped reading it (" + reason +
+                             "): the file is damaged; copy or export it again");
+  }
   if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) {
     throw std::runtime_error("the model has no faces; export the solid's surfaces, not only curves or a mesh");
   }

@@ -80,7 +80,8 @@ fn on_edges_they_agree_with_occt() {
                 let found = on.closest_on_edge(i, point, guess);
                 let expected = on.reference_distance(false, i, point).unwrap();
                 let what = format!("{} edge {} {point:?}: {found:?}, OCCT has {expected}", path.display(), i + 1);
-                assert!((found.distance - expected).abs() <= allowed, "{what} ± {allowed:e}");
+                // A closer point than OCCT's (there are some on the M6) is proved by lying on the edge.
+                assert!(found.distance <= expected + allowed, "{what} ± {allowed:e}");
                 assert!(found.t >= edge.range[0] && found.t <= edge.range[1], "{what}");
                 assert_eq!(on.edge_frame(i, found.t).point, found.point, "{what}");
             }

@@ -24,12 +24,12 @@ POINT, LINE, TRIANGLE, TET = 15, 1, 2, 4
 NODES = {POINT: 1, LINE: 2, TRIANGLE: 3, TET: 4}
 
 
-def generate(model, target):
-    """Writes gmsh's mesh of the model as MSH 2.2 text."""
+def generate(model, target, points=12):
+    """Writes gmsh's mesh of the model as MSH 2.2 text, with so many points a circle."""
     # PyPI's gmsh is a Python script whose interpreter must be the one of its virtual environment.
     script = Path(sysconfig.get_path("scripts")) / "gmsh"
     start = [sys.executable, script] if script.is_file() else [shutil.which("gmsh") or sys.exit("gmsh is not there: pip install gmsh==4.15.2")]
-    options = ["-3", "-clcurv", "12", "-nt", "1", "-format", "msh22", "-save_all", "-v", "1", "-o", target]
+    options = ["-3", "-clcurv", str(points), "-nt", "1", "-format", "msh22", "-save_all", "-v", "1", "-o", target]
     subprocess.run([*start, model, *options], check=True)
 
 

@@ -4,10 +4,11 @@
 //! tetrahedron at that vertex hold still, because whoever replaces a tetrahedron must hold all four of its vertices.
 //! With [`Exclusive`] a claim is nothing and the compiler removes it; with [`Speculative`] it takes the vertex's lock word,
 //! and a word held by another thread ends the operation with a conflict: everything is released, the item is tried again later.
+use super::discipline;
 use super::ids::VertexId;
+use super::lock::{self, Claim};
 use super::outcome::Refusal;
 use super::store::Store;
-use std::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
 /// How vertices are claimed.
 pub trait Access: Send {
@@ -41,34 +42,37 @@ pub struct Speculative {
 impl Speculative {
     /// The access of thread `thread`, counted from 0.
     pub fn new(thread: usize) -> Self {
-        Self { owner: thread as u32 + 1, claimed: Vec::with_capacity(256) }
+        let owner = thread as u32 + 1;
+        discipline::work_as(owner);
+        Self { owner, claimed: Vec::with_capacity(256) }
     }
 }
 
 impl Access for Speculative {
     #[inline]
     fn claim(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal> {
-        let lock = store.lock(v);
-        // Acquire pairs with the Release below: what the last owner wrote to the tetrahedra at v is seen.
-        match lock.compare_exchange(0, self.owner, Acquire, Relaxed) {
-            Ok(_) => {
+        match lock::claim(store.lock(v), self.owner) {
+            Claim::Taken => {
                 self.claimed.push(v);
+                discipline::pause();
                 Ok(())
             }
-            Err(holder) if holder == self.owner => Ok(()),
-            Err(_) => Err(Refusal::Conflict),
+            Claim::Held => Ok(()),
+            Claim::Refused => Err(Refusal::Conflict),
         }
     }
 
     fn release(&mut self, store: &Store) {
         for v in self.claimed.drain(..) {
-            store.lock(v).store(0, Release);
+            lock::release(store.lock(v));
         }
     }
 }
 
 impl Drop for Speculative {
     fn drop(&mut self) {
-        debug_assert!(self.claimed.is_empty(), "an operation ended without giving back its vertices");
+        discipline::work_as(0);
+        let ended = self.claimed.is_empty() || std::thread::panicking();
+        debug_assert!(ended, "an operation ended without giving back its vertices");
     }
 }

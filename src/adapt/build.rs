@@ -1,9 +1,11 @@
 //! From the plain mesh to the store, and back.
+use super::context::Context;
 use super::ids::{FACE, TetId, VertexId};
+use super::required::Required;
 use super::shape::is_positive;
 use super::store::Store;
 use crate::geometry::classify::Classification;
-use crate::geometry::{Entity, Topology};
+use crate::geometry::{Entity, Geometry, Topology};
 use crate::mesh::adjacency::sorted_faces;
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::quality::mean_ratio;
@@ -45,7 +47,7 @@ pub enum Error {
     },
 }
 
-/// A tag is a model face counted from 1; this bit marks a required triangle, which stays as it is.
+/// Vertices and tetrahedra at least that there is room for beside those of the input.
 const ROOM: usize = 1 << 16;
 
 /// Fills a store: every vertex gets its place on the model and its metric, every face its neighbour or tag.
@@ -192,9 +194,17 @@ pub fn measure(store: &Store, source: &Source) {
     }
 }
 
+/// The reference that the mesh gives to each face and each edge of the model.
+pub struct References {
+    /// By face.
+    pub faces: Vec<i32>,
+    /// By edge.
+    pub edges: Vec<i32>,
+}
+
 /// The store as a plain mesh with its classification, and the metric at its vertices.
 pub struct Extracted {
-    /// The mesh, without association.
+    /// The mesh, without association; of its edges those that are required.
     pub mesh: TetMesh,
     /// Where its boundary lies.
     pub classification: Classification,
@@ -202,9 +212,10 @@ pub struct Extracted {
     pub metrics: Vec<Sym3>,
 }
 
-/// Takes the mesh out of the store, in the order of its ids. `face_refs` gives each model face its reference,
-/// `vertex_refs` each vertex that was there at the start.
-pub fn extract(store: &Store, topology: &Topology, face_refs: &[i32], vertex_refs: &[i32]) -> Extracted {
+/// Takes the mesh out of the store, in the order of its ids, with what `input` required. `face_refs` gives each model
+/// face its reference.
+pub fn extract(context: &Context, input: &TetMesh, refs: &References) -> Extracted {
+    let store = &context.store;
     let mut number = vec![u32::MAX; store.vertex_bound()];
     let mut mesh = TetMesh::default();
     let mut classification = Classification::default();
@@ -212,8 +223,9 @@ pub fn extract(store: &Store, topology: &Topology, face_refs: &[i32], vertex_ref
     for v in store.live_vertices() {
         number[v.index()] = mesh.vertices.len() as u32;
         mesh.vertices.push(store.position(v));
-        // Only corners surely are what they were: other ids may have been used again.
-        let kept = matches!(store.entity(v), Entity::Vertex(_)).then(|| vertex_refs.get(v.index())).flatten();
+        // Only corners and frozen vertices surely are what they were: other ids may have been used again.
+        let is_old = matches!(store.entity(v), Entity::Vertex(_)) || context.is_frozen(v);
+        let kept = is_old.then(|| input.vertex_refs.get(v.index())).flatten();
         mesh.vertex_refs.push(kept.copied().unwrap_or(0));
         classification.entities.push(store.entity(v));
         classification.parameters.push(store.parameters(v));
@@ -226,11 +238,15 @@ pub fn extract(store: &Store, topology: &Topology, face_refs: &[i32], vertex_ref
         mesh.tets.push(v.map(renumber), store.region(t) as i32);
         for i in (0..4).filter(|&i| tags[i] != 0 && (!n[i].is_some() || t < n[i])) {
             let [a, b, c] = FACE[i].map(|k| renumber(v[k]));
-            mesh.triangles.push([a, c, b], face_refs[tags[i] as usize - 1]);
+            mesh.triangles.push([a, c, b], refs.faces[tags[i] as usize - 1]);
             classification.faces.push(tags[i] - 1);
         }
     }
-    classification.ridges = ridges(store, topology, renumber);
+    classification.ridges = ridges(store, context.model.topology(), renumber);
+    for &(nodes, edge) in &classification.ridges {
+        mesh.edges.push(nodes, refs.edges[edge as usize]);
+    }
+    Required::list(input, &mut mesh, renumber);
     Extracted { mesh, classification, metrics }
 }
 

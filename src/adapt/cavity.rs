@@ -84,8 +84,9 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Carries out `state.replacement`. All vertices of the old and new tetrahedra must be claimed.
     ///
     /// # Errors
-    /// `Topology` when old and new have not the same boundary, `Full` when ids ran out; the mesh is unchanged then.
+    /// `Geometry` when something required would go, `Topology` when old and new have not the same boundary, `Full` when ids ran out; the mesh is unchanged then.
     pub fn commit(&mut self) -> Result<(), Refusal> {
+        self.check_required()?;
         self.enter_old_faces()?;
         self.match_new_faces()?;
         self.number_new_tets()?;

@@ -18,10 +18,15 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Stale);
         }
         let onto_a = self.try_collapse(b, a, 0.0);
+        if onto_a == Err(Refusal::Conflict) {
+            // To be tried again, whatever becomes of the other end.
+            return Err(Refusal::Conflict);
+        }
         match (onto_a, self.try_collapse(a, b, onto_a.unwrap_or(0.0))) {
             (_, Ok(_)) => self.finish_collapse(a, b),
             (Ok(_), Err(_)) => self.try_collapse(b, a, 0.0).and_then(|_| self.finish_collapse(b, a)),
-            (Err(refusal), Err(Refusal::Geometry)) | (Err(_), Err(refusal)) => Err(refusal),
+            (Err(Refusal::Conflict), _) | (_, Err(Refusal::Conflict)) => Err(Refusal::Conflict),
+            (Err(_), Err(_)) => self.merge(a, b),
         }
     }
 
@@ -69,7 +74,7 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// A vertex may only be removed along the entity that it lies on.
-    fn check_entities(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
+    pub fn check_entities(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
         if self.context.is_frozen(v) {
             return Err(Refusal::Geometry);
         }
@@ -81,6 +86,10 @@ impl<A: Access> Worker<'_, '_, A> {
                 }
                 let [x, y] = self.store.ridge(v);
                 let other = if x == w { y } else { x };
+                if !other.is_some() {
+                    // The input's ridge ends here.
+                    return Err(Refusal::Geometry);
+                }
                 self.claim(other)?;
                 // A closed edge keeps at least three mesh edges; two corners may be joined once only.
                 match self.store.ridge_curve(other, w) {
@@ -101,7 +110,7 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// The link condition on the surface: who neighbours both v and w there must share a triangle with both.
-    fn check_surface_link(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
+    pub fn check_surface_link(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
         self.collect_ball(w);
         let mut near_w = std::mem::take(&mut self.state.set);
         near_w.clear();
@@ -117,8 +126,12 @@ impl<A: Access> Worker<'_, '_, A> {
             }
         }
         let surface = &self.state.star.surface;
-        let beside = |x: VertexId| surface.iter().any(|(face, _)| face.contains(&w) && face.contains(&x));
-        let around = surface.iter().flat_map(|&(face, _)| face).filter(|&x| x != v && x != w);
+        let beside = |x: VertexId| surface.iter().any(|(face, _)| [v, w, x].iter().all(|y| face.contains(y)));
+        let around = surface
+            .iter()
+            .filter(|(face, _)| face.contains(&v))
+            .flat_map(|&(face, _)| face)
+            .filter(|&x| x != v && x != w);
         let mut pinched = false;
         for x in around {
             pinched |= near_w.contains(x.0) && !beside(x);

@@ -1,5 +1,6 @@
 //! What all threads share during a run: the mesh, the metric, the model, the limits.
 use super::ids::VertexId;
+use super::required::Required;
 use super::store::Store;
 use crate::geometry::{Evaluate, Geometry, Model, SurfaceKind};
 use crate::mesh::vector::Vec3;
@@ -29,6 +30,8 @@ pub struct Limits {
     pub collapse_floor: f64,
     /// Reconnection and smoothing look at tetrahedra below this mean ratio.
     pub improve_below: f64,
+    /// Reconnection looks at tetrahedra that changed at or after this time.
+    pub since: u32,
     /// Cosines above this are good enough for any surface triangle.
     pub cosine: f64,
     /// Most tetrahedra in an enlarged cavity.
@@ -46,6 +49,7 @@ impl Default for Limits {
             insert_loss: 0.5,
             collapse_floor: 0.2,
             improve_below: 1.0,
+            since: 0,
             cosine: 0.94,
             cavity: 96,
         }
@@ -62,8 +66,8 @@ pub struct Context<'m> {
     pub model: &'m Model,
     /// Outward normals of the faces that are planes.
     pub planes: Vec<Option<Vec3>>,
-    /// Vertices (by id) that must neither move nor go.
-    pub frozen: Vec<bool>,
+    /// What must stay as it is.
+    pub required: Required,
     /// Limits of the present pass.
     pub limits: Limits,
 }
@@ -78,12 +82,12 @@ impl<'m> Context<'m> {
             (face.kind == SurfaceKind::Plane).then(|| evaluator.face_normal(i as u32, middle))
         });
         let planes = planes.collect();
-        Self { store, source, model, planes, frozen: Vec::new(), limits: Limits::default() }
+        Self { store, source, model, planes, required: Required::default(), limits: Limits::default() }
     }
 
     /// Whether the vertex must neither move nor go.
     #[inline(always)]
     pub fn is_frozen(&self, v: VertexId) -> bool {
-        self.frozen.get(v.index()).copied().unwrap_or(false)
+        self.required.is_frozen(v)
     }
 }

@@ -2,7 +2,7 @@
 use super::access::Access;
 use super::ids::{TetId, VertexId};
 use super::worker::Worker;
-use crate::mesh::vector::{Vec3, add, cross, dot, scale, sub};
+use crate::mesh::vector::{Vec3, add, cross, dot, scale, sub, volume6};
 use crate::metric::Sym3;
 use clap::ValueEnum;
 use serde::Serialize;
@@ -20,7 +20,12 @@ pub enum Criterion {
 }
 
 /// How much better, in part, a triangulation must be to be taken: no flipping back and forth by rounding.
-pub const GAIN: f64 = 1e-3;
+const GAIN: f64 = 1e-3;
+
+/// What a triangulation must score to take the place of one that scores `old`: any score will do where the old one has none.
+pub fn wanted_score(old: f64) -> f64 {
+    if old.is_finite() { old + GAIN * old.abs().max(GAIN) } else { f64::MIN }
+}
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Score of one tetrahedron in a cavity with these vertices: the score of a triangulation is the least of its
@@ -31,6 +36,8 @@ impl<A: Access> Worker<'_, '_, A> {
         match criterion {
             Criterion::MeanRatio => Some(self.shape_above(tet, floor)).filter(|&q| q > 0.0),
             _ if !super::shape::is_positive(points) => None,
+            // Positive, but so flat that its volume rounds to nothing: no score can be trusted.
+            _ if volume6(points[0], points[1], points[2], points[3]) <= 0.0 => None,
             Criterion::EdgeWeight => {
                 let logs = tet.map(|v| self.store.log(v));
                 let mean = Sym3(std::array::from_fn(|i| 0.25 * logs.iter().map(|l| l.0[i]).sum::<f64>())).exp();
@@ -82,7 +89,7 @@ fn alpha(x: [Vec3; 4], m: &Sym3, p: Vec3) -> f64 {
 /// max over the six edges i of [⟨e_i,e_j⟩⟨e_i,e_k⟩ − ⟨e_i,e_i⟩⟨e_j,e_k⟩] / (6|K|_M), with e_j and e_k the edges of the two
 /// faces at e_i that leave the same end.
 fn edge_weight(x: [Vec3; 4], m: &Sym3) -> f64 {
-    let volume = crate::mesh::vector::volume6(x[0], x[1], x[2], x[3]) * m.det().sqrt();
+    let volume = volume6(x[0], x[1], x[2], x[3]) * m.det().sqrt();
     let mut greatest = f64::NEG_INFINITY;
     for [i, j] in super::ids::EDGE {
         let [k, l] = super::ids::ACROSS[i][j];

@@ -4,7 +4,7 @@
 //! is found by dynamic programming over the polygon (Klincsek 1980; Shewchuk 2002).
 use super::access::Access;
 use super::cavity::NewTet;
-use super::criteria::{Criterion, GAIN};
+use super::criteria::{Criterion, wanted_score};
 use super::ids::{TetId, VertexId};
 use super::outcome::Refusal;
 use super::shell::Shell;
@@ -31,6 +31,10 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         self.gather_shell(a, b, t)?;
         let shell = std::mem::take(&mut self.state.shell);
+        if !shell.tets.iter().all(|&other| self.goes_first(t, other)) {
+            self.state.shell = shell;
+            return Err(Refusal::Stale);
+        }
         let result = self.remove_shell(a, b, &shell, criterion);
         self.state.shell = shell;
         result
@@ -48,14 +52,14 @@ impl<A: Access> Worker<'_, '_, A> {
         tables.cavity.extend(&shell.ring);
         let old = shell.tets.iter().map(|&t| self.present_score(criterion, t, &tables.cavity));
         let old = old.fold(f64::INFINITY, f64::min);
-        let wanted = old + GAIN * old.abs().max(GAIN);
+        let wanted = wanted_score(old);
         self.triangulate(a, b, shell, criterion, wanted, &mut tables);
-        let best = tables.score[0][n - 1];
-        if best > wanted {
+        let gains = tables.score[0][n - 1] > wanted;
+        if gains {
             self.write_triangulation(a, b, shell, &tables);
         }
         self.state.ring = tables;
-        if best <= wanted {
+        if !gains {
             return Err(Refusal::Shape);
         }
         if let Some((old, new)) = surface {

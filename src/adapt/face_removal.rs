@@ -1,7 +1,7 @@
 //! The 2-3 flip: a face goes, the edge between the two vertices opposite to it comes.
 use super::access::Access;
 use super::cavity::NewTet;
-use super::criteria::{Criterion, GAIN};
+use super::criteria::{Criterion, wanted_score};
 use super::ids::{FACE, TetId};
 use super::outcome::Refusal;
 use super::worker::Worker;
@@ -15,12 +15,15 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let v = self.store.vertices(t);
         let w = self.claim_tet(other)?;
+        if !self.goes_first(t, other) {
+            return Err(Refusal::Stale);
+        }
         let below = w.into_iter().find(|x| !v.contains(x)).ok_or(Refusal::Topology)?;
         let face = FACE[i].map(|k| v[k]);
         let above = v[i];
         let cavity = [face[0], face[1], face[2], above, below];
         let old = self.present_score(criterion, t, &cavity).min(self.present_score(criterion, other, &cavity));
-        let wanted = old + GAIN * old.abs().max(GAIN);
+        let wanted = wanted_score(old);
         // (face, above) is positive, so each side of the face makes a positive tetrahedron with below and above.
         let new = [0, 1, 2].map(|k| [face[k], face[(k + 1) % 3], below, above]);
         for tet in new {

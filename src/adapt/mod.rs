@@ -2,20 +2,26 @@
 mod access;
 mod build;
 mod cavity;
+#[cfg(test)]
+mod check;
 mod collapse;
 mod context;
 mod create;
 mod criteria;
+mod discipline;
 mod edge_removal;
 mod face_removal;
 mod ids;
 mod insert;
 mod local;
+mod lock;
 mod mend;
+mod merge;
 mod outcome;
 mod pipeline;
 mod project;
 mod reconnect;
+mod required;
 mod run;
 mod schedule;
 mod shape;
@@ -24,7 +30,12 @@ mod smooth;
 mod star;
 mod store;
 mod surface;
+#[cfg(test)]
+mod tests;
 mod worker;
+
+// The atomics of the lock words; tests/lock_protocol.rs has loom's in their place.
+use std::sync::atomic;
 
 pub use build::{Error, Extracted};
 pub use create::PointCreation;

@@ -260,6 +260,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn reconnect(&mut self, criterion: Criterion, sweeps: usize) {
         for _ in 0..sweeps {
             let since = self.begin(Kind::Reconnect);
+            self.context.limits.since = since;
             let store = &self.context.store;
             let limit = self.context.limits.improve_below;
             let items: Vec<TetId> =

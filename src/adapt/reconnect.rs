@@ -6,6 +6,15 @@ use super::outcome::Refusal;
 use super::worker::Worker;
 
 impl<A: Access> Worker<'_, '_, A> {
+    /// Of the tetrahedra about an edge or face that are looked at in this sweep, the worst tries to remove it: once is enough.
+    #[inline]
+    pub fn goes_first(&self, t: TetId, other: TetId) -> bool {
+        other == t || self.store.stamp(other) < self.context.limits.since || {
+            let (mine, theirs) = (self.store.quality(t), self.store.quality(other));
+            mine < theirs || (mine == theirs && t < other)
+        }
+    }
+
     /// Flips what the criterion gains by at one tetrahedron: the first edge, else face, whose removal gains.
     pub fn reconnect(&mut self, t: TetId, criterion: Criterion) -> Result<(), Refusal> {
         let v = self.claim_moving_tet(t)?;

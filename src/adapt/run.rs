@@ -1,14 +1,16 @@
 //! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
-use super::build::{self, Extracted};
+use super::build::{self, Extracted, References};
 use super::context::Context;
 use super::create::PointCreation;
 use super::criteria::Criterion;
 use super::pipeline::{KINDS, Observer, Pipeline, Work};
+use super::required::Required;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::metric::Source;
 use crate::tasks::Pool;
+use std::collections::HashMap;
 
 /// How to adapt.
 #[derive(Clone, Copy, Debug)]
@@ -51,16 +53,13 @@ pub fn adapt(
 ) -> Result<Adapted, build::Error> {
     let (store, waiting) = build::fill(mesh, place, source)?;
     let mut context = Context::new(store, source, model);
-    context.frozen = vec![false; mesh.vertices.len()];
-    for &v in &mesh.required_vertices {
-        context.frozen[v as usize] = true;
-    }
+    context.required = Required::of(mesh);
     let mut pipeline = Pipeline::new(&mut context, pool, observer, options.criterion, waiting);
     pipeline.points = options.points;
     pipeline.run();
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());
-    let refs = face_refs(mesh, place, model);
-    let extracted = build::extract(&context.store, model.topology(), &refs, &mesh.vertex_refs);
+    let refs = References { faces: face_refs(mesh, place, model), edges: edge_refs(mesh, place, model) };
+    let extracted = build::extract(&context, mesh, &refs);
     Ok(Adapted { extracted, work, off_model })
 }
 
@@ -71,4 +70,17 @@ fn face_refs(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<i32> 
         refs[face as usize].get_or_insert(reference);
     }
     refs.iter().enumerate().map(|(face, reference)| reference.unwrap_or(face as i32 + 1)).collect()
+}
+
+/// The reference of each model edge: that of its first listed mesh edge.
+fn edge_refs(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<i32> {
+    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let listed: HashMap<[u32; 2], i32> = mesh.edges.iter().map(|(nodes, r)| (sorted(nodes), r)).collect();
+    let mut refs: Vec<Option<i32>> = vec![None; model.topology().edges.len()];
+    for &(nodes, edge) in &place.ridges {
+        if let (slot @ None, Some(&reference)) = (&mut refs[edge as usize], listed.get(&sorted(nodes))) {
+            *slot = Some(reference);
+        }
+    }
+    refs.iter().enumerate().map(|(edge, reference)| reference.unwrap_or(edge as i32 + 1)).collect()
 }

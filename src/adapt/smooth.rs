@@ -15,11 +15,13 @@ use crate::metric::quality::mean_log;
 
 /// Where a vertex is, to be put back.
 #[derive(Clone, Copy)]
-struct Held {
-    placed: Placed,
+pub struct Held {
+    /// Point and entity.
+    pub placed: Placed,
     log: Sym3,
     metric: Sym3,
-    hint: u32,
+    /// Background tetrahedron.
+    pub hint: u32,
 }
 
 /// Part of the energy that a step must save.
@@ -112,7 +114,8 @@ impl<A: Access> Worker<'_, '_, A> {
         None
     }
 
-    fn hold(&self, v: VertexId) -> Held {
+    /// Remembers where a claimed vertex is.
+    pub fn hold(&self, v: VertexId) -> Held {
         Held {
             placed: Placed {
                 point: self.store.position(v),
@@ -125,7 +128,8 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    fn put_back(&mut self, v: VertexId, held: &Held) {
+    /// Puts a vertex back where it was.
+    pub fn put_back(&mut self, v: VertexId, held: &Held) {
         self.store.set_position(v, held.placed.point);
         self.store.set_metric(v, &held.log, &held.metric);
         self.store.set_place(v, held.placed.entity, held.placed.parameters);

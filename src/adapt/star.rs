@@ -22,6 +22,8 @@ pub enum Seed {
     Inside,
     /// A vertex goes: the surface triangles at it go.
     Vertex(VertexId),
+    /// The first vertex goes and the second moves: the surface triangles at both go.
+    Pair(VertexId, VertexId),
 }
 
 impl Seed {
@@ -31,7 +33,13 @@ impl Seed {
             Seed::Face(f) => f.iter().all(|v| face.contains(v)),
             Seed::Inside => false,
             Seed::Vertex(v) => face.contains(&v),
+            Seed::Pair(v, w) => face.contains(&v) || face.contains(&w),
         }
+    }
+
+    /// Whether the vertex is the one that goes.
+    fn removes(self, v: VertexId) -> bool {
+        matches!(self, Seed::Vertex(w) | Seed::Pair(w, _) if w == v)
     }
 
     /// Whether the edge x–y of a consumed triangle stays, so that the apex joins it.
@@ -40,6 +48,7 @@ impl Seed {
             Seed::Edge(a, b) => !((x == a && y == b) || (x == b && y == a)),
             Seed::Face(_) | Seed::Inside => true,
             Seed::Vertex(v) => x != v && y != v,
+            Seed::Pair(v, w) => ![v, w].contains(&x) && ![v, w].contains(&y),
         }
     }
 }
@@ -194,7 +203,8 @@ impl<A: Access> Worker<'_, '_, A> {
         for index in 0..replacement.old.len() {
             for v in self.store.vertices(replacement.old[index]) {
                 if linked.insert(v.0) {
-                    if seed != Seed::Vertex(v) && self.store.entity(v) != Entity::Interior {
+                    let stays = self.store.entity(v) != Entity::Interior || self.context.is_frozen(v);
+                    if stays && !seed.removes(v) {
                         return Err(Refusal::Topology);
                     }
                     replacement.dead.push(v);

@@ -155,12 +155,14 @@ impl Store {
 
     /// A block of ids never used before, `None` when there is no room. Ids may be left over at the end of the room.
     pub fn take_vertices(&self, count: usize) -> Option<std::ops::Range<u32>> {
-        take(&self.next_vertex, self.vertices.len(), count, |i| self.set_tet_of(VertexId(i), TetId::NONE))
+        take(&self.next_vertex, self.vertices.len(), count, |i| {
+            self.vertices[i as usize].tet.store(TetId::NONE.0, Relaxed);
+        })
     }
 
     /// As [`Store::take_vertices`], for tetrahedra.
     pub fn take_tets(&self, count: usize) -> Option<std::ops::Range<u32>> {
-        take(&self.next_tet, self.tets.len(), count, |i| self.kill_tet(TetId(i)))
+        take(&self.next_tet, self.tets.len(), count, |i| self.clear_tet(TetId(i)))
     }
 
     /// Ids of live vertices. Between sweeps only.
@@ -188,30 +190,35 @@ impl Store {
     /// Position, model units.
     #[inline(always)]
     pub fn position(&self, v: VertexId) -> Vec3 {
+        self.must_hold(v);
         load(&self.vertices[v.index()].position)
     }
 
     /// Moves a vertex.
     #[inline(always)]
     pub fn set_position(&self, v: VertexId, p: Vec3) {
+        self.must_hold(v);
         save(&self.vertices[v.index()].position, p);
     }
 
     /// ln M.
     #[inline(always)]
     pub fn log(&self, v: VertexId) -> Sym3 {
+        self.must_hold(v);
         Sym3(load(&self.vertices[v.index()].log))
     }
 
     /// M.
     #[inline(always)]
     pub fn metric(&self, v: VertexId) -> Sym3 {
+        self.must_hold(v);
         Sym3(load(&self.vertices[v.index()].metric))
     }
 
     /// Sets ln M and M together.
     #[inline]
     pub fn set_metric(&self, v: VertexId, log: &Sym3, metric: &Sym3) {
+        self.must_hold(v);
         save(&self.vertices[v.index()].log, log.0);
         save(&self.vertices[v.index()].metric, metric.0);
     }
@@ -225,12 +232,14 @@ impl Store {
     /// One tetrahedron at the vertex; none when the vertex is dead.
     #[inline(always)]
     pub fn tet_of(&self, v: VertexId) -> TetId {
+        self.must_hold(v);
         TetId(self.vertices[v.index()].tet.load(Relaxed))
     }
 
     /// Sets the tetrahedron at the vertex.
     #[inline(always)]
     pub fn set_tet_of(&self, v: VertexId, t: TetId) {
+        self.must_hold(v);
         self.vertices[v.index()].tet.store(t.0, Relaxed);
     }
 
@@ -243,24 +252,28 @@ impl Store {
     /// The model entity the vertex lies on.
     #[inline(always)]
     pub fn entity(&self, v: VertexId) -> Entity {
+        self.must_hold(v);
         unpack(self.places[v.index()].entity.load(Relaxed))
     }
 
     /// Dimension of the entity: 0 corner, 1 ridge, 2 surface, 3 interior.
     #[inline(always)]
     pub fn dimension(&self, v: VertexId) -> u32 {
+        self.must_hold(v);
         self.places[v.index()].entity.load(Relaxed) >> INDEX_BITS
     }
 
     /// Parameters on the entity.
     #[inline(always)]
     pub fn parameters(&self, v: VertexId) -> [f64; 2] {
+        self.must_hold(v);
         load(&self.places[v.index()].parameters)
     }
 
     /// Sets entity and parameters.
     #[inline]
     pub fn set_place(&self, v: VertexId, entity: Entity, parameters: [f64; 2]) {
+        self.must_hold(v);
         let place = &self.places[v.index()];
         place.entity.store(pack(entity), Relaxed);
         save(&place.parameters, parameters);
@@ -269,12 +282,14 @@ impl Store {
     /// The background tetrahedron that last held the vertex.
     #[inline(always)]
     pub fn hint(&self, v: VertexId) -> u32 {
+        self.must_hold(v);
         self.places[v.index()].hint.load(Relaxed)
     }
 
     /// Sets the hint.
     #[inline(always)]
     pub fn set_hint(&self, v: VertexId, hint: u32) {
+        self.must_hold(v);
         self.places[v.index()].hint.store(hint, Relaxed);
     }
 
@@ -282,6 +297,7 @@ impl Store {
 
     /// Sets the two ridge neighbours of a vertex on a model edge.
     pub fn set_ridge(&self, v: VertexId, ends: [VertexId; 2]) {
+        self.must_hold(v);
         for (slot, end) in self.places[v.index()].ridge.iter().zip(ends) {
             slot.store(end.0, Relaxed);
         }
@@ -290,6 +306,7 @@ impl Store {
     /// The two ridge neighbours of a vertex on a model edge.
     #[inline]
     pub fn ridge(&self, v: VertexId) -> [VertexId; 2] {
+        self.must_hold(v);
         std::array::from_fn(|i| VertexId(self.places[v.index()].ridge[i].load(Relaxed)))
     }
 
@@ -302,6 +319,7 @@ impl Store {
 
     /// The ridges that leave a corner: other end and model edge.
     pub fn corner_ridges(&self, v: VertexId) -> impl Iterator<Item = (VertexId, u32)> + '_ {
+        self.must_hold(v);
         let index = self.places[v.index()].ridge[0].load(Relaxed) as usize;
         self.corners[index].iter().map(|ridge| (VertexId(ridge.other.load(Relaxed)), ridge.curve))
     }
@@ -321,6 +339,7 @@ impl Store {
 
     /// Redirects the ridge v–old to v–new.
     pub fn redirect_ridge(&self, v: VertexId, old: VertexId, new: VertexId) {
+        self.must_hold(v);
         let place = &self.places[v.index()];
         let slot = if self.dimension(v) == 1 {
             place.ridge.iter().find(|end| end.load(Relaxed) == old.0)
@@ -336,6 +355,15 @@ impl Store {
     /// The four vertices.
     #[inline(always)]
     pub fn vertices(&self, t: TetId) -> [VertexId; 4] {
+        self.must_hold_one_of(t);
+        self.peek(t)
+    }
+
+    /// What is written as the vertices of a tetrahedron of which no vertex need be held: it may be dead, or half another one.
+    /// Only a vertex that the reader holds is certain: while it is held, it is in the record exactly if the tetrahedron
+    /// is alive and has it (whoever writes or clears the record holds what it had and what it gets).
+    #[inline(always)]
+    pub fn peek(&self, t: TetId) -> [VertexId; 4] {
         let record = &self.tets[t.index()].vertices;
         std::array::from_fn(|i| VertexId(record[i].load(Relaxed)))
     }
@@ -343,6 +371,7 @@ impl Store {
     /// The neighbour opposite each vertex.
     #[inline(always)]
     pub fn neighbours(&self, t: TetId) -> [TetId; 4] {
+        self.must_hold_one_of(t);
         let record = &self.tets[t.index()].neighbours;
         std::array::from_fn(|i| TetId(record[i].load(Relaxed)))
     }
@@ -350,18 +379,21 @@ impl Store {
     /// The neighbour opposite local vertex i.
     #[inline(always)]
     pub fn neighbour(&self, t: TetId, i: usize) -> TetId {
+        self.must_hold_one_of(t);
         TetId(self.tets[t.index()].neighbours[i].load(Relaxed))
     }
 
     /// Sets the neighbour opposite local vertex i.
     #[inline(always)]
     pub fn set_neighbour(&self, t: TetId, i: usize, n: TetId) {
+        self.must_own_face(t, i);
         self.tets[t.index()].neighbours[i].store(n.0, Relaxed);
     }
 
     /// The tag of each face: 0, or the model face counted from 1.
     #[inline(always)]
     pub fn tags(&self, t: TetId) -> [u32; 4] {
+        self.must_hold_one_of(t);
         let record = &self.tets[t.index()].tags;
         std::array::from_fn(|i| record[i].load(Relaxed))
     }
@@ -369,48 +401,56 @@ impl Store {
     /// Sets the tag of the face opposite local vertex i.
     #[inline(always)]
     pub fn set_tag(&self, t: TetId, i: usize, tag: u32) {
+        self.must_own_face(t, i);
         self.tets[t.index()].tags[i].store(tag, Relaxed);
     }
 
     /// The region.
     #[inline(always)]
     pub fn region(&self, t: TetId) -> u32 {
+        self.must_hold_one_of(t);
         self.tets[t.index()].region.load(Relaxed)
     }
 
     /// The mean ratio kept with the tetrahedron.
     #[inline(always)]
     pub fn quality(&self, t: TetId) -> f64 {
+        self.must_hold_one_of(t);
         f64::from(f32::from_bits(self.tets[t.index()].quality.load(Relaxed)))
     }
 
     /// Sets the kept mean ratio.
     #[inline(always)]
     pub fn set_quality(&self, t: TetId, quality: f64) {
+        self.must_own_tet(t);
         self.tets[t.index()].quality.store((quality as f32).to_bits(), Relaxed);
     }
 
     /// When the tetrahedron, or one of its vertices, last changed.
     #[inline(always)]
     pub fn stamp(&self, t: TetId) -> u32 {
+        self.must_hold_one_of(t);
         self.tets[t.index()].stamp.load(Relaxed)
     }
 
     /// Stamps the tetrahedron with the present time.
     #[inline(always)]
     pub fn touch(&self, t: TetId) {
+        self.must_own_tet(t);
         self.tets[t.index()].stamp.store(self.clock.load(Relaxed), Relaxed);
     }
 
     /// Writes vertices, region and quality, without neighbours and tags.
     #[inline]
     pub fn write_tet(&self, t: TetId, vertices: [VertexId; 4], region: u32, quality: f64) {
+        self.must_own_tet(t);
         let record = &self.tets[t.index()];
         for i in 0..4 {
             record.vertices[i].store(vertices[i].0, Relaxed);
             record.neighbours[i].store(TetId::NONE.0, Relaxed);
             record.tags[i].store(0, Relaxed);
         }
+        self.must_own_tet(t);
         record.region.store(region, Relaxed);
         self.set_quality(t, quality);
         self.touch(t);
@@ -419,7 +459,16 @@ impl Store {
     /// Marks a tetrahedron dead.
     #[inline]
     pub fn kill_tet(&self, t: TetId) {
-        self.tets[t.index()].vertices[0].store(VertexId::NONE.0, Relaxed);
+        self.must_own_tet(t);
+        self.clear_tet(t);
+    }
+
+    /// Forgets all four vertices: who holds one of them and comes with an old id must not find it here any more.
+    #[inline]
+    fn clear_tet(&self, t: TetId) {
+        for slot in &self.tets[t.index()].vertices {
+            slot.store(VertexId::NONE.0, Relaxed);
+        }
     }
 
     /// Whether the tetrahedron is alive.

@@ -73,6 +73,8 @@ pub struct State<'m> {
     pub ball: Vec<TetId>,
     /// The vertices about a vertex, while they are tried in turn.
     pub neighbours: Vec<VertexId>,
+    /// The tetrahedra at either of two vertices.
+    pub union: Vec<TetId>,
     /// The ring about an edge.
     pub shell: super::shell::Shell,
     /// Boundary vertices that are not yet on the model.
@@ -93,6 +95,7 @@ impl<'m> State<'m> {
             set: LocalSet::default(),
             ball: Vec::with_capacity(128),
             neighbours: Vec::with_capacity(64),
+            union: Vec::with_capacity(128),
             shell: super::shell::Shell::default(),
             waiting: Vec::new(),
             ring: super::edge_removal::RingTables::default(),
@@ -136,14 +139,14 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
 
     /// Claims a tetrahedron that may be changing: its vertices are read, claimed, and read again.
     pub fn claim_moving_tet(&mut self, t: TetId) -> Result<[VertexId; 4], Refusal> {
-        let vertices = self.store.vertices(t);
+        let vertices = self.store.peek(t);
         for v in vertices {
             if !v.is_some() || v.index() >= self.store.vertex_bound() {
                 return Err(Refusal::Stale);
             }
             self.claim(v)?;
         }
-        if self.store.vertices(t) == vertices { Ok(vertices) } else { Err(Refusal::Stale) }
+        if self.store.peek(t) == vertices { Ok(vertices) } else { Err(Refusal::Stale) }
     }
 
     /// Claims a vertex and makes sure that it is alive.
@@ -187,7 +190,8 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
     /// A tetrahedron that holds both claimed vertices; stale when they are not joined by an edge.
     pub fn tet_with_edge(&mut self, a: VertexId, b: VertexId, guess: TetId) -> Result<TetId, Refusal> {
         let holds = |t: TetId| {
-            let vertices = self.store.vertices(t);
+            // The guess may be dead or another one by now; a and b are held, so if both are in it, it is theirs.
+            let vertices = self.store.peek(t);
             vertices.contains(&a) && vertices.contains(&b)
         };
         if holds(guess) {

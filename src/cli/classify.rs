@@ -1,6 +1,5 @@
 //! `geo-adapt classify`.
-use super::Outcome;
-use crate::geometry::Model;
+use super::{Outcome, load};
 use crate::geometry::classify::{Associated, Options, Report, associate, classify};
 use crate::geometry::discrete::complete_boundary;
 use crate::mesh::io;
@@ -21,7 +20,7 @@ pub struct Arguments {
     output: PathBuf,
     /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model
     /// states for an entity]
-    #[arg(long, value_name = "T", value_parser = super::positive)]
+    #[arg(long, value_name = "T", value_parser = super::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
 }
 
@@ -29,7 +28,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let mut read = io::read_mesh(&arguments.mesh)?;
     let mesh = &mut read.content;
-    let model = Model::read(&arguments.cad)?;
+    let model = load::model(&arguments.cad)?;
     let added = complete_boundary(mesh);
     if added > 0 {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));

@@ -1,6 +1,6 @@
 //! `geo-adapt inspect`.
-use super::Outcome;
 use super::table::{Table, figure};
+use super::{Outcome, load};
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Entity, Model, classify};
 use crate::mesh::TetMesh;
@@ -70,7 +70,7 @@ struct Inspection {
 /// Runs the subcommand: code 0 for a valid mesh (that fits the model, if one is given), else 1.
 pub fn run(arguments: &Arguments) -> Outcome {
     let mesh = read(&arguments.mesh)?;
-    let model = arguments.cad.as_deref().map(Model::read).transpose()?;
+    let model = arguments.cad.as_deref().map(load::model).transpose()?;
     let statistics = match metrics(arguments, &mesh)? {
         Some(metrics) => Statistics::in_metric(&mesh, &metrics),
         None => Statistics::in_space(&mesh),

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 mod adapt;
 mod classify;
 mod inspect;
+mod load;
 mod model;
 mod table;
 
@@ -37,6 +38,9 @@ const BAD_INPUT: u8 = 2;
 
 /// Parses the command line, runs the subcommand, prints its error.
 pub fn main() -> ExitCode {
+    if let Some(code) = load::probe() {
+        return code;
+    }
     let outcome = match Arguments::parse().command {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),

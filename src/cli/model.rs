@@ -1,5 +1,5 @@
 //! `geo-adapt model`.
-use super::Outcome;
+use super::{Outcome, load};
 use crate::geometry::{EdgeEntity, FaceEntity, Geometry, Model, Topology, VertexEntity};
 use serde::Serialize;
 use std::fmt::Write;
@@ -18,11 +18,10 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let model = Model::read(&arguments.file)?;
+    let model = load::model(&arguments.file)?;
     let text =
         if arguments.json { serde_json::to_string_pretty(&Listing::new(&model))? + "\n" } else { describe(&model) };
-    // A closed pipe (`| head`) is no error.
-    let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
+    super::print(&text);
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,5 +1,6 @@
 //! The mesh as arrays.
 use super::vector::Vec3;
+use std::collections::BTreeMap;
 
 /// Elements of N nodes each, with a reference (tag) each. Node indices count from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -119,4 +120,42 @@ pub struct TetMesh {
     pub required_triangles: Vec<u32>,
     /// Association with a CAD model.
     pub association: Association,
+}
+
+impl TetMesh {
+    /// Makes these the edges of the mesh, all of them ridges, followed by the required edges that are not among them, each
+    /// with its reference. What was required stays required. Returns how many edges follow the ridges.
+    pub fn replace_edges(&mut self, ridges: impl Iterator<Item = ([u32; 2], i32)>) -> usize {
+        let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let old = std::mem::take(&mut self.edges);
+        let required = std::mem::take(&mut self.required_edges);
+        let mut open: BTreeMap<[u32; 2], i32> =
+            required.iter().map(|&e| (sorted(old.nodes[e as usize]), old.refs[e as usize])).collect();
+        for (nodes, reference) in ridges {
+            if open.remove(&sorted(nodes)).is_some() {
+                self.required_edges.push(self.edges.len() as u32);
+            }
+            self.edges.push(nodes, reference);
+        }
+        self.ridges = (0..self.edges.len() as u32).collect();
+        for (&nodes, &reference) in &open {
+            self.required_edges.push(self.edges.len() as u32);
+            self.edges.push(nodes, reference);
+        }
+        open.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn required_edges_outlive_a_change_of_the_ridges() {
+        let edges = Elements { nodes: vec![[0, 1], [3, 2], [1, 2], [0, 3]], refs: vec![5, 6, 7, 8] };
+        let mut mesh = TetMesh { edges, required_edges: vec![1, 2], ..TetMesh::default() };
+        assert_eq!(mesh.replace_edges([([4, 5], 1), ([2, 1], 2)].into_iter()), 1);
+        assert_eq!(mesh.edges, Elements { nodes: vec![[4, 5], [2, 1], [2, 3]], refs: vec![1, 2, 6] });
+        assert_eq!((mesh.ridges, mesh.required_edges), (vec![0, 1], vec![1, 2]));
+    }
 }

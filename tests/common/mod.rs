@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test uses its own part")]
 use std::path::{Path, PathBuf};
 
+pub mod adapting;
+
 /// A file of the shared cases, such as `cube/cube-linear-00.meshb`, or None where they are not: then the test
 /// says so on stderr, and its caller passes over it. They lie beside the project, or where GEO_ADAPT_SHARED says.
 pub fn shared_case(name: &str) -> Option<PathBuf> {

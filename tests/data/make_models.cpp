@@ -1,6 +1,6 @@
 // Writes the models of this folder: the shapes that the models in geometry/ lack.
 //   g++ -std=c++17 -isystem /usr/include/opencascade make_models.cpp -o make_models -lTKIGES -lTKSTEP -lTKXSBase
-//     -lTKOffset -lTKPrim -lTKTopAlgo -lTKBRep -lTKGeomAlgo -lTKGeomBase -lTKG3d -lTKMath -lTKernel && ./make_models
+//     -lTKOffset -lTKPrim -lTKTopAlgo -lTKBRep -lTKGeomBase -lTKG3d -lTKMath -lTKernel && ./make_models
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
@@ -12,8 +12,7 @@
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
-#include <GeomAPI_PointsToBSpline.hxx>
-#include <Geom_BSplineCurve.hxx>
+#include <Geom_BezierCurve.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
 #include <STEPControl_Writer.hxx>
@@ -42,13 +41,14 @@ int main()
   step.Transfer(cylinder, STEPControl_AsIs);
   step.Write("capped-cylinder.step");
 
-  // A vase: a spline turned about an axis that it touches, which closes it with poles.
+  // A vase: a curve turned about an axis that it meets squarely, so that it closes with smooth poles.
   TColgp_Array1OfPnt points(1, 5);
-  const double radius[] = {0.0, 0.7, 0.4, 0.6, 0.0};
-  for (int i = 0; i < 5; ++i) {
-    points(i + 1) = gp_Pnt(radius[i], 0, 0.5 * i);
-  }
-  const TopoDS_Edge profile = BRepBuilderAPI_MakeEdge(GeomAPI_PointsToBSpline(points).Curve());
+  points(1) = gp_Pnt(0.0, 0, 0.0);
+  points(2) = gp_Pnt(1.2, 0, 0.0);
+  points(3) = gp_Pnt(-0.4, 0, 1.0);
+  points(4) = gp_Pnt(1.5, 0, 2.0);
+  points(5) = gp_Pnt(0.0, 0, 2.0);
+  const TopoDS_Edge profile = BRepBuilderAPI_MakeEdge(new Geom_BezierCurve(points));
   const TopoDS_Shape vase = BRepPrimAPI_MakeRevol(profile, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))).Shape();
   BRepTools::Write(vase, "vase.brep");
 

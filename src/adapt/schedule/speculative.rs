@@ -9,8 +9,11 @@ use crate::tasks::Pool;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Items in a bucket.
+/// Items in a bucket, at most.
 const BUCKET: usize = 150;
+
+/// Buckets a thread, at least: short lists are shared out too.
+const SHARES: usize = 8;
 
 /// Rounds that all threads share; then one thread takes what is left.
 const ROUNDS: usize = 6;
@@ -32,12 +35,12 @@ pub fn run<'m, O: Operation>(
             break;
         }
         let threads = if round == ROUNDS { 1 } else { states.len() };
-        let next = AtomicUsize::new(0);
+        let (next, size) = (AtomicUsize::new(0), (work.len() / (SHARES * threads)).clamp(1, BUCKET));
         let slots: Vec<_> = states[..threads].iter_mut().map(|state| Mutex::new((state, Outcome::default()))).collect();
         let turn = |thread: usize| {
             if let Some(slot) = slots.get(thread) {
                 let (state, outcome) = &mut *slot.lock().expect("each slot belongs to one thread");
-                take_buckets(operation, work, &next, context, state, thread, outcome, advance);
+                take_buckets(operation, work, (&next, size), context, state, thread, outcome, advance);
             }
         };
         pool.on_each_thread(&turn);
@@ -67,7 +70,7 @@ impl<I> Default for Outcome<I> {
 fn take_buckets<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
-    next: &AtomicUsize,
+    (next, size): (&AtomicUsize, usize),
     context: &Context<'m>,
     state: &mut State<'m>,
     thread: usize,
@@ -76,8 +79,8 @@ fn take_buckets<'m, O: Operation>(
 ) {
     let mut worker = Worker::new(context, state, Speculative::new(thread));
     loop {
-        let start = next.fetch_add(BUCKET, Relaxed);
-        let Some(bucket) = items.get(start..items.len().min(start + BUCKET)).filter(|bucket| !bucket.is_empty()) else {
+        let start = next.fetch_add(size, Relaxed);
+        let Some(bucket) = items.get(start..items.len().min(start + size)).filter(|bucket| !bucket.is_empty()) else {
             return;
         };
         for &item in bucket {

@@ -20,11 +20,17 @@ pub fn check(arguments: &Arguments) -> Result<(), String> {
     }
     let metric = metric_path(arguments);
     let outputs = [Some(output), Some(&metric), arguments.report.as_ref()];
+    if let Some(report) = arguments.report.as_ref().filter(|&report| report == output || *report == metric) {
+        return Err(format!("{}: is also the mesh's or its metric's file; give another --report", report.display()));
+    }
     let inputs = [Some(&arguments.mesh), arguments.cad.as_ref(), arguments.field.metric.as_ref()];
     for written in outputs.into_iter().flatten() {
         let folder = written.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
             return Err(format!("{}: there is no folder {}; make it first", written.display(), folder.display()));
+        }
+        if written.is_dir() {
+            return Err(format!("{}: this is a folder; name a file", written.display()));
         }
         for read in inputs.into_iter().flatten() {
             if let (Ok(a), Ok(b)) = (written.canonicalize(), read.canonicalize())

@@ -3,7 +3,7 @@ mod files;
 mod progress;
 mod report;
 
-use super::Outcome;
+use super::{Outcome, load};
 use crate::adapt::{self, Criterion, Options, PointCreation};
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
@@ -19,6 +19,9 @@ use std::time::Instant;
 /// Exit code after an interrupt: 128 + SIGINT, as shells have it. The last valid mesh is written all the same.
 const INTERRUPTED: u8 = 130;
 
+/// Twelve tetrahedra for each unit of complexity, numbered with 32 bits; some numbers lie idle.
+const GREATEST_COMPLEXITY: f64 = 2e8;
+
 /// Arguments of `geo-adapt adapt`.
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -33,16 +36,16 @@ pub struct Arguments {
     #[command(flatten)]
     field: FieldArguments,
     /// Scale the metric to this complexity: about half the number of vertices
-    #[arg(long, value_name = "C", value_parser = super::positive)]
+    #[arg(long, value_name = "C", value_parser = super::positive, allow_negative_numbers = true)]
     complexity: Option<f64>,
     /// Threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     threads: Option<u16>,
     /// Write what was done as JSON
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
     /// How far a vertex of the input may be from the model, in its units
-    #[arg(long, value_name = "T", value_parser = super::positive)]
+    #[arg(long, value_name = "T", value_parser = super::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// Criterion of the flips that follow each sweep of insertion
     #[arg(long, value_enum, default_value_t = Criterion::MeanRatio)]
@@ -79,8 +82,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let mesh = read.content;
     let mut source = source(arguments, &mesh, &mut read.notices)?;
-    scale(arguments, &mesh, &mut source);
     let (model, place) = place(arguments, &mesh, &mut read.notices)?;
+    scale(arguments, &mesh, &mut source)?;
     let progress = Progress::new(!arguments.quiet, stop);
     for notice in read.notices.iter().filter(|_| !arguments.quiet) {
         eprintln!("geo-adapt: note: {notice}");
@@ -124,11 +127,25 @@ fn source(
     Ok(Source::Background(Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs)))
 }
 
-/// Scales the source to the complexity that is asked for.
-fn scale(arguments: &Arguments, mesh: &TetMesh, source: &mut Source) {
+/// Scales the source to the complexity that is asked for, and refuses one that no mesh can have.
+fn scale(arguments: &Arguments, mesh: &TetMesh, source: &mut Source) -> Result<(), String> {
+    let own = source.complexity(mesh);
     if let Some(target) = arguments.complexity {
-        source.scale(field::complexity_factor(source.complexity(mesh), target).ln());
+        source.scale(field::complexity_factor(own, target).ln());
     }
+    let complexity = arguments.complexity.unwrap_or(own);
+    if complexity <= GREATEST_COMPLEXITY {
+        return Ok(());
+    }
+    let remedy = match arguments.complexity {
+        Some(_) => "give a smaller --complexity",
+        None => "are mesh and metric in the same units? else give a --complexity",
+    };
+    let [vertices, most] = [2.0 * complexity, 2.0 * GREATEST_COMPLEXITY];
+    Err(format!(
+        "{}: the metric asks for about {vertices:.0e} vertices, more than the {most:.0e} of the largest mesh; {remedy}",
+        arguments.mesh.display()
+    ))
 }
 
 /// The model, and where the mesh lies on it.
@@ -143,7 +160,7 @@ fn place(
             Discrete::from_mesh(mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
         return Ok((Model::Discrete(model), place));
     };
-    let model = Model::read(path)?;
+    let model = load::model(path)?;
     let options = classify::Options { tolerance: arguments.tolerance, ..classify::Options::default() };
     let (place, report) =
         classify::classify(mesh, &model, &options).map_err(|error| format!("{name} on {}: {error}", path.display()))?;

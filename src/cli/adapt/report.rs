@@ -3,6 +3,7 @@ use super::{Arguments, files};
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
 use crate::cli::table::Table;
 use crate::geometry::Model;
+#[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
 use crate::mesh::TetMesh;
 use crate::metric::Sym3;
@@ -55,11 +56,17 @@ pub struct Report {
 }
 
 impl Report {
-    /// Associates the adapted mesh with the model and measures it.
-    pub fn new(arguments: &Arguments, input: &TetMesh, _model: &Model, adapted: Adapted, threads: usize) -> Self {
+    /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it.
+    pub fn new(arguments: &Arguments, input: &TetMesh, model: &Model, adapted: Adapted, threads: usize) -> Self {
         let extracted = adapted.extracted;
         let mut mesh = extracted.mesh;
-        associate(&mut mesh, &extracted.classification);
+        match model {
+            Model::Discrete(surface) => surface.restore(&mut mesh, &extracted.classification),
+            #[cfg(feature = "occt")]
+            Model::Occt(_) => {
+                associate(&mut mesh, &extracted.classification);
+            }
+        }
         Self {
             version: env!("CARGO_PKG_VERSION"),
             input: arguments.mesh.clone(),

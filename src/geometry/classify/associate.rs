@@ -1,7 +1,7 @@
 //! Writing a classification into a mesh.
 use super::Classification;
 use crate::geometry::Entity;
-use crate::mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};
+use crate::mesh::{Association, OnEdge, OnFace, OnVertex, TetMesh};
 use std::collections::{HashMap, HashSet};
 
 /// What changed besides the association.
@@ -15,9 +15,10 @@ pub struct Associated {
 }
 
 /// Writes a classification into its mesh, numbers from 1: the association of each vertex with its entity of lowest
-/// dimension; `edges` are the mesh edges on model edges, with the edge's number as the reference, all of them
-/// ridges; `corners` are the vertices on model vertices. Triangles keep their references where each stands
-/// for one face, else they get the face's number. Required edges stay required.
+/// dimension; `edges` are the mesh edges on model edges, all of them ridges; `corners` are the vertices on
+/// model vertices. Triangles and listed edges keep their references where each stands for one face or edge, else they get
+/// its number. Required edges stay, also where they lie on no edge of the
+/// model: these come last, with their old references.
 pub fn associate(mesh: &mut TetMesh, classification: &Classification) -> Associated {
     write_vertices(mesh, classification);
     let edges_dropped = write_edges(mesh, classification);
@@ -49,24 +50,26 @@ fn write_vertices(mesh: &mut TetMesh, classification: &Classification) {
     }
 }
 
-/// Replaces the listed edges by the ridges; returns how many of them were none.
+/// Replaces the listed edges by the ridges; returns how many of them were none. Required edges stay, ridges or not.
 fn write_edges(mesh: &mut TetMesh, classification: &Classification) -> usize {
     let sorted = |nodes: [u32; 2]| [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])];
-    let required: HashSet<[u32; 2]> =
-        mesh.required_edges.iter().map(|&e| sorted(mesh.edges.nodes[e as usize])).collect();
-    let listed: HashSet<[u32; 2]> = mesh.edges.nodes.iter().map(|&nodes| sorted(nodes)).collect();
-    let mut kept = 0;
-    mesh.edges = Elements::default();
-    mesh.required_edges.clear();
-    for &(nodes, edge) in &classification.ridges {
-        if required.contains(&sorted(nodes)) {
-            mesh.required_edges.push(mesh.edges.len() as u32);
-        }
-        kept += usize::from(listed.contains(&sorted(nodes)));
-        mesh.edges.push(nodes, edge as i32 + 1);
+    let listed: HashMap<[u32; 2], i32> = mesh.edges.iter().map(|(nodes, r)| (sorted(nodes), r)).collect();
+    let ridges = classification.ridges.iter();
+    let known = ridges.filter_map(|(nodes, edge)| listed.get(&sorted(*nodes)).map(|&reference| (reference, *edge)));
+    let (refs, edges): (Vec<i32>, Vec<u32>) = known.unzip();
+    let dropped = listed.len() - refs.len();
+    let mut names: HashMap<u32, i32> = HashMap::new();
+    if is_one_to_one(&refs, &edges) {
+        names.extend(edges.into_iter().zip(refs));
     }
-    mesh.ridges = (0..mesh.edges.len() as u32).collect();
-    listed.len() - kept
+    // An edge that the file does not list gets its number, unless another edge has that as its reference.
+    let all = classification.ridges.iter().map(|&(_, edge)| edge);
+    let taken: HashSet<i32> = names.values().copied().collect();
+    if all.clone().any(|edge| !names.contains_key(&edge) && taken.contains(&(edge as i32 + 1))) {
+        names.clear();
+    }
+    let reference = |edge: u32| names.get(&edge).copied().unwrap_or(edge as i32 + 1);
+    dropped - mesh.replace_edges(classification.ridges.iter().map(|&(nodes, edge)| (nodes, reference(edge))))
 }
 
 fn is_one_to_one(refs: &[i32], faces: &[u32]) -> bool {

@@ -2,7 +2,7 @@
 use super::Discrete;
 use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
-use crate::mesh::{Association, Elements, TetMesh};
+use crate::mesh::{Association, TetMesh};
 
 impl Discrete {
     /// Reference of a face's triangles in the mesh that the geometry was made of.
@@ -16,17 +16,13 @@ impl Discrete {
     }
 
     /// Writes the features into a mesh that is classified on this geometry, as the first mesh had them: references of
-    /// triangles, and the ridges as edges (0 where the file had not listed them), all marked as ridges; corners. There
-    /// is no association: the entities of a discrete geometry mean nothing outside this run.
+    /// triangles, and the ridges as edges (0 where the file had not listed them), all marked as ridges; corners. Required
+    /// edges stay. There is no association: the entities of a discrete geometry mean nothing outside this run.
     pub fn restore(&self, mesh: &mut TetMesh, classification: &Classification) {
         mesh.association = Association::default();
         mesh.triangles.refs = classification.faces.iter().map(|&face| self.face_reference(face)).collect();
-        mesh.edges = Elements::default();
-        for &(nodes, edge) in &classification.ridges {
-            mesh.edges.push(nodes, self.edge_reference(edge).unwrap_or(0));
-        }
-        mesh.ridges = (0..mesh.edges.len() as u32).collect();
-        mesh.required_edges.clear();
+        let ridges = classification.ridges.iter();
+        mesh.replace_edges(ridges.map(|&(nodes, edge)| (nodes, self.edge_reference(edge).unwrap_or(0))));
         let is_corner = |v: &u32| matches!(classification.entities[*v as usize], Entity::Vertex(_));
         mesh.corners = (0..mesh.vertices.len() as u32).filter(is_corner).collect();
     }

@@ -2,7 +2,7 @@
 use super::OcctModel;
 use super::bridge::ffi;
 use super::range::{bring_near, place};
-use super::surface::Jet;
+use super::surface::{Jet, Surface};
 use super::{newton, project};
 use crate::geometry::{CurveFrame, Evaluate, OnCurve, OnSurface, SurfaceFrame};
 use crate::mesh::vector::{Vec3, cross, distance, dot, norm, scale, unit};
@@ -83,8 +83,9 @@ impl<'a> OcctEvaluator<'a> {
         let (a, b) = (norm(jet.du), norm(jet.dv));
         let normal = cross(jet.du, jet.dv);
         let length = norm(normal);
-        // A pole of an analytic surface still tells its normal: only nothing at all is an apex.
-        let least = if self.model.surfaces[face as usize].form.is_analytic() { 1e-30 } else { SINGULAR };
+        // Rounding leaves a sphere's Su a direction even at the poles; at a cone's apex it means nothing.
+        let sphere = matches!(self.model.surfaces[face as usize].form, Surface::Sphere(..));
+        let least = if sphere { 1e-30 } else { SINGULAR };
         let (long, short) = ((a * spans[0]).max(b * spans[1]), (a * spans[0]).min(b * spans[1]));
         (short > least * long && length > SINGULAR * a * b).then(|| scale(normal, 1.0 / length))
     }

@@ -97,11 +97,6 @@ impl Surface {
         }
     }
 
-    /// Whether there is a closed form.
-    pub fn is_analytic(&self) -> bool {
-        !matches!(self, Self::General)
-    }
-
     /// Point and derivatives; none without a closed form.
     pub fn jet(&self, [u, v]: [f64; 2]) -> Option<Jet> {
         let zero = [0.0; 3];

@@ -1,0 +1,56 @@
+//! Collapse to the middle: where neither end of a short edge can go onto the other, both meet half-way.
+use super::access::Access;
+use super::ids::{TetId, VertexId};
+use super::outcome::Refusal;
+use super::star::{Bounds, Seed};
+use super::worker::Worker;
+use crate::mesh::vector::lerp;
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Removes v and moves its neighbour w, on the same entity of the model, to the middle of the edge between them.
+    ///
+    /// # Errors
+    /// As a collapse; the mesh is as it was then.
+    pub fn merge(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
+        if self.store.entity(v) != self.store.entity(w) || self.context.is_frozen(w) {
+            return Err(Refusal::Geometry);
+        }
+        self.check_entities(v, w)?;
+        let mut both = std::mem::take(&mut self.state.union);
+        let result = self.merge_in(v, w, &mut both);
+        self.state.union = both;
+        result
+    }
+
+    fn merge_in(&mut self, v: VertexId, w: VertexId, both: &mut Vec<TetId>) -> Result<(), Refusal> {
+        both.clear();
+        self.gather_ball(v)?;
+        both.extend(&self.state.ball);
+        self.gather_ball(w)?;
+        let store = self.store;
+        both.extend(self.state.ball.iter().filter(|&&t| !store.vertices(t).contains(&v)));
+        let held = self.hold(w);
+        let middle = lerp(self.store.position(v), held.placed.point, 0.5);
+        let placed = self.place(held.placed.entity, middle, &[v, w]);
+        self.set_point(w, placed.point, held.hint);
+        self.store.set_place(w, placed.entity, placed.parameters);
+        self.merge_star(v, w, both).inspect_err(|_| self.put_back(w, &held))
+    }
+
+    fn merge_star(&mut self, v: VertexId, w: VertexId, both: &[TetId]) -> Result<(), Refusal> {
+        self.list_link(w, both);
+        let limit = self.context.limits.longest_new;
+        if self.state.star.link.iter().any(|&x| x != v && self.length(w, x) > limit) {
+            return Err(Refusal::Length);
+        }
+        let worst_old = both.iter().map(|&t| self.store.quality(t)).fold(f64::INFINITY, f64::min);
+        let floor = self.context.limits.collapse_floor.min(worst_old);
+        self.build_star(Seed::Pair(v, w), w, both, Bounds { wanted: 0.0, floor })?;
+        if !self.state.star.surface.is_empty() {
+            self.check_surface_link(v, w)?;
+            self.check_normals(0.0)?;
+        }
+        self.state.replacement.keeps_surface = true;
+        self.finish_collapse(v, w)
+    }
+}

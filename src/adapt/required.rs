@@ -1,0 +1,98 @@
+//! What the input says must stay: vertices, edges, triangles.
+//!
+//! The ends of required edges and the corners of required triangles neither move nor go, so their ids last and an edge is known by
+//! them. A surface triangle stays as long as its three edges do. All this is looked after in one place, the commit of a cavity.
+use super::access::Access;
+use super::ids::{EDGE, VertexId};
+use super::outcome::Refusal;
+use super::worker::Worker;
+use crate::mesh::TetMesh;
+use std::collections::HashSet;
+
+/// Vertices and edges that stay.
+#[derive(Default)]
+pub struct Required {
+    /// By vertex id; ids beyond were given out later.
+    frozen: Vec<bool>,
+    edges: HashSet<[VertexId; 2]>,
+}
+
+impl Required {
+    /// What a mesh requires; its vertices have their indices as ids.
+    pub fn of(mesh: &TetMesh) -> Self {
+        let mut required = Self { frozen: vec![false; mesh.vertices.len()], edges: HashSet::new() };
+        let edges = mesh.required_edges.iter().map(|&e| mesh.edges.nodes[e as usize]);
+        let triangles = mesh.required_triangles.iter().map(|&t| mesh.triangles.nodes[t as usize]);
+        for [a, b] in edges.chain(triangles.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]])) {
+            required.frozen[a as usize] = true;
+            required.frozen[b as usize] = true;
+            required.edges.insert(key(VertexId(a), VertexId(b)));
+        }
+        mesh.required_vertices.iter().for_each(|&v| required.frozen[v as usize] = true);
+        if !required.frozen.contains(&true) {
+            required.frozen.clear();
+        }
+        required
+    }
+
+    /// Whether a vertex must neither move nor go.
+    #[inline(always)]
+    pub fn is_frozen(&self, v: VertexId) -> bool {
+        self.frozen.get(v.index()).copied().unwrap_or(false)
+    }
+
+    /// Whether the edge is required.
+    #[inline]
+    pub fn has_edge(&self, a: VertexId, b: VertexId) -> bool {
+        self.is_frozen(a) && self.is_frozen(b) && self.edges.contains(&key(a, b))
+    }
+
+    /// Lists in the adapted mesh what `input` required; `number` gives each vertex id its index there. Required edges are listed
+    /// as edges with their references, alone: the ridges are added when the mesh is put back on its model.
+    pub fn list(input: &TetMesh, mesh: &mut TetMesh, number: impl Fn(VertexId) -> u32) {
+        let renumber = |v: u32| number(VertexId(v));
+        mesh.required_vertices = input.required_vertices.iter().map(|&v| renumber(v)).collect();
+        for &edge in &input.required_edges {
+            let edge = edge as usize;
+            mesh.required_edges.push(mesh.edges.len() as u32);
+            mesh.edges.push(input.edges.nodes[edge].map(renumber), input.edges.refs[edge]);
+        }
+        let sorted = |mut nodes: [u32; 3]| {
+            nodes.sort_unstable();
+            nodes
+        };
+        let wanted = input.required_triangles.iter().map(|&t| sorted(input.triangles.nodes[t as usize].map(renumber)));
+        let wanted: HashSet<[u32; 3]> = wanted.collect();
+        let triangles = mesh.triangles.nodes.iter().zip(0..);
+        mesh.required_triangles =
+            triangles.filter(|(nodes, _)| wanted.contains(&sorted(**nodes))).map(|(_, t)| t).collect();
+    }
+}
+
+fn key(a: VertexId, b: VertexId) -> [VertexId; 2] {
+    [a.min(b), a.max(b)]
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Refuses a replacement without a required vertex or edge that was there before.
+    pub fn check_required(&self) -> Result<(), Refusal> {
+        let required = &self.context.required;
+        let replacement = &self.state.replacement;
+        if required.frozen.is_empty() {
+            return Ok(());
+        }
+        if replacement.dead.iter().any(|&v| required.is_frozen(v)) {
+            return Err(Refusal::Geometry);
+        }
+        for &t in &replacement.old {
+            let v = self.store.vertices(t);
+            for [a, b] in EDGE.map(|ends| ends.map(|i| v[i])) {
+                let stays = || replacement.new.iter().any(|tet| tet.vertices.contains(&a) && tet.vertices.contains(&b));
+                if required.has_edge(a, b) && !stays() {
+                    return Err(Refusal::Geometry);
+                }
+            }
+        }
+        Ok(())
+    }
+}

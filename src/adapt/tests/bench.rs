@@ -1,0 +1,247 @@
+//! What the kernel's tests work on: small meshes with a model and a metric, and sweeps over all of their items in random order.
+use crate::adapt::build;
+use crate::adapt::check::check;
+use crate::adapt::context::{Context, Limits};
+use crate::adapt::criteria::Criterion;
+use crate::adapt::ids::{EDGE, TetId, VertexId};
+use crate::adapt::insert::EdgeItem;
+use crate::adapt::outcome::Counts;
+use crate::adapt::schedule::{self, Collapse, Operation, Project, Reconnect, Retire, Smooth, Split};
+use crate::adapt::worker::State;
+use crate::geometry::classify::Classification;
+use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary, samples};
+use crate::geometry::{Discrete, Model};
+use crate::mesh::TetMesh;
+use crate::mesh::vector::{Vec3, lerp, norm, volume6};
+use crate::metric::{Background, Source, Sym3};
+use crate::tasks::Pool;
+
+/// Numbers that repeat from run to run (splitmix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    fn shuffle<T>(&mut self, items: &mut [T]) {
+        for i in (1..items.len()).rev() {
+            items.swap(i, self.below(i + 1));
+        }
+    }
+}
+
+/// The shapes of the tests.
+#[derive(Clone, Copy, Debug)]
+pub enum Shape {
+    /// Six faces, twelve edges, eight corners.
+    Cube,
+    /// A cube of two regions: an interface with a closed chain of ridges about it.
+    TwoRegions,
+    /// Half way from the cube to the ball: curved faces.
+    Round,
+}
+
+/// A mesh with all that is needed to adapt it.
+pub struct Sample {
+    pub mesh: TetMesh,
+    pub place: Classification,
+    pub model: Model,
+    pub source: Source,
+}
+
+/// Half way to the ball about the cube's centre.
+fn rounded(p: Vec3) -> Vec3 {
+    let off = p.map(|x| 2.0 * x - 1.0);
+    let greatest = off.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let shrink = if greatest > 0.0 { 0.5 + 0.5 * greatest / norm(off) } else { 1.0 };
+    off.map(|x| 0.5 + 0.5 * shrink * x)
+}
+
+/// A small mesh of n cells along a side, with a metric of sizes about `size`, two to five times less in one direction
+/// near a slanted plane.
+pub fn sample(shape: Shape, n: u32, size: f64) -> Sample {
+    let mut mesh = samples::cube(n);
+    if let Shape::Round = shape {
+        mesh.vertices.iter_mut().for_each(|p| *p = rounded(*p));
+    }
+    if let Shape::TwoRegions = shape {
+        for t in 0..mesh.tets.len() {
+            let middle: f64 = mesh.tets.nodes[t].iter().map(|&v| mesh.vertices[v as usize][0]).sum();
+            mesh.tets.refs[t] = if middle < 2.0 { 1 } else { 2 };
+        }
+    }
+    complete_boundary(&mut mesh);
+    let (model, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).unwrap();
+    let logs = mesh.vertices.iter().map(|p| {
+        let off = (p[0] + 0.5 * p[1] - 0.3 * p[2] - 0.6).abs();
+        let thin = size * (0.2 + 0.6 * off).min(0.5);
+        let direction = p.map(|x| x + 0.2);
+        let direction = direction.map(|x| x / norm(direction));
+        let (wide, narrow) = (1.0 / (size * size), 1.0 / (thin * thin));
+        Sym3::diagonal(wide, wide, wide).plus(Sym3::outer(direction, narrow - wide)).ln()
+    });
+    let background = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs.collect());
+    Sample { source: Source::Background(background), model: Model::Discrete(model), mesh, place }
+}
+
+/// What a sweep does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Task {
+    Split,
+    Collapse,
+    Reconnect(Criterion),
+    Smooth,
+    Project,
+    Retire,
+}
+
+impl Task {
+    pub const ALL: [Task; 8] = [
+        Task::Split,
+        Task::Collapse,
+        Task::Reconnect(Criterion::Delaunay),
+        Task::Reconnect(Criterion::EdgeWeight),
+        Task::Reconnect(Criterion::MeanRatio),
+        Task::Smooth,
+        Task::Project,
+        Task::Retire,
+    ];
+}
+
+/// A sample at work.
+pub struct Bench<'m> {
+    pub context: Context<'m>,
+    pub states: Vec<State<'m>>,
+    pub pool: Pool,
+    pub random: Random,
+    volume: f64,
+    exact: bool,
+}
+
+impl<'m> Bench<'m> {
+    /// A bench with so many threads. Limits are lax, so that much is done: edges of any length are split and collapsed, and bad
+    /// elements come of it.
+    pub fn new(sample: &'m Sample, threads: usize, seed: u64) -> Self {
+        let (store, waiting) = build::fill(&sample.mesh, &sample.place, &sample.source).unwrap();
+        assert!(waiting.is_empty(), "the samples lie on their models");
+        let mut context = Context::new(store, &sample.source, &sample.model);
+        context.limits = Limits { insert_floor: 0.02, collapse_floor: 0.02, ..Limits::default() };
+        let pool = Pool::new(threads).unwrap();
+        let states = (0..threads).map(|_| State::new(&context)).collect();
+        let mut bench = Self { context, states, pool, random: Random(seed), volume: 0.0, exact: true };
+        bench.volume = bench.measure();
+        // A plane surface keeps its volume, a curved one does not quite.
+        bench.exact = (bench.volume - 1.0).abs() < 1e-12;
+        bench.check("as built");
+        bench
+    }
+
+    fn measure(&self) -> f64 {
+        let store = &self.context.store;
+        let volume = |t: TetId| {
+            let [a, b, c, d] = store.vertices(t).map(|v| store.position(v));
+            volume6(a, b, c, d) / 6.0
+        };
+        store.live_tets().map(volume).sum()
+    }
+
+    /// The whole store, and its volume.
+    pub fn check(&self, after: &str) {
+        if let Err(what) = check(&self.context) {
+            panic!("after {after}: {what}");
+        }
+        let (volume, slack) = (self.measure(), if self.exact { 1e-9 } else { 0.5 });
+        assert!((volume / self.volume - 1.0).abs() < slack, "after {after}: the volume {} is {volume}", self.volume);
+    }
+
+    /// One sweep over all items that there are, in random order, and the check.
+    pub fn sweep(&mut self, task: Task) -> Counts {
+        self.context.store.tick();
+        let counts = match task {
+            Task::Split => self.on_edges(&Split),
+            Task::Collapse => self.on_edges(&Collapse),
+            Task::Reconnect(criterion) => self.on_tets(&Reconnect(criterion)),
+            Task::Smooth => self.on_vertices(&Smooth, false),
+            Task::Project => {
+                self.push_off_the_model();
+                self.on_vertices(&Project, true)
+            }
+            Task::Retire => self.on_vertices(&Retire, true),
+        };
+        if task == Task::Project && self.states.iter().any(|state| !state.waiting.is_empty()) {
+            // Some stay where they were pushed to, until another operation brings them back.
+            self.exact = false;
+        }
+        self.check(&format!("{task:?}"));
+        self.states.iter_mut().for_each(|state| state.waiting.clear());
+        counts
+    }
+
+    fn run<O: Operation>(&mut self, operation: &O, mut items: Vec<O::Item>) -> Counts {
+        self.random.shuffle(&mut items);
+        schedule::run(operation, &items, &self.context, &mut self.states, &self.pool, &|_| {})
+    }
+
+    /// All edges; some are listed twice, with another tetrahedron.
+    pub fn edges(&self) -> Vec<EdgeItem> {
+        let store = &self.context.store;
+        let mut items: Vec<EdgeItem> = Vec::new();
+        for tet in store.live_tets() {
+            let v = store.vertices(tet);
+            items.extend(EDGE.map(|[i, j]| EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet }));
+        }
+        items.sort_unstable_by_key(|item| (item.a, item.b, item.tet));
+        let mut n = 0;
+        items.retain(|_| {
+            n += 1;
+            n % 3 != 0
+        });
+        items
+    }
+
+    fn on_edges<O: Operation<Item = EdgeItem>>(&mut self, operation: &O) -> Counts {
+        let items = self.edges();
+        self.run(operation, items)
+    }
+
+    fn on_tets<O: Operation<Item = TetId>>(&mut self, operation: &O) -> Counts {
+        let items = self.context.store.live_tets().collect();
+        self.run(operation, items)
+    }
+
+    /// All vertices, or one of five of those on the model.
+    fn on_vertices<O: Operation<Item = VertexId>>(&mut self, operation: &O, few: bool) -> Counts {
+        let store = &self.context.store;
+        let wanted = |v: &VertexId| !few || (store.dimension(*v) < 3 && v.0 % 5 == 0);
+        let items = store.live_vertices().filter(wanted).collect();
+        self.run(operation, items)
+    }
+
+    /// Moves the boundary vertices that [`Bench::on_vertices`] takes a little towards a neighbour, if all stays positive.
+    fn push_off_the_model(&mut self) {
+        let store = &self.context.store;
+        let wanted = |v: &VertexId| matches!(store.dimension(*v), 1 | 2) && v.0 % 5 == 0;
+        let shift = 0.1 + 1e-3 * self.random.below(100) as f64;
+        for v in store.live_vertices().filter(wanted) {
+            let tets: Vec<TetId> = store.live_tets().filter(|&t| store.vertices(t).contains(&v)).collect();
+            let from = store.position(v);
+            let inner = |t: &TetId| store.vertices(*t).into_iter().find(|&x| store.dimension(x) == 3);
+            let Some(x) = tets.iter().find_map(inner) else { continue };
+            store.set_position(v, lerp(from, store.position(x), shift));
+            let positive = |t: &TetId| crate::adapt::shape::is_positive(store.vertices(*t).map(|v| store.position(v)));
+            if !tets.iter().all(positive) {
+                store.set_position(v, from);
+            }
+        }
+        build::measure(store, self.context.source);
+    }
+}

@@ -1,0 +1,5 @@
+//! Tests of the kernel as a whole: operations one by one, in random order, and on many threads.
+mod bench;
+mod random;
+mod stress;
+mod sweeps;

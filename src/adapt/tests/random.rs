@@ -1,0 +1,82 @@
+//! Random operations one by one: what is done leaves a valid mesh, what is refused leaves the mesh as it was.
+use super::bench::{Bench, Shape, sample};
+use crate::adapt::access::{Access, Speculative};
+use crate::adapt::criteria::Criterion;
+use crate::adapt::ids::{TetId, VertexId};
+use crate::adapt::outcome::Refusal;
+use crate::adapt::schedule::{Collapse, Operation, Reconnect, Retire, Smooth, Split};
+use crate::adapt::store::Store;
+use crate::adapt::worker::Worker;
+use crate::geometry::Entity;
+use crate::mesh::vector::Vec3;
+use proptest::prelude::*;
+
+type Tet = (TetId, [VertexId; 4], [TetId; 4], [u32; 4]);
+type Vertex = (VertexId, Vec3, Entity, [f64; 2], [f64; 6]);
+
+/// All that an operation may change.
+fn picture(store: &Store) -> (Vec<Tet>, Vec<Vertex>) {
+    let tet = |t| (t, store.vertices(t), store.neighbours(t), store.tags(t));
+    let vertex = |v| (v, store.position(v), store.entity(v), store.parameters(v), store.metric(v).0);
+    (store.live_tets().map(tet).collect(), store.live_vertices().map(vertex).collect())
+}
+
+/// Does the operation that the number names to the item that it names.
+fn attempt(bench: &mut Bench<'_>, kind: u8, pick: usize) -> Result<(), Refusal> {
+    let edges = bench.edges();
+    let edge = edges[pick % edges.len()];
+    let vertices: Vec<VertexId> = bench.context.store.live_vertices().collect();
+    let vertex = vertices[pick % vertices.len()];
+    let mut worker = Worker::new(&bench.context, &mut bench.states[0], Speculative::new(0));
+    let result = match kind {
+        0 => Split.attempt(&mut worker, edge),
+        1 => Collapse.attempt(&mut worker, edge),
+        2 => Reconnect(Criterion::Delaunay).attempt(&mut worker, edge.tet),
+        3 => Reconnect(Criterion::EdgeWeight).attempt(&mut worker, edge.tet),
+        4 => Reconnect(Criterion::MeanRatio).attempt(&mut worker, edge.tet),
+        5 => Smooth.attempt(&mut worker, vertex),
+        _ => Retire.attempt(&mut worker, vertex),
+    };
+    worker.access.release(worker.store);
+    result
+}
+
+fn run(shape: Shape, long: f64, operations: Vec<(u8, usize)>) {
+    let sample = sample(shape, 2, 0.6);
+    let mut bench = Bench::new(&sample, 1, 1);
+    bench.context.limits.long = long;
+    bench.context.limits.short = 3.0 * long;
+    for (kind, pick) in operations {
+        let before = picture(&bench.context.store);
+        match attempt(&mut bench, kind, pick) {
+            Ok(()) => bench.check(&format!("operation {kind} at {pick}")),
+            Err(refusal) => {
+                assert_ne!(refusal, Refusal::Conflict, "there is one thread");
+                assert!(before == picture(&bench.context.store), "operation {kind} at {pick}: {refusal:?}, and yet");
+            }
+        }
+    }
+}
+
+fn operations() -> impl Strategy<Value = Vec<(u8, usize)>> {
+    proptest::collection::vec((0..7u8, any::<usize>()), 1..60)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_cube_stays_valid(operations in operations(), long in 0.3..2.0) {
+        run(Shape::Cube, long, operations);
+    }
+
+    #[test]
+    fn two_regions_stay_valid(operations in operations(), long in 0.3..2.0) {
+        run(Shape::TwoRegions, long, operations);
+    }
+
+    #[test]
+    fn a_round_body_stays_valid(operations in operations(), long in 0.3..2.0) {
+        run(Shape::Round, long, operations);
+    }
+}

@@ -1,0 +1,289 @@
+//! What a CAD model holds, as `geo-adapt model` and the library tell it, and what a bad file gets.
+#![cfg(feature = "occt")]
+mod support;
+
+use geo_adapt::geometry::{CurveKind, Evaluate, Geometry, OcctModel, SurfaceKind};
+use geo_adapt::mesh::vector::{Vec3, distance, dot, norm, sub};
+use std::path::Path;
+use std::process::{Command, Output};
+use support::{data, shared_case};
+
+fn program(arguments: &[&str], file: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_geo-adapt")).arg("model").args(arguments).arg(file).output().unwrap()
+}
+
+fn counts(model: &OcctModel) -> [usize; 5] {
+    let topology = model.topology();
+    let degenerate = topology.edges.iter().filter(|edge| edge.degenerate).count();
+    let seams = topology.edges.iter().filter(|edge| edge.seam).count();
+    [topology.faces.len(), topology.edges.len(), topology.vertices.len(), degenerate, seams]
+}
+
+#[test]
+fn shared_models_have_their_entities() {
+    // Faces, edges, vertices, degenerate edges, seams; diagonal: FACTS.
+    let cases = [
+        ("cube-cylinder/cube-cylinder.step", [7, 15, 10, 0, 0], 1.73, 1e-7),
+        ("cube-cylinder/cube-cylinder.egads", [7, 15, 10, 0, 0], 1.73, 3e-7),
+        ("hemisphere-cylinder/hemisph-cyl.stp", [5, 14, 7, 4, 0], 245.0, 1e-5),
+        ("hemisphere-cylinder/hemisph-cyl.egads", [5, 14, 7, 4, 0], 245.0, 3e-4),
+        ("onera-m6/onera-m6-sharp-te.stp", [12, 25, 14, 2, 0], 300.0, 2e-5),
+        ("onera-m6/onera-m6-sharp-te.egads", [12, 25, 14, 2, 0], 300.0, 2e-5),
+    ];
+    for (name, expected, diagonal, tolerance) in cases {
+        let Some(path) = shared_case(name) else { continue };
+        let model = OcctModel::read(&path).unwrap();
+        assert_eq!(counts(&model), expected, "{name}");
+        assert_eq!(model.topology().solids, 1, "{name}");
+        assert!((model.topology().diagonal() / diagonal - 1.0).abs() < 2e-3, "{name}");
+        assert!(model.topology().tolerance <= tolerance, "{name}");
+    }
+}
+
+#[test]
+fn the_box_of_the_cube_is_its_own() {
+    let Some(path) = shared_case("cube-cylinder/cube-cylinder.step") else { return };
+    let model = OcctModel::read(&path).unwrap();
+    let [low, high] = model.topology().bounds;
+    assert!(distance(low, [0.0; 3]) < 1e-12 && distance(high, [1.0; 3]) < 1e-12, "{low:?} {high:?}");
+    let kinds: Vec<_> = model.topology().faces.iter().map(|face| face.kind).collect();
+    assert_eq!(kinds.iter().filter(|&&kind| kind == SurfaceKind::Plane).count(), 6);
+    assert_eq!(kinds.iter().filter(|&&kind| kind == SurfaceKind::Cylinder).count(), 1);
+}
+
+#[test]
+fn own_models_have_their_entities() {
+    let cases = [
+        ("torus.brep", [1, 2, 1, 0, 2], 1),
+        ("capped-cylinder.step", [3, 3, 2, 0, 1], 1),
+        ("mirrored-cylinder.brep", [3, 3, 2, 0, 1], 1),
+        ("cone-apex.brep", [4, 7, 4, 1, 0], 1),
+        ("vase.brep", [1, 3, 2, 2, 1], 0),
+        ("duct.brep", [6, 12, 8, 0, 0], 1),
+        ("block-inches.igs", [6, 12, 8, 0, 0], 1),
+    ];
+    for (name, expected, solids) in cases {
+        let model = OcctModel::read(&data(name)).unwrap();
+        assert_eq!(counts(&model), expected, "{name}");
+        assert_eq!(model.topology().solids, solids, "{name}");
+        for (vertex, i) in model.topology().vertices.iter().zip(0..) {
+            assert!(!vertex.edges.is_empty(), "{name}");
+            for &edge in &vertex.edges {
+                assert!(model.topology().edges[edge as usize].vertices.contains(&Some(i)), "{name}");
+            }
+        }
+        for (edge, i) in model.topology().edges.iter().zip(0..) {
+            assert!(edge.seam || edge.degenerate || edge.faces.len() == 2, "{name}: {edge:?}");
+            assert_eq!(edge.kind == CurveKind::None, edge.degenerate, "{name}");
+            for &face in &edge.faces {
+                assert!(model.topology().faces[face as usize].edges.contains(&i), "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn coordinates_are_the_numbers_of_the_file_whatever_its_unit() {
+    let text = std::fs::read_to_string(data("capped-cylinder.step")).unwrap();
+    let millimetre = "SI_UNIT(.MILLI.,.METRE.)";
+    assert!(text.contains(millimetre));
+    let folder = tempfile::tempdir().unwrap();
+    let plain = OcctModel::read(&data("capped-cylinder.step")).unwrap();
+    for unit in ["SI_UNIT($,.METRE.)", "SI_UNIT(.KILO.,.METRE.)", "SI_UNIT(.MICRO.,.METRE.)"] {
+        let path = folder.path().join("unit.step");
+        std::fs::write(&path, text.replace(millimetre, unit)).unwrap();
+        let other = OcctModel::read(&path).unwrap();
+        for (a, b) in plain.topology().vertices.iter().zip(&other.topology().vertices) {
+            assert_eq!(a.point, b.point, "{unit}");
+        }
+    }
+    // IGES in inches: the block is 1 by 2 by 3.
+    let block = OcctModel::read(&data("block-inches.igs")).unwrap();
+    let [low, high] = block.topology().bounds;
+    assert!(distance(low, [0.0; 3]) < 1e-9 && distance(high, [1.0, 2.0, 3.0]) < 1e-9, "{low:?} {high:?}");
+    let again = OcctModel::read(&data("capped-cylinder.step")).unwrap();
+    assert_eq!(again.topology().bounds, plain.topology().bounds);
+}
+
+#[test]
+fn normals_point_out_of_convex_solids() {
+    for name in ["capped-cylinder.step", "mirrored-cylinder.brep", "block-inches.igs", "cone-apex.brep"] {
+        let model = OcctModel::read(&data(name)).unwrap();
+        let vertices = &model.topology().vertices;
+        let mut on = model.evaluator();
+        let inner = if name == "block-inches.igs" { [0.5, 1.0, 1.5] } else { middle_of_faces(&model) };
+        assert!(!vertices.is_empty());
+        for (face, i) in model.topology().faces.iter().zip(0..) {
+            // An inner point of a disc, half disc or rectangle: off the middle, where an apex may be.
+            let uv = face.range.map(|[low, high]| low + 0.45 * (high - low));
+            let frame = on.face_frame(i, uv);
+            assert!((norm(frame.normal) - 1.0).abs() < 1e-12);
+            assert!(dot(frame.normal, sub(frame.point, inner)) > 0.0, "{name} face {}", i + 1);
+            assert_eq!(on.face_normal(i, uv), frame.normal);
+        }
+    }
+}
+
+/// A point inside a convex solid: the mean of a point of each face.
+fn middle_of_faces(model: &OcctModel) -> Vec3 {
+    let mut on = model.evaluator();
+    let faces = &model.topology().faces;
+    let mut sum = [0.0; 3];
+    for (face, i) in faces.iter().zip(0..) {
+        let [low, high] = face.bounds;
+        let middle = [0, 1, 2].map(|k: usize| 0.5 * (low[k] + high[k]));
+        let point = on.closest_on_face(i, middle, None).point;
+        sum = [0, 1, 2].map(|k: usize| sum[k] + point[k] / faces.len() as f64);
+    }
+    sum
+}
+
+#[test]
+fn curvatures_are_those_of_the_shapes() {
+    // Against the outward normal, so that a convex surface has negative curvatures.
+    let close = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9;
+    let torus = OcctModel::read(&data("torus.brep")).unwrap();
+    let frame = torus.evaluator().face_frame(0, [0.7, 0.0]);
+    assert!(close(frame.curvatures, [-1.0 / 0.3, -1.0 / 1.3]), "{frame:?}");
+    let frame = torus.evaluator().face_frame(0, [0.7, std::f64::consts::PI]);
+    assert!(close(frame.curvatures, [-1.0 / 0.3, 1.0 / 0.7]), "{frame:?}");
+    let cylinder = OcctModel::read(&data("mirrored-cylinder.brep")).unwrap();
+    let frame = cylinder.evaluator().face_frame(0, [2.0, 1.0]);
+    assert!(close(frame.curvatures, [-2.0, 0.0]), "{frame:?}");
+    assert!(dot(frame.directions[0], frame.directions[1]).abs() < 1e-12);
+    assert!(dot(frame.directions[0], frame.normal).abs() < 1e-12);
+    let edge = cylinder.evaluator().edge_frame(0, 1.0);
+    assert!((edge.curvature() - 2.0).abs() < 1e-12);
+    // Finite differences of the normal on a spline surface: n changes by −κ along a principal direction.
+    let duct = OcctModel::read(&data("duct.brep")).unwrap();
+    let mut on = duct.evaluator();
+    let frame = on.face_frame(3, [3.4, 0.45]);
+    for (direction, curvature) in frame.directions.iter().zip(frame.curvatures) {
+        let step = 1e-5;
+        let ahead = [0, 1, 2].map(|k: usize| frame.point[k] + step * direction[k]);
+        let there = on.closest_on_surface(3, ahead, [3.4, 0.45]);
+        let normal = on.face_normal(3, there.uv);
+        let change = dot(sub(normal, frame.normal), *direction) / step;
+        assert!((change + curvature).abs() < 1e-3, "{change} {curvature}");
+    }
+}
+
+#[test]
+fn poles_have_a_normal_and_an_apex_has_none() {
+    let vase = OcctModel::read(&data("vase.brep")).unwrap();
+    let mut on = vase.evaluator();
+    let face = &vase.topology().faces[0];
+    let bottom = on.face_frame(0, [1.0, face.range[1][0]]);
+    assert!(norm(bottom.point) < 1e-12 && (norm(bottom.normal) - 1.0).abs() < 1e-9, "{bottom:?}");
+    let cone = OcctModel::read(&data("cone-apex.brep")).unwrap();
+    let mut on = cone.evaluator();
+    let apex = on.face_frame(0, [1.0, cone.topology().faces[0].range[1][1]]);
+    assert_eq!((apex.normal, apex.curvatures), ([0.0; 3], [0.0; 2]), "{apex:?}");
+    let frame = on.edge_frame(0, 0.5);
+    assert_eq!((frame.point, frame.d1), (cone.topology().vertices[0].point, [0.0; 3]));
+}
+
+#[test]
+fn the_listing_names_what_is_there() {
+    let output = program(&[], &data("vase.brep"));
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stderr.is_empty());
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in ["revolution", "bezier", "seam", "degenerate", "0 solids, 1 face, 3 edges (1 seam, 2 degenerate)"] {
+        assert!(text.contains(part), "no {part:?} in\n{text}");
+    }
+    assert!(text.lines().any(|line| line.starts_with("diagonal") && line.ends_with("2.63392")), "{text}");
+}
+
+#[test]
+fn the_json_is_the_topology() {
+    let output = program(&["--json"], &data("capped-cylinder.step"));
+    assert_eq!(output.status.code(), Some(0));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["solids"], 1);
+    assert_eq!(json["faces"][0]["kind"], "cylinder");
+    assert_eq!(json["edges"][1]["seam"], true);
+    assert_eq!(json["edges"][1]["faces"], serde_json::json!([0]));
+    let area = json["faces"][0]["area"].as_f64().unwrap();
+    assert!((area - 2.0 * std::f64::consts::PI).abs() < 1e-9);
+    assert!((json["edges"][0]["length"].as_f64().unwrap() - std::f64::consts::PI).abs() < 1e-9);
+}
+
+/// Bad input: exit 2, one message that names the file and holds `part`, and nothing else.
+fn refused(path: &Path, part: &str) {
+    let output = program(&[], path);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}: {message}", path.display());
+    assert!(output.stdout.is_empty(), "{}", path.display());
+    assert_eq!(message.lines().count(), 1, "{message}");
+    assert!(message.starts_with("geo-adapt: error: ") && message.contains(path.to_str().unwrap()), "{message}");
+    assert!(message.contains(part), "{part:?} is not in {message}");
+}
+
+#[test]
+fn files_that_are_no_model_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, content: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        path
+    };
+    for kind in ["step", "igs", "brep", "egads"] {
+        refused(&file(&format!("empty.{kind}"), b""), "empty");
+        refused(&file(&format!("text.{kind}"), b"A shopping list:\nmilk, bread\n"), "this is no");
+        refused(&file(&format!("picture.{kind}"), b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x01\0"), "this is no");
+        refused(&folder.path().join(format!("missing.{kind}")), "No such file");
+    }
+    refused(&file("mesh.stl", b"solid"), ".step");
+    refused(&file("model", b"solid"), ".step");
+    std::fs::create_dir(folder.path().join("folder.step")).unwrap();
+    refused(&folder.path().join("folder.step"), "directory");
+    let empty = "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n\
+                 FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
+    refused(&file("nothing.step", empty.as_bytes()), "no shape");
+}
+
+#[test]
+fn cut_and_damaged_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["capped-cylinder.step", "block-inches.igs", "duct.brep", "torus.brep"] {
+        let whole = std::fs::read(data(name)).unwrap();
+        let path = folder.path().join(name);
+        for share in [0.2, 0.5, 0.8, 0.97] {
+            std::fs::write(&path, &whole[..(share * whole.len() as f64) as usize]).unwrap();
+            refused(&path, "again");
+        }
+    }
+    // A reference to nothing, where OCCT's reader would follow a null pointer.
+    let text = std::fs::read_to_string(data("capped-cylinder.step")).unwrap();
+    let place = text.find("= LINE(").unwrap();
+    let damaged = text[..place].to_string() + &text[place..].replacen(",#", ",#9", 1);
+    let path = folder.path().join("damaged.step");
+    std::fs::write(&path, damaged).unwrap();
+    refused(&path, "damaged");
+}
+
+#[test]
+fn a_model_without_faces_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("wire.brep");
+    // One vertex, by hand.
+    let text = "DBRep_DrawableShape\n\nCASCADE Topology V1, (c) Matra-Datavision\nLocations 0\nCurve2ds 0\nCurves 0\n\
+                Polygon3D 0\nPolygonOnTriangulations 0\nSurfaces 0\nTriangulations 0\n\nTShapes 1\nVe\n1e-07\n0 0 0\n\
+                0 0\n\n0101101\n*\n\n+1 0 \n";
+    std::fs::write(&path, text).unwrap();
+    refused(&path, "no faces");
+}
+
+#[test]
+fn models_load_in_several_threads_at_once() {
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                for name in ["capped-cylinder.step", "torus.brep", "block-inches.igs"] {
+                    assert!(OcctModel::read(&data(name)).is_ok(), "{name}");
+                }
+            });
+        }
+    });
+}
