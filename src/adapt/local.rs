@@ -128,13 +128,6 @@ impl<T: Copy + Default> FaceMap<T> {
         (&mut self.slots[at].2, !found)
     }
 
-    /// The value of a triangle, if it is there.
-    #[inline]
-    pub fn get(&mut self, face: [u32; 3]) -> Option<&mut T> {
-        let (at, found) = self.find(sorted(face));
-        found.then(|| &mut self.slots[at].2)
-    }
-
     #[inline]
     fn find(&self, key: [u32; 3]) -> (usize, bool) {
         let mask = self.slots.len() - 1;
@@ -192,11 +185,11 @@ mod tests {
             *value = i;
         }
         for i in 0..2000 {
-            assert_eq!(map.get([i, i + 3, i + 7]), Some(&mut i.clone()));
+            assert_eq!(*map.entry([i, i + 3, i + 7]).0, i);
             assert!(!map.entry([i + 3, i + 7, i]).1);
         }
-        assert!(map.get([1, 2, 3]).is_none());
+        assert!(map.entry([1, 2, 3]).1);
         map.clear();
-        assert!(map.get([0, 3, 7]).is_none());
+        assert!(map.entry([0, 3, 7]).1);
     }
 }

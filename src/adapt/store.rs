@@ -476,12 +476,6 @@ impl Store {
     pub fn is_tet(&self, t: TetId) -> bool {
         self.tets[t.index()].vertices[0].load(Relaxed) != VertexId::NONE.0
     }
-
-    /// Local index of a vertex in a tetrahedron.
-    #[inline(always)]
-    pub fn local(&self, t: TetId, v: VertexId) -> Option<usize> {
-        self.vertices(t).iter().position(|&w| w == v)
-    }
 }
 
 fn take(next: &AtomicUsize, room: usize, count: usize, fresh: impl Fn(u32)) -> Option<std::ops::Range<u32>> {

@@ -1,8 +1,8 @@
 //! `geo-adapt inspect`.
-use super::table::{Table, figure};
+use super::table::{Table, place};
 use super::{Outcome, load};
 use crate::geometry::fidelity::{self, Fidelity};
-use crate::geometry::{Entity, Model, classify};
+use crate::geometry::{Model, classify};
 use crate::mesh::TetMesh;
 use crate::mesh::io::read_mesh;
 use crate::mesh::validity::{self, Validity};
@@ -150,43 +150,4 @@ fn describe(inspection: &Inspection) -> String {
         None => {}
     }
     table.text().into()
-}
-
-/// A point for people.
-fn place([x, y, z]: Vec3) -> String {
-    format!("({x:.6}, {y:.6}, {z:.6})")
-}
-
-impl Table {
-    /// How true the mesh is to its model.
-    pub fn fidelity(&mut self, fidelity: &Fidelity) {
-        self.row("vertices on the model", fidelity.vertices);
-        let farthest =
-            [("farthest from the model", &fidelity.from_model), ("farthest from its entity", &fidelity.from_entity)];
-        for (name, found) in farthest {
-            if let Some(found) = found {
-                let (vertex, entity) = (found.vertex + 1, entity_name(found.entity));
-                let far = figure(found.distance);
-                self.row(name, format_args!("{far} (vertex {vertex} on {entity} at {})", place(found.at)));
-            }
-        }
-        if let Some(worst) = &fidelity.worst_normal {
-            let (triangle, face, at) = (worst.triangle + 1, worst.face + 1, place(worst.at));
-            let (value, mean) = (figure(worst.deviation), figure(fidelity.mean_normal_deviation));
-            self.row(
-                "worst normal deviation",
-                format_args!("{value} (triangle {triangle} on face {face} at {at}), mean {mean}"),
-            );
-        }
-    }
-}
-
-/// An entity for people: numbers from 1.
-fn entity_name(entity: Entity) -> String {
-    match entity {
-        Entity::Vertex(i) => format!("vertex {}", i + 1),
-        Entity::Edge(i) => format!("edge {}", i + 1),
-        Entity::Face(i) => format!("face {}", i + 1),
-        Entity::Interior => "nothing".into(),
-    }
 }

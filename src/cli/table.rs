@@ -1,4 +1,6 @@
 //! Tables and histograms as text, for `inspect` and the report of `adapt`.
+use crate::geometry::fidelity::Fidelity;
+use crate::mesh::vector::Vec3;
 use crate::metric::statistics::{Class, Distribution, Statistics};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -70,6 +72,33 @@ impl Table {
         self.distribution(&format!("edge length, {unit}"), &statistics.edge_lengths);
         self.distribution("mean ratio", &statistics.mean_ratios);
     }
+
+    /// How true the mesh is to its model.
+    pub fn fidelity(&mut self, fidelity: &Fidelity) {
+        self.row("vertices on the model", fidelity.vertices);
+        let farthest =
+            [("farthest from the model", &fidelity.from_model), ("farthest from its entity", &fidelity.from_entity)];
+        for (name, found) in farthest {
+            if let Some(found) = found {
+                let (vertex, entity) = (found.vertex + 1, found.entity);
+                let far = figure(found.distance);
+                self.row(name, format_args!("{far} (vertex {vertex} on {entity} at {})", place(found.at)));
+            }
+        }
+        if let Some(worst) = &fidelity.worst_normal {
+            let (triangle, face, at) = (worst.triangle + 1, worst.face + 1, place(worst.at));
+            let (value, mean) = (figure(worst.deviation), figure(fidelity.mean_normal_deviation));
+            self.row(
+                "worst normal deviation",
+                format_args!("{value} (triangle {triangle} on face {face} at {at}), mean {mean}"),
+            );
+        }
+    }
+}
+
+/// A point for people.
+pub fn place([x, y, z]: Vec3) -> String {
+    format!("({x:.6}, {y:.6}, {z:.6})")
 }
 
 /// Four significant figures, in powers of ten when very small or large.

@@ -60,6 +60,18 @@ pub fn mean_ratio(points: [Vec3; 4], logs: [&Sym3; 4]) -> f64 {
     mean_ratio_log(points, &mean_log(logs))
 }
 
+/// Cube root of a positive normal number to 1e-15, at a third of the time of the library's correctly rounded one: a
+/// guess from the exponent, then Halley's iteration, which triples the digits.
+#[inline(always)]
+fn cube_root(x: f64) -> f64 {
+    let mut y = f64::from_bits(x.to_bits() / 3 + 0x2A9F_7893_0000_0000);
+    for _ in 0..3 {
+        let cube = y * y * y;
+        y *= (cube + 2.0 * x) / (2.0 * cube + x);
+    }
+    y
+}
+
 /// [`mean_ratio`] with the logarithm of the mean metric given.
 #[inline]
 pub fn mean_ratio_log(points: [Vec3; 4], mean: &Sym3) -> f64 {
@@ -68,7 +80,7 @@ pub fn mean_ratio_log(points: [Vec3; 4], mean: &Sym3) -> f64 {
         return volume;
     }
     let edges = edge_vectors(&points);
-    let root = volume.cbrt();
+    let root = cube_root(volume);
     FACTOR * root * root / mean.deviatoric_form(&edge_dyads(&edges), || edges)
 }
 
@@ -119,6 +131,14 @@ mod tests {
     fn regular() -> [Vec3; 4] {
         let h = 3f64.sqrt();
         [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, h / 2.0, 0.0], [0.5, h / 6.0, (2.0f64 / 3.0).sqrt()]]
+    }
+
+    #[test]
+    fn cube_roots_of_all_magnitudes() {
+        for exponent in -280..280 {
+            let x = 1.234567 * 10f64.powi(exponent);
+            assert!((cube_root(x) / x.cbrt() - 1.0).abs() < 2e-15, "{x:e}");
+        }
     }
 
     #[test]

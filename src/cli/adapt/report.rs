@@ -5,6 +5,7 @@ use crate::cli::table::Table;
 use crate::geometry::Model;
 #[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
+use crate::geometry::fidelity::{self, Fidelity};
 use crate::mesh::TetMesh;
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
@@ -43,6 +44,7 @@ pub struct Report {
     input_vertices: usize,
     input_tets: usize,
     statistics: Statistics,
+    fidelity: Fidelity,
     off_model: usize,
     operations: BTreeMap<&'static str, Operation>,
     /// Wall times.
@@ -67,6 +69,7 @@ impl Report {
                 associate(&mut mesh, &extracted.classification);
             }
         }
+        let fidelity = fidelity::measure(&mesh, model, &extracted.classification);
         Self {
             version: env!("CARGO_PKG_VERSION"),
             input: arguments.mesh.clone(),
@@ -76,6 +79,7 @@ impl Report {
             input_vertices: input.vertices.len(),
             input_tets: input.tets.len(),
             statistics: Statistics::in_metric(&mesh, &extracted.metrics),
+            fidelity,
             off_model: adapted.off_model,
             operations: operations(&adapted.work),
             seconds: Seconds::default(),
@@ -89,8 +93,9 @@ impl Report {
         let mut table = Table::new();
         table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
         table.statistics(&self.statistics);
+        table.fidelity(&self.fidelity);
         if self.off_model > 0 {
-            table.row("not on the model", self.off_model);
+            table.row("found no room on the model", format_args!("{} vertices", self.off_model));
         }
         table.line("");
         table.line(&format!("{:<14}{:>12}{:>12}{:>9}{:>10}", "operation", "attempts", "done", "sweeps", "seconds"));
