@@ -93,12 +93,13 @@ impl<A: Access> Worker<'_, '_, A> {
         let points = v.map(|x| self.store.position(x));
         let (point, metric) = (centroid(points), self.mean_metric(v));
         let mut result = None;
-        for i in (0..4).filter(|&i| self.store.tags(t)[i] != 0) {
+        let tags = self.store.tags(t);
+        for i in (0..4).filter(|&i| tags[i] != 0) {
+            // The insertion before may have replaced the tetrahedron, and this face with it.
+            if self.store.peek(t) != v {
+                break;
+            }
             if encroaches_face(&metric, FACE[i].map(|k| points[k]), point) {
-                // The insertion before may have replaced the tetrahedron, and this face with it.
-                if result == Some(Ok(())) && self.store.vertices(t) != v {
-                    break;
-                }
                 result = better(result, self.refine_face(t, i));
             }
         }
@@ -122,6 +123,10 @@ impl<A: Access> Worker<'_, '_, A> {
             let long = edges.into_iter().zip(long).filter(|&(_, long)| long);
             return long
                 .fold(None, |result, ([a, b], _)| better(result, Some(self.split_edge(EdgeItem { a, b, tet: t }))));
+        }
+        if edges.iter().all(|&[a, b]| self.context.required.has_edge(a, b)) {
+            // A required triangle has no say: it stays as it is.
+            return None;
         }
         let (point, metric) = (centroid(face.map(|x| self.store.position(x))), self.mean_metric(face));
         let split = self.split_encroached(&metric, &edges, point, t);

@@ -41,7 +41,9 @@ impl Required {
         self.frozen.get(v.index()).copied().unwrap_or(false)
     }
 
-    fn has_edge(&self, a: VertexId, b: VertexId) -> bool {
+    /// Whether the edge is required.
+    #[inline]
+    pub fn has_edge(&self, a: VertexId, b: VertexId) -> bool {
         self.is_frozen(a) && self.is_frozen(b) && self.edges.contains(&key(a, b))
     }
 

@@ -129,8 +129,10 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         assert!(counts.done > 0);
         let after = [1, 2, 3].map(count);
         assert!((0..3).all(|k| after[k] > before[k]), "{before:?} {after:?}");
-        let refs: Vec<i32> = (1..=6).collect();
-        let extracted = build::extract(&context.store, model.topology(), &refs, &mesh.vertex_refs);
+        let topology = model.topology();
+        let edges = vec![1; topology.edges.len()];
+        let refs = build::References { faces: vec![1; topology.faces.len()], edges };
+        let extracted = build::extract(&context, &mesh, &refs);
         assert_valid_cube(&extracted.mesh);
     }
 }
@@ -149,4 +151,17 @@ fn a_cube_refined_at_centroids_is_a_valid_mesh_with_edges_of_unit_length() {
         let unit = statistics.metric.expect("there is a metric").unit_edges;
         assert!(unit > 0.85, "{unit}");
     }
+}
+
+#[test]
+fn a_required_triangle_is_not_split() {
+    let (mut mesh, place, model, source) = cube(1, [0.15; 3]);
+    mesh.required_triangles = (0..mesh.triangles.len() as u32).collect();
+    let options = Options { points: PointCreation::Centroid, ..Options::default() };
+    let pool = Pool::new(1).expect("a pool");
+    let adapted = adapt(&mesh, &place, &model, &source, &options, &pool, &Silent).expect("the cube is valid");
+    let refined = &adapted.extracted.mesh;
+    assert_valid_cube(refined);
+    assert_eq!(refined.triangles.len(), mesh.triangles.len());
+    assert!(refined.vertices.len() > mesh.vertices.len(), "points inside are free");
 }
