@@ -13,7 +13,8 @@ const QUALITY: f64 = 1e-5;
 
 macro_rules! ensure {
     ($holds:expr, $($what:tt)*) => {
-        if !$holds {
+        let holds: bool = $holds;
+        if !holds {
             return Err(format!($($what)*));
         }
     };

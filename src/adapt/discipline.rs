@@ -10,43 +10,6 @@ use super::ids::{TetId, VertexId};
 use super::store::Store;
 
 #[cfg(test)]
-mod watch {
-    use super::*;
-    use std::cell::Cell;
-    use std::sync::atomic::Ordering::Relaxed;
-
-    thread_local! {
-        static OWNER: Cell<u32> = const { Cell::new(0) };
-        static TURN: Cell<u32> = const { Cell::new(1) };
-    }
-
-    /// From now on this thread works as `owner`; 0: it has the store to itself.
-    pub fn work_as(owner: u32) {
-        OWNER.set(owner);
-    }
-
-    /// Lets another thread go on, now and then: threads meet more often.
-    pub fn pause() {
-        let turn = TURN.get().wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        TURN.set(turn);
-        if turn >> 27 == 0 {
-            std::thread::yield_now();
-        }
-    }
-
-    /// Whether this thread may touch the vertex.
-    pub fn holds(store: &Store, v: VertexId) -> bool {
-        let owner = OWNER.get();
-        owner == 0 || store.lock(v).load(Relaxed) == owner
-    }
-
-    /// Whether this thread works beside others.
-    pub fn is_on() -> bool {
-        OWNER.get() != 0
-    }
-}
-
-#[cfg(test)]
 pub use watch::{pause, work_as};
 
 /// Outside the tests nobody watches.
@@ -108,4 +71,41 @@ impl Store {
 
     #[inline(always)]
     pub(super) fn must_own_tet(&self, _t: TetId) {}
+}
+
+#[cfg(test)]
+mod watch {
+    use super::*;
+    use std::cell::Cell;
+    use std::sync::atomic::Ordering::Relaxed;
+
+    thread_local! {
+        static OWNER: Cell<u32> = const { Cell::new(0) };
+        static TURN: Cell<u32> = const { Cell::new(1) };
+    }
+
+    /// From now on this thread works as `owner`; 0: it has the store to itself.
+    pub fn work_as(owner: u32) {
+        OWNER.set(owner);
+    }
+
+    /// Lets another thread go on, now and then: threads meet more often.
+    pub fn pause() {
+        let turn = TURN.get().wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        TURN.set(turn);
+        if turn >> 27 == 0 {
+            std::thread::yield_now();
+        }
+    }
+
+    /// Whether this thread may touch the vertex.
+    pub fn holds(store: &Store, v: VertexId) -> bool {
+        let owner = OWNER.get();
+        owner == 0 || store.lock(v).load(Relaxed) == owner
+    }
+
+    /// Whether this thread works beside others.
+    pub fn is_on() -> bool {
+        OWNER.get() != 0
+    }
 }

@@ -224,7 +224,7 @@ impl<'m> Bench<'m> {
     /// All vertices, or one of five of those on the model.
     fn on_vertices<O: Operation<Item = VertexId>>(&mut self, operation: &O, few: bool) -> Counts {
         let store = &self.context.store;
-        let wanted = |v: &VertexId| !few || (store.dimension(*v) < 3 && v.0 % 5 == 0);
+        let wanted = |v: &VertexId| !few || (store.dimension(*v) < 3 && v.0.is_multiple_of(5));
         let items = store.live_vertices().filter(wanted).collect();
         self.run(operation, items)
     }
@@ -232,7 +232,7 @@ impl<'m> Bench<'m> {
     /// Moves the boundary vertices that [`Bench::on_vertices`] takes a little towards a neighbour, if all stays positive.
     fn push_off_the_model(&mut self) {
         let store = &self.context.store;
-        let wanted = |v: &VertexId| matches!(store.dimension(*v), 1 | 2) && v.0 % 5 == 0;
+        let wanted = |v: &VertexId| matches!(store.dimension(*v), 1 | 2) && v.0.is_multiple_of(5);
         let shift = 0.1 + 1e-3 * self.random.below(100) as f64;
         for v in store.live_vertices().filter(wanted) {
             let tets: Vec<TetId> = store.live_tets().filter(|&t| store.vertices(t).contains(&v)).collect();
