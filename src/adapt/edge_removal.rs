@@ -29,12 +29,8 @@ impl<A: Access> Worker<'_, '_, A> {
         if self.store.ridge_curve(a, b).is_some() {
             return Err(Refusal::Geometry);
         }
-        self.gather_shell(a, b, t)?;
+        self.gather_shell_while(a, b, t, LONGEST_RING, |worker, other| worker.goes_first(t, other))?;
         let shell = std::mem::take(&mut self.state.shell);
-        if !shell.tets.iter().all(|&other| self.goes_first(t, other)) {
-            self.state.shell = shell;
-            return Err(Refusal::Stale);
-        }
         let result = self.remove_shell(a, b, &shell, criterion);
         self.state.shell = shell;
         result

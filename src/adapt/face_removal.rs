@@ -14,10 +14,10 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Geometry);
         }
         let v = self.store.vertices(t);
-        let w = self.claim_tet(other)?;
         if !self.goes_first(t, other) {
             return Err(Refusal::Stale);
         }
+        let w = self.claim_tet(other)?;
         let below = w.into_iter().find(|x| !v.contains(x)).ok_or(Refusal::Topology)?;
         let face = FACE[i].map(|k| v[k]);
         let above = v[i];

@@ -41,19 +41,48 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Collects the shell of the edge a–b, both claimed, from a tetrahedron that holds it; claims the ring.
     pub fn gather_shell(&mut self, a: VertexId, b: VertexId, start: TetId) -> Result<(), Refusal> {
+        self.gather_shell_while(a, b, start, MOST, |_, _| true)
+    }
+
+    /// As [`Worker::gather_shell`], given up as stale at the first tetrahedron that is not wanted, and as `Topology` when there are
+    /// more than `most`.
+    pub fn gather_shell_while(
+        &mut self,
+        a: VertexId,
+        b: VertexId,
+        start: TetId,
+        most: usize,
+        wanted: impl Fn(&Self, TetId) -> bool,
+    ) -> Result<(), Refusal> {
         let mut shell = std::mem::take(&mut self.state.shell);
-        let result = self.turn_around(a, b, start, &mut shell);
+        let mut result = self.turn_around((a, b), start, most, &mut shell, &wanted);
+        if result.is_ok() && !shell.closed {
+            // The walk ended on the boundary: the shell begins at its other end.
+            result = self.rewind(a, b, start).and_then(|first| match first == start {
+                true => Ok(()),
+                false => self.turn_around((a, b), first, most, &mut shell, &wanted),
+            });
+        }
         self.state.shell = shell;
         result
     }
 
-    fn turn_around(&mut self, a: VertexId, b: VertexId, start: TetId, shell: &mut Shell) -> Result<(), Refusal> {
+    fn turn_around(
+        &mut self,
+        (a, b): (VertexId, VertexId),
+        first: TetId,
+        most: usize,
+        shell: &mut Shell,
+        wanted: &impl Fn(&Self, TetId) -> bool,
+    ) -> Result<(), Refusal> {
         shell.tets.clear();
         shell.ring.clear();
         shell.tags.clear();
-        let first = self.rewind(a, b, start)?;
-        let (mut t, mut count) = (first, 0);
+        let mut t = first;
         loop {
+            if !wanted(self, t) {
+                return Err(Refusal::Stale);
+            }
             let [k, l] = self.turn(t, a, b).ok_or(Refusal::Topology)?;
             let (v, n, tags) = (self.claim_tet(t)?, self.store.neighbours(t), self.store.tags(t));
             shell.tets.push(t);
@@ -61,24 +90,22 @@ impl<A: Access> Worker<'_, '_, A> {
             // The face (a, b, ring[i]) lies opposite ring[i + 1], and the next one opposite ring[i].
             shell.tags.push(tags[l]);
             t = n[k];
-            if t == first {
-                shell.closed = true;
+            shell.closed = t == first;
+            if shell.closed {
                 return Ok(());
             }
             if !t.is_some() {
                 shell.ring.push(v[l]);
                 shell.tags.push(tags[k]);
-                shell.closed = false;
                 return Ok(());
             }
-            count += 1;
-            if count > MOST {
+            if shell.tets.len() >= most {
                 return Err(Refusal::Topology);
             }
         }
     }
 
-    /// The tetrahedron where an open shell begins, or `start` itself when the shell is closed.
+    /// The tetrahedron where an open shell begins.
     fn rewind(&self, a: VertexId, b: VertexId, start: TetId) -> Result<TetId, Refusal> {
         let mut t = start;
         for _ in 0..MOST {
@@ -86,9 +113,6 @@ impl<A: Access> Worker<'_, '_, A> {
             let before = self.store.neighbour(t, l);
             if !before.is_some() {
                 return Ok(t);
-            }
-            if before == start {
-                return Ok(start);
             }
             t = before;
         }

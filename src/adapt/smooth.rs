@@ -58,33 +58,22 @@ impl<A: Access> Worker<'_, '_, A> {
         self.list_surface(v, ball, &mut triangles);
         let moved = self.descend(v, ball, &triangles);
         self.state.star.surface = triangles;
-        if !moved {
-            return Err(Refusal::Shape);
-        }
-        for &t in ball {
-            self.store.set_quality(t, self.shape(self.store.vertices(t)));
-            self.store.touch(t);
-        }
-        Ok(())
+        if moved { Ok(()) } else { Err(Refusal::Shape) }
     }
 
-    /// Tries the directions in turn, each with shorter and shorter steps; whether the vertex moved.
+    /// Tries the directions in turn, each with shorter and shorter steps, until the vertex moves; whether it did.
     fn descend(&mut self, v: VertexId, ball: &[TetId], triangles: &[([VertexId; 3], u32)]) -> bool {
-        let mut moved = false;
-        let mut energy = self.present_energy(v, ball);
+        let from = self.store.position(v);
+        let limit = self.present_energy(v, ball) * (1.0 - GAIN);
         for direction in 0..2 {
-            let from = self.store.position(v);
             let to = if direction == 0 { self.pliant_point(v) } else { self.gradient_point(v, ball) };
             for step in STEPS {
-                let target = lerp(from, to, step);
-                if let Some(lower) = self.try_move(v, target, ball, triangles, energy * (1.0 - GAIN)) {
-                    energy = lower;
-                    moved = true;
-                    break;
+                if self.try_move(v, lerp(from, to, step), ball, triangles, limit) {
+                    return true;
                 }
             }
         }
-        moved
+        false
     }
 
     /// Moves the vertex to the closest point of its entity when the energy falls below `limit` there; else puts it back.
@@ -95,23 +84,30 @@ impl<A: Access> Worker<'_, '_, A> {
         ball: &[TetId],
         triangles: &[([VertexId; 3], u32)],
         limit: f64,
-    ) -> Option<f64> {
+    ) -> bool {
         let held = self.hold(v);
         let placed = self.place(held.placed.entity, target, &[v]);
         let cosines = (!triangles.is_empty()).then(|| self.worst_cosine(triangles));
         self.set_point(v, placed.point, held.hint);
         self.store.set_place(v, placed.entity, placed.parameters);
-        let energy = self.energy(v, ball, limit);
+        let mut shapes = std::mem::take(&mut self.state.shapes);
+        let falls = self.energy(v, ball, limit, &mut shapes) < limit;
         let turned = |worker: &mut Self| {
             cosines.is_some_and(|before| {
                 worker.worst_cosine(triangles) < before.min(worker.context.limits.cosine).max(1e-3)
             })
         };
-        if energy < limit && !turned(self) {
-            return Some(energy);
+        let moved = falls && !turned(self);
+        if moved {
+            for (&t, &shape) in ball.iter().zip(&shapes) {
+                self.store.set_quality(t, shape);
+                self.store.touch(t);
+            }
+        } else {
+            self.put_back(v, &held);
         }
-        self.put_back(v, &held);
-        None
+        self.state.shapes = shapes;
+        moved
     }
 
     /// Remembers where a claimed vertex is.
@@ -148,8 +144,10 @@ impl<A: Access> Worker<'_, '_, A> {
         LENGTH_WEIGHT * lengths.map(|l| l * l).sum::<f64>()
     }
 
-    /// Σ 1/Q³ over the ball and Σ (ln L)² over the edges at v; infinite when a tetrahedron is inverted or the sum passes `limit`.
-    fn energy(&self, v: VertexId, ball: &[TetId], limit: f64) -> f64 {
+    /// Σ 1/Q³ over the ball and Σ (ln L)² over the edges at v; infinite when a tetrahedron is inverted or the sum passes
+    /// `limit`. Leaves the mean ratios in `shapes`.
+    fn energy(&self, v: VertexId, ball: &[TetId], limit: f64, shapes: &mut Vec<f64>) -> f64 {
+        shapes.clear();
         let mut energy = 0.0;
         for &t in ball {
             let shape = self.shape(self.store.vertices(t));
@@ -157,6 +155,7 @@ impl<A: Access> Worker<'_, '_, A> {
                 return f64::INFINITY;
             }
             energy += 1.0 / (shape * shape * shape);
+            shapes.push(shape);
         }
         energy + self.length_energy(v)
     }
