@@ -220,13 +220,17 @@ pub fn extract(context: &Context, input: &TetMesh, refs: &References) -> Extract
     let mut mesh = TetMesh::default();
     let mut classification = Classification::default();
     let mut metrics = Vec::new();
+    let mut original = vec![VertexId::NONE; store.vertex_bound()];
+    for (v, id) in context.ids.iter().enumerate().filter(|(_, id)| id.is_some()) {
+        original[id.index()] = VertexId(v as u32);
+    }
     for v in store.live_vertices() {
         number[v.index()] = mesh.vertices.len() as u32;
         mesh.vertices.push(store.position(v));
         // Only corners and frozen vertices surely are what they were: other ids may have been used again.
         let is_old = matches!(store.entity(v), Entity::Vertex(_)) || context.is_frozen(v);
-        let kept = is_old.then(|| input.vertex_refs.get(v.index())).flatten();
-        mesh.vertex_refs.push(kept.copied().unwrap_or(0));
+        let kept = is_old.then(|| original[v.index()]).filter(|v| v.is_some());
+        mesh.vertex_refs.push(kept.map_or(0, |v| input.vertex_refs[v.index()]));
         classification.entities.push(store.entity(v));
         classification.parameters.push(store.parameters(v));
         classification.projected.push(store.position(v));
@@ -246,7 +250,7 @@ pub fn extract(context: &Context, input: &TetMesh, refs: &References) -> Extract
     for &(nodes, edge) in &classification.ridges {
         mesh.edges.push(nodes, refs.edges[edge as usize]);
     }
-    Required::list(input, &mut mesh, renumber);
+    Required::list(input, &mut mesh, |v| renumber(context.ids[v.index()]));
     Extracted { mesh, classification, metrics }
 }
 

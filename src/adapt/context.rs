@@ -68,6 +68,8 @@ pub struct Context<'m> {
     pub planes: Vec<Option<Vec3>>,
     /// What must stay as it is.
     pub required: Required,
+    /// For each vertex of the input its id; of those that are gone it says nothing.
+    pub ids: Vec<VertexId>,
     /// Limits of the present pass.
     pub limits: Limits,
 }
@@ -82,7 +84,19 @@ impl<'m> Context<'m> {
             (face.kind == SurfaceKind::Plane).then(|| evaluator.face_normal(i as u32, middle))
         });
         let planes = planes.collect();
-        Self { store, source, model, planes, required: Required::default(), limits: Limits::default() }
+        let ids = (0..store.vertex_bound() as u32).map(VertexId).collect();
+        Self { store, source, model, planes, required: Required::default(), ids, limits: Limits::default() }
+    }
+
+    /// Renumbers the mesh along a space-filling curve; returns the new id of each old one. Pools of free ids must be emptied.
+    pub fn reorder(&mut self) -> Vec<VertexId> {
+        let (store, number) = self.store.reordered();
+        self.store = store;
+        self.required.renumber(&number);
+        for id in self.ids.iter_mut().filter(|id| id.is_some()) {
+            *id = number[id.index()];
+        }
+        number
     }
 
     /// Whether the vertex must neither move nor go.

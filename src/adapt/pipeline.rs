@@ -143,6 +143,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
+        self.reorder();
         self.context.limits = Limits { improve_below: 0.4, ..Limits::default() };
         for _ in 0..SIZE_PASSES {
             if self.size_pass() || self.observer.stop() {
@@ -151,6 +152,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.pass += 1;
         }
         self.looked = [0; KINDS];
+        self.reorder();
         for pass in 0..SHAPE_PASSES {
             self.pass += 1;
             self.context.limits = shape_limits();
@@ -161,6 +163,15 @@ impl<'c, 'm> Pipeline<'c, 'm> {
                 break;
             }
         }
+    }
+
+    /// Puts near in memory what is near in space.
+    fn reorder(&mut self) {
+        self.gather_waiting();
+        let number = self.context.reorder();
+        self.waiting.iter_mut().for_each(|v| *v = number[v.index()]);
+        self.waiting.retain(|v| v.is_some());
+        self.states.iter_mut().for_each(|state| state.pool.clear());
     }
 
     /// One pass of insertion and collapse, with as much reconnection as they need; whether it changed little.

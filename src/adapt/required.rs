@@ -35,6 +35,16 @@ impl Required {
         required
     }
 
+    /// The same after the vertices got new ids.
+    pub fn renumber(&mut self, number: &[VertexId]) {
+        let mut frozen = vec![false; if self.frozen.is_empty() { 0 } else { number.len() }];
+        for (old, _) in self.frozen.iter().enumerate().filter(|&(_, &frozen)| frozen) {
+            frozen[number[old].index()] = true;
+        }
+        self.frozen = frozen;
+        self.edges = self.edges.iter().map(|&[a, b]| key(number[a.index()], number[b.index()])).collect();
+    }
+
     /// Whether a vertex must neither move nor go.
     #[inline(always)]
     pub fn is_frozen(&self, v: VertexId) -> bool {

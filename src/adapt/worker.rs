@@ -44,6 +44,12 @@ impl Pool {
         self.tets.pop().expect("ids were provided")
     }
 
+    /// Forgets all ids: the store was renumbered.
+    pub fn clear(&mut self) {
+        self.vertices.clear();
+        self.tets.clear();
+    }
+
     /// Gives a vertex id back.
     pub fn free_vertex(&mut self, v: VertexId) {
         self.vertices.push(v);

@@ -2,6 +2,7 @@
 pub mod adjacency;
 mod box_tree;
 mod flaw;
+pub mod hilbert;
 pub mod io;
 pub mod locate;
 pub mod predicate;
