@@ -59,7 +59,8 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Shape);
         }
         if let Some((old, new)) = surface {
-            self.compare_normals(&old, &new, 0.0)?;
+            let facing = self.facing(&old);
+            self.compare_normals(facing, &new, 0.0)?;
             self.refuse_joined(shell.ring[0], shell.ring[n - 1])?;
             self.state.replacement.faces.extend(new);
         }

@@ -3,6 +3,7 @@ use super::access::Access;
 use super::ids::{TetId, VertexId};
 use super::outcome::Refusal;
 use super::star::{Bounds, Seed};
+use super::surface::Facing;
 use super::worker::Worker;
 use crate::mesh::vector::lerp;
 
@@ -29,15 +30,27 @@ impl<A: Access> Worker<'_, '_, A> {
         self.gather_ball(w)?;
         let store = self.store;
         both.extend(self.state.ball.iter().filter(|&&t| !store.vertices(t).contains(&v)));
+        let facing = self.facing_of_both(v, w, both);
         let held = self.hold(w);
         let middle = lerp(self.store.position(v), held.placed.point, 0.5);
         let placed = self.place(held.placed.entity, middle, &[v, w]);
         self.set_point(w, placed.point, held.hint);
         self.store.set_place(w, placed.entity, placed.parameters);
-        self.merge_star(v, w, both).inspect_err(|_| self.put_back(w, &held))
+        self.merge_star(v, w, both, facing).inspect_err(|_| self.put_back(w, &held))
     }
 
-    fn merge_star(&mut self, v: VertexId, w: VertexId, both: &[TetId]) -> Result<(), Refusal> {
+    /// How the surface triangles at both vertices look, before one of them moves.
+    fn facing_of_both(&mut self, v: VertexId, w: VertexId, both: &[TetId]) -> Facing {
+        let mut triangles = std::mem::take(&mut self.state.star.surface);
+        triangles.clear();
+        self.list_surface(v, both, &mut triangles);
+        self.list_surface(w, both, &mut triangles);
+        let facing = self.facing(&triangles);
+        self.state.star.surface = triangles;
+        facing
+    }
+
+    fn merge_star(&mut self, v: VertexId, w: VertexId, both: &[TetId], facing: Facing) -> Result<(), Refusal> {
         self.list_link(w, both);
         let limit = self.context.limits.longest_new;
         if self.state.star.link.iter().any(|&x| x != v && self.length(w, x) > limit) {
@@ -48,7 +61,7 @@ impl<A: Access> Worker<'_, '_, A> {
         self.build_star(Seed::Pair(v, w), w, both, Bounds { wanted: 0.0, floor })?;
         if !self.state.star.surface.is_empty() {
             self.check_surface_link(v, w)?;
-            self.check_normals(0.0)?;
+            self.check_star_normals(facing, 0.0)?;
         }
         self.state.replacement.keeps_surface = true;
         self.finish_collapse(v, w)

@@ -55,6 +55,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         self.list_link(v, ball);
         let mut triangles = std::mem::take(&mut self.state.star.surface);
+        triangles.clear();
         self.list_surface(v, ball, &mut triangles);
         let moved = self.descend(v, ball, &triangles);
         self.state.star.surface = triangles;
@@ -210,15 +211,14 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Lists the surface triangles at v, outward, with their tags.
-    fn list_surface(&self, v: VertexId, ball: &[TetId], triangles: &mut Vec<([VertexId; 3], u32)>) {
-        triangles.clear();
+    /// Adds the surface triangles at v to the list, outward, with their tags.
+    pub fn list_surface(&self, v: VertexId, ball: &[TetId], triangles: &mut Vec<([VertexId; 3], u32)>) {
         if self.store.dimension(v) == 3 {
             return;
         }
         for &t in ball {
             let (w, tags, n) = (self.store.vertices(t), self.store.tags(t), self.store.neighbours(t));
-            for i in (0..4).filter(|&i| tags[i] != 0 && w[i] != v && (!n[i].is_some() || t < n[i])) {
+            for i in (0..4).filter(|&i| tags[i] != 0 && w[i] != v && w.contains(&v) && (!n[i].is_some() || t < n[i])) {
                 let [a, b, c] = FACE[i].map(|k| w[k]);
                 triangles.push(([a, c, b], tags[i]));
             }

@@ -17,6 +17,46 @@ pub struct Placed {
     pub parameters: [f64; 2],
 }
 
+/// How surface triangles look to their model.
+#[derive(Clone, Copy, Debug)]
+pub struct Facing {
+    /// Least cosine, without its sign.
+    pub worst: f64,
+    /// The side from which they are seen: −1 on an interface that is met from behind.
+    side: f64,
+}
+
+/// The mean of parameters on a face, mind its periods.
+struct MeanParameters {
+    period: [Option<f64>; 2],
+    first: [f64; 2],
+    sum: [f64; 2],
+    count: f64,
+}
+
+impl MeanParameters {
+    fn new(period: [Option<f64>; 2]) -> Self {
+        Self { period, first: [0.0; 2], sum: [0.0; 2], count: 0.0 }
+    }
+
+    fn add(&mut self, mut uv: [f64; 2]) {
+        if self.count == 0.0 {
+            self.first = uv;
+        }
+        for k in 0..2 {
+            if let Some(period) = self.period[k] {
+                uv[k] -= period * ((uv[k] - self.first[k]) / period).round();
+            }
+            self.sum[k] += uv[k];
+        }
+        self.count += 1.0;
+    }
+
+    fn get(&self) -> Option<[f64; 2]> {
+        (self.count > 0.0).then(|| self.sum.map(|x| x / self.count))
+    }
+}
+
 impl<A: Access> Worker<'_, '_, A> {
     /// The entity of a point on the edge a–b; the shell of the edge is in `state.shell`.
     pub fn entity_of_edge(&self, a: VertexId, b: VertexId) -> Entity {
@@ -72,79 +112,95 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Mean parameters on a face of those of the vertices that know theirs; mind the period.
-    fn guess_uv(&mut self, face: u32, near: &[VertexId]) -> Option<[f64; 2]> {
-        let period = self.context.model.topology().faces[face as usize].period;
-        let (mut sum, mut count) = ([0.0; 2], 0.0);
-        let mut first: Option<[f64; 2]> = None;
-        for &v in near {
-            let parameters = self.store.parameters(v);
-            let uv = match self.store.entity(v) {
-                Entity::Face(f) if f == face => Some(parameters),
-                Entity::Edge(curve) => self.state.evaluator.edge_on_face(curve, parameters[0], face),
-                _ => None,
-            };
-            let Some(mut uv) = uv else { continue };
-            let start = *first.get_or_insert(uv);
-            for k in 0..2 {
-                if let Some(period) = period[k] {
-                    uv[k] -= period * ((uv[k] - start[k]) / period).round();
-                }
-                sum[k] += uv[k];
-            }
-            count += 1.0;
+    /// Parameters of a vertex on a face, if it knows them.
+    fn uv_of(&mut self, v: VertexId, face: u32) -> Option<[f64; 2]> {
+        let parameters = self.store.parameters(v);
+        match self.store.entity(v) {
+            Entity::Face(f) if f == face => Some(parameters),
+            Entity::Edge(curve) => self.state.evaluator.edge_on_face(curve, parameters[0], face),
+            _ => None,
         }
-        (count > 0.0).then(|| sum.map(|x| x / count))
     }
 
-    /// n_triangle · n_CAD at the closest point of the centroid: 1 − the normal deviation of METHOD.md §3.
+    /// Mean parameters on a face of those of the vertices that know theirs.
+    fn guess_uv(&mut self, face: u32, near: &[VertexId]) -> Option<[f64; 2]> {
+        let mut mean = MeanParameters::new(self.context.model.topology().faces[face as usize].period);
+        for &v in near {
+            self.uv_of(v, face).into_iter().for_each(|uv| mean.add(uv));
+        }
+        mean.get()
+    }
+
+    /// The normal deviation of a triangle as a cosine: the lesser of n_triangle · n_CAD at the closest point of the centroid
+    /// (1 − the deviation of METHOD.md §3) and of the cosine of half the greatest angle between the model's normals at its
+    /// vertices; negative when the triangle looks to the model's inside. Without the latter a sphere could become a
+    /// tetrahedron: its faces are tangent to it.
     pub fn cosine(&mut self, triangle: [VertexId; 3], face: u32) -> f64 {
         let [a, b, c] = triangle.map(|v| self.store.position(v));
         let normal = unit(area2(a, b, c));
         if let Some(plane) = self.context.planes[face as usize] {
             return dot(normal, plane);
         }
+        let mut mean = MeanParameters::new(self.context.model.topology().faces[face as usize].period);
+        let known = triangle.map(|v| self.uv_of(v, face));
+        known.into_iter().flatten().for_each(|uv| mean.add(uv));
         let centroid = scale(add(a, add(b, c)), 1.0 / 3.0);
-        let placed = self.place(Entity::Face(face), centroid, &triangle);
-        dot(normal, self.state.evaluator.face_normal(face, placed.parameters))
+        let foot = match mean.get() {
+            Some(uv) => self.state.evaluator.closest_on_surface(face, centroid, uv),
+            None => self.state.evaluator.closest_on_face(face, centroid, None),
+        };
+        let at_centroid = dot(normal, self.state.evaluator.face_normal(face, foot.uv));
+        let ends = [(a, known[0]), (b, known[1]), (c, known[2])].map(|(p, uv)| self.normal_near(face, p, uv, foot.uv));
+        let least = dot(ends[0], ends[1]).min(dot(ends[1], ends[2])).min(dot(ends[2], ends[0]));
+        at_centroid.abs().min((0.5 * (1.0 + least)).max(0.0).sqrt()).copysign(at_centroid)
     }
 
-    /// Refuses a replacement whose surface triangles turn away from the model more than `floor` and more than those that go.
-    ///
-    /// On an interface the side from which triangles are seen is told by the old ones.
+    /// Normal at a vertex of a face, at its parameters if it knows them; at a pole or an apex, where there is none, a little towards
+    /// `inner`.
+    fn normal_near(&mut self, face: u32, p: Vec3, uv: Option<[f64; 2]>, inner: [f64; 2]) -> Vec3 {
+        let evaluator = &mut self.state.evaluator;
+        let uv = uv.unwrap_or_else(|| evaluator.closest_on_surface(face, p, inner).uv);
+        let normal = evaluator.face_normal(face, uv);
+        if normal != [0.0; 3] {
+            return normal;
+        }
+        evaluator.face_normal(face, [0, 1].map(|k| uv[k] + 1e-3 * (inner[k] - uv[k])))
+    }
+
+    /// How the triangles that are there look to the model; with their tags.
+    pub fn facing(&mut self, triangles: &[([VertexId; 3], u32)]) -> Facing {
+        let (mut worst, mut sum) = (1.0_f64, 0.0);
+        for &(triangle, tag) in triangles {
+            let cosine = self.cosine(triangle, tag - 1);
+            sum += cosine;
+            worst = worst.min(cosine.abs());
+        }
+        Facing { worst, side: if sum < 0.0 { -1.0 } else { 1.0 } }
+    }
+
+    /// Refuses a star whose surface triangles turn from the model more than good ones may, and by `slack` more than those that go.
     pub fn check_normals(&mut self, slack: f64) -> Result<(), Refusal> {
         if self.state.star.surface.is_empty() {
             return Ok(());
         }
         let old = std::mem::take(&mut self.state.star.surface);
-        let new = std::mem::take(&mut self.state.replacement.faces);
-        let result = self.compare_normals(&old, &new, slack);
+        let facing = self.facing(&old);
         self.state.star.surface = old;
+        self.check_star_normals(facing, slack)
+    }
+
+    /// As [`Worker::check_normals`], when the old triangles were looked at before.
+    pub fn check_star_normals(&mut self, old: Facing, slack: f64) -> Result<(), Refusal> {
+        let new = std::mem::take(&mut self.state.replacement.faces);
+        let result = self.compare_normals(old, &new, slack);
         self.state.replacement.faces = new;
         result
     }
 
-    /// See [`Worker::check_normals`]; triangles with tags.
-    pub fn compare_normals(
-        &mut self,
-        old: &[([VertexId; 3], u32)],
-        new: &[([VertexId; 3], u32)],
-        slack: f64,
-    ) -> Result<(), Refusal> {
-        let mut worst = 1.0_f64;
-        let mut side = 0.0;
-        for &(triangle, tag) in old {
-            let cosine = self.cosine(triangle, tag - 1);
-            side += cosine;
-            worst = worst.min(cosine.abs());
-        }
-        let side = if side < 0.0 { -1.0 } else { 1.0 };
-        let floor = (worst - slack).min(self.context.limits.cosine).max(1e-3);
-        for &(triangle, tag) in new {
-            if side * self.cosine(triangle, tag - 1) < floor {
-                return Err(Refusal::Normal);
-            }
-        }
-        Ok(())
+    /// Holds new triangles, with tags, against the old ones.
+    pub fn compare_normals(&mut self, old: Facing, new: &[([VertexId; 3], u32)], slack: f64) -> Result<(), Refusal> {
+        let floor = (old.worst - slack).min(self.context.limits.cosine).max(1e-3);
+        let turned = new.iter().any(|&(triangle, tag)| old.side * self.cosine(triangle, tag - 1) < floor);
+        if turned { Err(Refusal::Normal) } else { Ok(()) }
     }
 }

@@ -38,9 +38,9 @@ pub fn key(p: Vec3, low: Vec3, high: Vec3) -> u64 {
         }
         q >>= 1;
     }
-    (0..BITS).rev().fold(0, |key, bit| {
-        x.iter().fold(key, |key, &coordinate| key << 1 | u64::from((coordinate ^ flip) >> bit & 1))
-    })
+    (0..BITS)
+        .rev()
+        .fold(0, |key, bit| x.iter().fold(key, |key, &coordinate| key << 1 | u64::from((coordinate ^ flip) >> bit & 1)))
 }
 
 #[cfg(test)]
