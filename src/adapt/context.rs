@@ -32,8 +32,12 @@ pub struct Limits {
     pub improve_below: f64,
     /// Reconnection looks at tetrahedra that changed at or after this time.
     pub since: u32,
-    /// Cosines above this are good enough for any surface triangle.
-    pub cosine: f64,
+    /// Surface triangles may tilt to this cosine against the model, but no further unless they do already: long thin ones across a
+    /// curved face cannot but tilt.
+    pub tilt: f64,
+    /// As above, for half the angle between the model's normals at the vertices: at 0.94 a circle keeps nine
+    /// edges.
+    pub spread: f64,
     /// Most tetrahedra in an enlarged cavity.
     pub cavity: usize,
 }
@@ -50,7 +54,8 @@ impl Default for Limits {
             collapse_floor: 0.2,
             improve_below: 1.0,
             since: 0,
-            cosine: 0.94,
+            tilt: 0.8,
+            spread: 0.94,
             cavity: 96,
         }
     }

@@ -88,17 +88,12 @@ impl<A: Access> Worker<'_, '_, A> {
     ) -> bool {
         let held = self.hold(v);
         let placed = self.place(held.placed.entity, target, &[v]);
-        let cosines = (!triangles.is_empty()).then(|| self.worst_cosine(triangles));
+        let facing = (!triangles.is_empty()).then(|| self.facing(triangles));
         self.set_point(v, placed.point, held.hint);
         self.store.set_place(v, placed.entity, placed.parameters);
         let mut shapes = std::mem::take(&mut self.state.shapes);
         let falls = self.energy(v, ball, limit, &mut shapes) < limit;
-        let turned = |worker: &mut Self| {
-            cosines.is_some_and(|before| {
-                worker.worst_cosine(triangles) < before.min(worker.context.limits.cosine).max(1e-3)
-            })
-        };
-        let moved = falls && !turned(self);
+        let moved = falls && facing.is_none_or(|facing| self.compare_normals(facing, triangles, 0.0).is_ok());
         if moved {
             for (&t, &shape) in ball.iter().zip(&shapes) {
                 self.store.set_quality(t, shape);
@@ -223,9 +218,5 @@ impl<A: Access> Worker<'_, '_, A> {
                 triangles.push(([a, c, b], tags[i]));
             }
         }
-    }
-
-    fn worst_cosine(&mut self, triangles: &[([VertexId; 3], u32)]) -> f64 {
-        triangles.iter().map(|&(triangle, tag)| self.cosine(triangle, tag - 1)).fold(1.0, f64::min)
     }
 }

@@ -17,11 +17,21 @@ pub struct Placed {
     pub parameters: [f64; 2],
 }
 
+/// How a surface triangle looks to its model, as cosines.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// n_triangle · n_CAD at the closest point of the centroid: 1 − the normal deviation of METHOD.md §3.
+    pub tilt: f64,
+    /// Of half the greatest angle between the model's normals at the vertices. Without it a sphere could become a
+    /// tetrahedron: its faces are tangent to it.
+    pub spread: f64,
+}
+
 /// How surface triangles look to their model.
 #[derive(Clone, Copy, Debug)]
 pub struct Facing {
-    /// Least cosine, without its sign.
-    pub worst: f64,
+    /// The worst of each cosine, without sign.
+    worst: Look,
     /// The side from which they are seen: −1 on an interface that is met from behind.
     side: f64,
 }
@@ -131,15 +141,12 @@ impl<A: Access> Worker<'_, '_, A> {
         mean.get()
     }
 
-    /// The normal deviation of a triangle as a cosine: the lesser of n_triangle · n_CAD at the closest point of the centroid
-    /// (1 − the deviation of METHOD.md §3) and of the cosine of half the greatest angle between the model's normals at its
-    /// vertices; negative when the triangle looks to the model's inside. Without the latter a sphere could become a
-    /// tetrahedron: its faces are tangent to it.
-    pub fn cosine(&mut self, triangle: [VertexId; 3], face: u32) -> f64 {
+    /// How a triangle looks to its face; the tilt is negative when it looks to the model's inside.
+    pub fn look(&mut self, triangle: [VertexId; 3], face: u32) -> Look {
         let [a, b, c] = triangle.map(|v| self.store.position(v));
         let normal = unit(area2(a, b, c));
         if let Some(plane) = self.context.planes[face as usize] {
-            return dot(normal, plane);
+            return Look { tilt: dot(normal, plane), spread: 1.0 };
         }
         let mut mean = MeanParameters::new(self.context.model.topology().faces[face as usize].period);
         let known = triangle.map(|v| self.uv_of(v, face));
@@ -149,10 +156,10 @@ impl<A: Access> Worker<'_, '_, A> {
             Some(uv) => self.state.evaluator.closest_on_surface(face, centroid, uv),
             None => self.state.evaluator.closest_on_face(face, centroid, None),
         };
-        let at_centroid = dot(normal, self.state.evaluator.face_normal(face, foot.uv));
+        let tilt = dot(normal, self.state.evaluator.face_normal(face, foot.uv));
         let ends = [(a, known[0]), (b, known[1]), (c, known[2])].map(|(p, uv)| self.normal_near(face, p, uv, foot.uv));
         let least = dot(ends[0], ends[1]).min(dot(ends[1], ends[2])).min(dot(ends[2], ends[0]));
-        at_centroid.abs().min((0.5 * (1.0 + least)).max(0.0).sqrt()).copysign(at_centroid)
+        Look { tilt, spread: (0.5 * (1.0 + least)).max(0.0).sqrt() }
     }
 
     /// Normal at a vertex of a face, at its parameters if it knows them; at a pole or an apex, where there is none, a little towards
@@ -169,11 +176,11 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// How the triangles that are there look to the model; with their tags.
     pub fn facing(&mut self, triangles: &[([VertexId; 3], u32)]) -> Facing {
-        let (mut worst, mut sum) = (1.0_f64, 0.0);
+        let (mut worst, mut sum) = (Look { tilt: 1.0, spread: 1.0 }, 0.0);
         for &(triangle, tag) in triangles {
-            let cosine = self.cosine(triangle, tag - 1);
-            sum += cosine;
-            worst = worst.min(cosine.abs());
+            let look = self.look(triangle, tag - 1);
+            sum += look.tilt;
+            worst = Look { tilt: worst.tilt.min(look.tilt.abs()), spread: worst.spread.min(look.spread) };
         }
         Facing { worst, side: if sum < 0.0 { -1.0 } else { 1.0 } }
     }
@@ -199,8 +206,13 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Holds new triangles, with tags, against the old ones.
     pub fn compare_normals(&mut self, old: Facing, new: &[([VertexId; 3], u32)], slack: f64) -> Result<(), Refusal> {
-        let floor = (old.worst - slack).min(self.context.limits.cosine).max(1e-3);
-        let turned = new.iter().any(|&(triangle, tag)| old.side * self.cosine(triangle, tag - 1) < floor);
+        let limits = self.context.limits;
+        let tilt = (old.worst.tilt - slack).min(limits.tilt).max(1e-3);
+        let spread = (old.worst.spread - slack).min(limits.spread);
+        let turned = new.iter().any(|&(triangle, tag)| {
+            let look = self.look(triangle, tag - 1);
+            old.side * look.tilt < tilt || look.spread < spread
+        });
         if turned { Err(Refusal::Normal) } else { Ok(()) }
     }
 }
