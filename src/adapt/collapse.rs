@@ -29,6 +29,7 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Prepares the removal of v onto its neighbour w; returns the worst mean ratio after it, which is at least `better`.
     pub fn try_collapse(&mut self, v: VertexId, w: VertexId, better: f64) -> Result<f64, Refusal> {
         self.check_entities(v, w)?;
+        self.check_bend(v, w)?;
         self.gather_ball(v)?;
         let ball = std::mem::take(&mut self.state.ball);
         let result = self.check_new_lengths(v, w, &ball).and_then(|()| self.collapse_star(v, w, &ball, better));
@@ -103,6 +104,22 @@ impl<A: Access> Worker<'_, '_, A> {
             }
             Entity::Interior => Ok(()),
         }
+    }
+
+    /// Least spread of the two ridge edges at a vertex on a model edge, 1 elsewhere.
+    pub fn spread_at(&mut self, v: VertexId) -> f64 {
+        let Entity::Edge(curve) = self.store.entity(v) else { return 1.0 };
+        let ends = self.store.ridge(v).into_iter().filter(|x| x.is_some());
+        ends.fold(1.0, |least, x| self.ridge_spread(curve, v, x).min(least))
+    }
+
+    /// The ridge edge that comes with a collapse may not span more of a bend than is good enough, or than one that goes.
+    fn check_bend(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
+        let Entity::Edge(curve) = self.store.entity(v) else { return Ok(()) };
+        let limit = self.spread_at(v).min(self.context.limits.spread);
+        let [x, y] = self.store.ridge(v);
+        let other = if x == w { y } else { x };
+        if self.ridge_spread(curve, other, w) < limit { Err(Refusal::Normal) } else { Ok(()) }
     }
 
     /// The link condition on the surface: who neighbours both v and w there must share a triangle with both.

@@ -5,6 +5,7 @@ use super::outcome::Refusal;
 use super::star::{Bounds, Seed};
 use super::surface::Facing;
 use super::worker::Worker;
+use crate::geometry::Entity;
 use crate::mesh::vector::lerp;
 
 impl<A: Access> Worker<'_, '_, A> {
@@ -31,12 +32,23 @@ impl<A: Access> Worker<'_, '_, A> {
         let store = self.store;
         both.extend(self.state.ball.iter().filter(|&&t| !store.vertices(t).contains(&v)));
         let facing = self.facing_of_both(v, w, both);
+        let bend = self.spread_at(v).min(self.spread_at(w)).min(self.context.limits.spread);
         let held = self.hold(w);
         let middle = lerp(self.store.position(v), held.placed.point, 0.5);
         let placed = self.place(held.placed.entity, middle, &[v, w]);
         self.set_point(w, placed.point, held.hint);
         self.store.set_place(w, placed.entity, placed.parameters);
-        self.merge_star(v, w, both, facing).inspect_err(|_| self.put_back(w, &held))
+        let result = self.check_merged_bend(v, w, bend).and_then(|()| self.merge_star(v, w, both, facing));
+        result.inspect_err(|_| self.put_back(w, &held))
+    }
+
+    /// Neither ridge edge that comes may span more of a bend than `limit`; w has moved.
+    fn check_merged_bend(&mut self, v: VertexId, w: VertexId, limit: f64) -> Result<(), Refusal> {
+        let Entity::Edge(curve) = self.store.entity(w) else { return Ok(()) };
+        let beyond = [(v, w), (w, v)].map(|(x, y)| self.store.ridge(x).into_iter().find(|&end| end != y));
+        let bent = beyond.into_iter().flatten().filter(|end| end.is_some());
+        let bent = bent.fold(1.0, |least, end| self.ridge_spread(curve, end, w).min(least)) < limit;
+        if bent { Err(Refusal::Normal) } else { Ok(()) }
     }
 
     /// How the surface triangles at both vertices look, before one of them moves.

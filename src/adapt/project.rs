@@ -40,7 +40,6 @@ impl<A: Access> Worker<'_, '_, A> {
     fn carry(&mut self, v: VertexId, ball: &[TetId], goal: Placed) -> Result<(), Refusal> {
         self.set_point(v, goal.point, self.store.hint(v));
         self.build_star(Seed::Vertex(v), v, ball, Bounds::default())?;
-        self.check_normals(2.0)?;
         self.state.replacement.keeps_surface = true;
         self.commit()?;
         self.store.set_place(v, goal.entity, goal.parameters);

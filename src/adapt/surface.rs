@@ -174,6 +174,29 @@ impl<A: Access> Worker<'_, '_, A> {
         evaluator.face_normal(face, [0, 1].map(|k| uv[k] + 1e-3 * (inner[k] - uv[k])))
     }
 
+    /// Cosine of half the angle between the model edge's tangents at two neighbours on it.
+    pub fn ridge_spread(&mut self, curve: u32, a: VertexId, b: VertexId) -> f64 {
+        let [ta, tb] = [[a, b], [b, a]].map(|near| self.parameter_beside(curve, near));
+        let [da, db] = [ta, tb].map(|t| unit(self.state.evaluator.edge_frame(curve, t).d1));
+        (0.5 * (1.0 + dot(da, db))).max(0.0).sqrt()
+    }
+
+    /// Parameter on a model edge of the first vertex, which is on it or one of its ends; on a closed edge of the end that is nearer to
+    /// the second vertex.
+    fn parameter_beside(&self, curve: u32, [v, beside]: [VertexId; 2]) -> f64 {
+        let edge = &self.context.model.topology().edges[curve as usize];
+        let Entity::Vertex(corner) = self.store.entity(v) else { return self.store.parameters(v)[0] };
+        let [low, high] = edge.range;
+        match edge.vertices.map(|end| end == Some(corner)) {
+            [true, true] => {
+                let t = self.store.parameters(beside)[0];
+                if (t - low).abs() <= (high - t).abs() { low } else { high }
+            }
+            [_, true] => high,
+            _ => low,
+        }
+    }
+
     /// How the triangles that are there look to the model; with their tags.
     pub fn facing(&mut self, triangles: &[([VertexId; 3], u32)]) -> Facing {
         let (mut worst, mut sum) = (Look { tilt: 1.0, spread: 1.0 }, 0.0);
@@ -204,11 +227,11 @@ impl<A: Access> Worker<'_, '_, A> {
         result
     }
 
-    /// Holds new triangles, with tags, against the old ones.
+    /// Holds new triangles, with tags, against the old ones: `slack` is for the tilt alone.
     pub fn compare_normals(&mut self, old: Facing, new: &[([VertexId; 3], u32)], slack: f64) -> Result<(), Refusal> {
         let limits = self.context.limits;
         let tilt = (old.worst.tilt - slack).min(limits.tilt).max(1e-3);
-        let spread = (old.worst.spread - slack).min(limits.spread);
+        let spread = old.worst.spread.min(limits.spread);
         let turned = new.iter().any(|&(triangle, tag)| {
             let look = self.look(triangle, tag - 1);
             old.side * look.tilt < tilt || look.spread < spread
