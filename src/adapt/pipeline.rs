@@ -18,6 +18,9 @@ const SIZE_PASSES: usize = 20;
 /// A size pass that changes less than this part of the vertices is the last.
 const LITTLE: f64 = 0.05;
 
+/// The shapes are done when a pass changes fewer than this part of the vertices.
+const SETTLED: f64 = 0.01;
+
 /// Passes at most that improve the shapes.
 const SHAPE_PASSES: usize = 6;
 
@@ -196,7 +199,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.refine(2);
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth(1);
-        ((self.changes() - before) as f64) < 2e-3 * self.context.store.vertex_bound() as f64
+        ((self.changes() - before) as f64) < SETTLED * self.context.store.vertex_bound() as f64
     }
 
     /// The end-game on the tetrahedra below the limit, with edges a little longer than elsewhere allowed.

@@ -33,6 +33,13 @@ const STEPS: [f64; 2] = [0.8, 0.3];
 /// Weight of the edge lengths in the energy, beside the shapes.
 const LENGTH_WEIGHT: f64 = 1.0;
 
+/// ((L − 1/L)/2)² = sinh² ln L, weighted: 0 at unit length, the same for twice and for half of it.
+#[inline(always)]
+fn misfit(length: f64) -> f64 {
+    let difference = length - 1.0 / length;
+    0.25 * LENGTH_WEIGHT * difference * difference
+}
+
 impl<A: Access> Worker<'_, '_, A> {
     /// Smooths one vertex whose worst tetrahedron is below the limit.
     pub fn smooth(&mut self, v: VertexId) -> Result<(), Refusal> {
@@ -65,9 +72,10 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Tries the directions in turn, each with shorter and shorter steps, until the vertex moves; whether it did.
     fn descend(&mut self, v: VertexId, ball: &[TetId], triangles: &[([VertexId; 3], u32)]) -> bool {
         let from = self.store.position(v);
-        let limit = self.present_energy(v, ball) * (1.0 - GAIN);
+        let (energy, pliant) = self.present_energy(v, ball);
+        let limit = energy * (1.0 - GAIN);
         for direction in 0..2 {
-            let to = if direction == 0 { self.pliant_point(v) } else { self.gradient_point(v, ball) };
+            let to = if direction == 0 { pliant } else { self.gradient_point(v, ball) };
             for step in STEPS {
                 if self.try_move(v, lerp(from, to, step), ball, triangles, limit) {
                     return true;
@@ -128,19 +136,23 @@ impl<A: Access> Worker<'_, '_, A> {
         self.store.set_hint(v, held.hint);
     }
 
-    /// The energy as the vertex lies, from the kept mean ratios.
-    fn present_energy(&self, v: VertexId, ball: &[TetId]) -> f64 {
+    /// The energy as the vertex lies, from the kept mean ratios; and the place that the lengths ask for: the mean of the points that
+    /// have unit distance from the neighbours, in the direction of v (pliant).
+    fn present_energy(&self, v: VertexId, ball: &[TetId]) -> (f64, Vec3) {
         let shapes = ball.iter().map(|&t| self.store.quality(t).max(1e-6));
-        self.length_energy(v) + shapes.map(|shape| 1.0 / (shape * shape * shape)).sum::<f64>()
+        let mut energy = shapes.map(|shape| 1.0 / (shape * shape * shape)).sum::<f64>();
+        let p = self.store.position(v);
+        let mut sum = [0.0; 3];
+        let link = &self.state.star.link;
+        for &x in link {
+            let length = self.length(v, x);
+            energy += misfit(length);
+            sum = add(sum, lerp(self.store.position(x), p, 1.0 / length.max(0.1)));
+        }
+        (energy, scale(sum, 1.0 / link.len() as f64))
     }
 
-    /// Σ (ln L)² over the edges at v, weighted.
-    fn length_energy(&self, v: VertexId) -> f64 {
-        let lengths = self.state.star.link.iter().map(|&x| self.length(v, x).ln());
-        LENGTH_WEIGHT * lengths.map(|l| l * l).sum::<f64>()
-    }
-
-    /// Σ 1/Q³ over the ball and Σ (ln L)² over the edges at v; infinite when a tetrahedron is inverted or the sum passes
+    /// Σ 1/Q³ over the ball and Σ ((L − 1/L)/2)² over the edges at v; infinite when a tetrahedron is inverted or the sum passes
     /// `limit`. Leaves the mean ratios in `shapes`.
     fn energy(&self, v: VertexId, ball: &[TetId], limit: f64, shapes: &mut Vec<f64>) -> f64 {
         shapes.clear();
@@ -153,20 +165,7 @@ impl<A: Access> Worker<'_, '_, A> {
             energy += 1.0 / (shape * shape * shape);
             shapes.push(shape);
         }
-        energy + self.length_energy(v)
-    }
-
-    /// The mean of the points that have unit distance from the neighbours, in the direction of v.
-    fn pliant_point(&self, v: VertexId) -> Vec3 {
-        let p = self.store.position(v);
-        let mut sum = [0.0; 3];
-        let link = &self.state.star.link;
-        for &x in link {
-            let q = self.store.position(x);
-            let length = self.length(v, x);
-            sum = add(sum, lerp(q, p, 1.0 / length.max(0.1)));
-        }
-        scale(sum, 1.0 / link.len() as f64)
+        energy + self.state.star.link.iter().map(|&x| misfit(self.length(v, x))).sum::<f64>()
     }
 
     /// A step down the energy's gradient: M⁻¹∇E, at most 0.3 long in the metric.
