@@ -5,7 +5,7 @@ use common::adapting::{Adapted, Workplace, areas, cube, faces, isotropic, sorted
 use common::program;
 use geo_adapt::mesh::vector::{Vec3, area2, distance};
 use geo_adapt::mesh::{Elements, TetMesh, io};
-use geo_adapt::metric::Sym3;
+use geo_adapt::metric::{Sym3, field};
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
@@ -280,6 +280,8 @@ fn the_complexity_is_reached_from_a_coarse_mesh_too() {
     let mesh = one(2);
     let metric = work.metric(&mesh, |p| isotropic((6.8 * p[0]).exp()));
     let found = work.adapt(&work.mesh(&mesh), &["--metric", &metric, "--complexity", "600"]);
-    let reached = found.report["statistics"]["metric"]["complexity"].as_f64().unwrap();
-    assert!((reached / 600.0 - 1.0).abs() < 0.1, "{reached}");
+    // The integral over the new mesh: the sum over its vertices counts too much where sizes change as fast as here.
+    let logs: Vec<Sym3> = found.metrics.iter().map(Sym3::ln).collect();
+    let reached = field::complexity_between(&found.mesh, &logs);
+    assert!((reached / 600.0 - 1.0).abs() < 0.05, "{reached}");
 }
