@@ -5,7 +5,7 @@ use super::outcome::Refusal;
 use super::star::{Bounds, Seed};
 use super::surface::Placed;
 use super::worker::Worker;
-use crate::mesh::vector::{distance, lerp, norm};
+use crate::mesh::vector::{Vec3, distance, lerp, norm};
 
 /// Halvings of the way to the model within one attempt.
 const HALVINGS: u32 = 5;
@@ -23,8 +23,8 @@ impl<A: Access> Worker<'_, '_, A> {
         let ball = std::mem::take(&mut self.state.ball);
         let (start, hint) = (self.store.position(v), self.store.hint(v));
         let goal = self.place(self.store.entity(v), start, &[v]);
-        if distance(start, goal.point) <= ARRIVED * norm(start) {
-            // Smoothing was here before.
+        if has_arrived(start, goal) {
+            // Smoothing was here before, or the id belongs to another vertex now.
             self.state.ball = ball;
             return Ok(());
         }
@@ -64,4 +64,18 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         Err(Refusal::Inverted)
     }
+
+    /// Removes a waiting vertex that is still not on the model, whatever lengths and shapes come of it.
+    pub fn retire(&mut self, v: VertexId) -> Result<(), Refusal> {
+        self.claim_live(v)?;
+        let goal = self.place(self.store.entity(v), self.store.position(v), &[v]);
+        if has_arrived(self.store.position(v), goal) {
+            return Err(Refusal::Stale);
+        }
+        self.remove(v, 0.0)
+    }
+}
+
+fn has_arrived(point: Vec3, goal: Placed) -> bool {
+    distance(point, goal.point) <= ARRIVED * norm(point)
 }

@@ -111,7 +111,7 @@ impl Operation for Retire {
     type Item = VertexId;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
-        let result = worker.claim_live(item).and_then(|()| worker.remove(item, 0.0));
+        let result = worker.retire(item);
         if result.is_err_and(|refusal| !matches!(refusal, Refusal::Conflict | Refusal::Stale)) {
             worker.state.waiting.push(item);
         }

@@ -47,7 +47,7 @@ impl Progress {
 
     /// The work is over.
     pub fn finish(&self) {
-        self.state.lock().expect("no panic while drawing").bar.abandon();
+        self.state.lock().expect("no panic while drawing").leave();
     }
 
     /// Whether the user ended it.
@@ -57,10 +57,18 @@ impl Progress {
 }
 
 impl State {
+    /// Leaves the bar of a pass as it is, and its line.
+    fn leave(&self) {
+        if !self.bar.is_hidden() {
+            self.bar.abandon();
+            eprintln!();
+        }
+    }
+
     fn describe(&self) -> String {
         let [split, collapse, reconnect, smooth, ..] = self.done;
         let name = self.kind.name();
-        format!("{name:<12} inserted {split}, collapsed {collapse}, flipped {reconnect}, smoothed {smooth}")
+        format!("{name:<12} {split} in, {collapse} out, {reconnect} flips, {smooth} moves")
     }
 }
 
@@ -69,8 +77,8 @@ impl Observer for Progress {
         let mut state = self.state.lock().expect("no panic while drawing");
         state.kind = kind;
         if self.shown && state.pass != Some(pass) {
-            state.bar.abandon();
-            let style = ProgressStyle::with_template("pass {prefix:>2} [{bar:24}] {msg}");
+            state.leave();
+            let style = ProgressStyle::with_template("pass {prefix:>2} [{bar:16}] {wide_msg}");
             let style = style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> ");
             let target = ProgressDrawTarget::stderr();
             state.bar = ProgressBar::with_draw_target(Some(0), target).with_style(style);
