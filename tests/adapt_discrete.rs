@@ -3,6 +3,7 @@ mod common;
 
 use common::adapting::{Adapted, Workplace, areas, cube, faces, isotropic, sorted, stderr, text, volumes};
 use common::program;
+use geo_adapt::geometry::discrete::outward_triangles;
 use geo_adapt::mesh::vector::{Vec3, area2, distance};
 use geo_adapt::mesh::{Elements, TetMesh, io};
 use geo_adapt::metric::{Sym3, field};
@@ -284,4 +285,22 @@ fn the_complexity_is_reached_from_a_coarse_mesh_too() {
     let logs: Vec<Sym3> = found.metrics.iter().map(Sym3::ln).collect();
     let reached = field::complexity_between(&found.mesh, &logs);
     assert!((reached / 600.0 - 1.0).abs() < 0.05, "{reached}");
+}
+
+/// Some programs write triangles that look into the domain: theirs still do afterwards.
+#[test]
+fn triangles_look_to_the_side_that_they_looked_to() {
+    for inward in [false, true] {
+        let work = Workplace::new();
+        let mut mesh = one(3);
+        mesh.triangles.nodes = outward_triangles(&mesh);
+        if inward {
+            mesh.triangles.nodes.iter_mut().for_each(|nodes| nodes.swap(0, 1));
+        }
+        let metric = work.metric(&mesh, |_| isotropic(0.2));
+        let found = work.adapt(&work.mesh(&mesh), &["--metric", &metric]);
+        let outward = outward_triangles(&found.mesh);
+        let same = found.mesh.triangles.nodes.iter().zip(&outward).filter(|(found, outward)| found == outward).count();
+        assert_eq!(same, if inward { 0 } else { outward.len() });
+    }
 }

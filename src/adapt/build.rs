@@ -194,10 +194,12 @@ pub fn measure(store: &Store, source: &Source) {
     }
 }
 
-/// The reference that the mesh gives to each face and each edge of the model.
+/// What the mesh calls each face and each edge of the model, and how it turns a face's triangles.
 pub struct References {
     /// By face.
     pub faces: Vec<i32>,
+    /// Whether the triangles of a face look into the domain (between regions: into the lesser one).
+    pub inward: Vec<bool>,
     /// By edge.
     pub edges: Vec<i32>,
 }
@@ -240,10 +242,14 @@ pub fn extract(context: &Context, input: &TetMesh, refs: &References) -> Extract
     for t in store.live_tets() {
         let (v, n, tags) = (store.vertices(t), store.neighbours(t), store.tags(t));
         mesh.tets.push(v.map(renumber), store.region(t) as i32);
-        for i in (0..4).filter(|&i| tags[i] != 0 && (!n[i].is_some() || t < n[i])) {
+        // Between two regions a triangle belongs to the lesser one.
+        let region = |t: TetId| (store.region(t) as i32, t);
+        for i in (0..4).filter(|&i| tags[i] != 0 && (!n[i].is_some() || region(t) < region(n[i]))) {
             let [a, b, c] = FACE[i].map(|k| renumber(v[k]));
-            mesh.triangles.push([a, c, b], refs.faces[tags[i] as usize - 1]);
-            classification.faces.push(tags[i] - 1);
+            let face = tags[i] - 1;
+            let outward = !refs.inward[face as usize];
+            mesh.triangles.push(if outward { [a, c, b] } else { [a, b, c] }, refs.faces[face as usize]);
+            classification.faces.push(face);
         }
     }
     classification.ridges = ridges(store, context.model.topology(), renumber);

@@ -6,6 +6,7 @@ use super::criteria::Criterion;
 use super::pipeline::{KINDS, Observer, Pipeline, Work};
 use super::required::Required;
 use crate::geometry::classify::Classification;
+use crate::geometry::discrete::outward_triangles;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::metric::Source;
@@ -58,7 +59,11 @@ pub fn adapt(
     pipeline.points = options.points;
     pipeline.run();
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());
-    let refs = References { faces: face_refs(mesh, place, model), edges: edge_refs(mesh, place, model) };
+    let refs = References {
+        faces: face_refs(mesh, place, model),
+        inward: inward_faces(mesh, place, model),
+        edges: edge_refs(mesh, place, model),
+    };
     let extracted = build::extract(&context, mesh, &refs);
     Ok(Adapted { extracted, work, off_model })
 }
@@ -70,6 +75,15 @@ fn face_refs(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<i32> 
         refs[face as usize].get_or_insert(reference);
     }
     refs.iter().enumerate().map(|(face, reference)| reference.unwrap_or(face as i32 + 1)).collect()
+}
+
+/// The faces most of whose triangles look into the domain: the files of some programs have all of them so.
+fn inward_faces(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<bool> {
+    let mut outward = vec![0i64; model.topology().faces.len()];
+    for ((given, turned), &face) in mesh.triangles.nodes.iter().zip(outward_triangles(mesh)).zip(&place.faces) {
+        outward[face as usize] += if *given == turned { 1 } else { -1 };
+    }
+    outward.into_iter().map(|balance| balance < 0).collect()
 }
 
 /// The reference of each model edge: that of its first listed mesh edge.

@@ -131,7 +131,8 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         assert!((0..3).all(|k| after[k] > before[k]), "{before:?} {after:?}");
         let topology = model.topology();
         let edges = vec![1; topology.edges.len()];
-        let refs = build::References { faces: vec![1; topology.faces.len()], edges };
+        let faces = vec![1; topology.faces.len()];
+        let refs = build::References { inward: vec![false; faces.len()], faces, edges };
         let extracted = build::extract(&context, &mesh, &refs);
         assert_valid_cube(&extracted.mesh);
     }
