@@ -64,16 +64,6 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         Err(Refusal::Inverted)
     }
-
-    /// Removes a waiting vertex that is still not on the model, whatever lengths and shapes come of it.
-    pub fn retire(&mut self, v: VertexId) -> Result<(), Refusal> {
-        self.claim_live(v)?;
-        let goal = self.place(self.store.entity(v), self.store.position(v), &[v]);
-        if has_arrived(self.store.position(v), goal) {
-            return Err(Refusal::Stale);
-        }
-        self.remove(v, 0.0)
-    }
 }
 
 fn has_arrived(point: Vec3, goal: Placed) -> bool {

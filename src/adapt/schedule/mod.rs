@@ -104,14 +104,15 @@ impl Operation for Mend {
     }
 }
 
-/// Removes waiting boundary vertices that never arrived.
+/// Removes waiting boundary vertices that never arrived: what a sweep of [`Project`] just before has left over, so that no id can
+/// stand for another vertex by now.
 pub struct Retire;
 
 impl Operation for Retire {
     type Item = VertexId;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
-        let result = worker.retire(item);
+        let result = worker.claim_live(item).and_then(|()| worker.remove(item, 0.0));
         if result.is_err_and(|refusal| !matches!(refusal, Refusal::Conflict | Refusal::Stale)) {
             worker.state.waiting.push(item);
         }
