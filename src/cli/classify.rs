@@ -16,7 +16,7 @@ pub struct Arguments {
     #[arg(long, value_name = "MODEL")]
     cad: PathBuf,
     /// Where the mesh with its association goes
-    #[arg(short, long, short_alias = 'x', value_name = "OUT")]
+    #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     output: PathBuf,
     /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model
     /// states for an entity]

@@ -28,7 +28,7 @@ pub struct Arguments {
     /// The mesh: .mesh or .meshb
     mesh: PathBuf,
     /// Where the adapted mesh goes; its metric is written beside it as .solb
-    #[arg(short, long, short_alias = 'x', value_name = "OUT")]
+    #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     output: PathBuf,
     /// The CAD model the boundary lies on: .step, .stp, .iges, .igs, .brep or .egads. Without it the surface of the input mesh
     #[arg(long, value_name = "MODEL")]

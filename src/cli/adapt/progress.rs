@@ -1,7 +1,7 @@
 //! Progress on the terminal: a bar a pass, with counts; and the interrupt.
 use crate::adapt::{Counts, KINDS, Kind, Observer};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
 /// Set by the first interrupt.
@@ -27,7 +27,6 @@ pub struct Progress {
     shown: bool,
     stop: Stop,
     state: Mutex<State>,
-    waited: AtomicU32,
 }
 
 struct State {
@@ -42,7 +41,7 @@ impl Progress {
     pub fn new(wanted: bool, stop: Stop) -> Self {
         let state = State { bar: ProgressBar::hidden(), pass: None, kind: Kind::Split, done: [0; KINDS] };
         let shown = wanted && std::io::IsTerminal::is_terminal(&std::io::stderr());
-        Self { shown, stop, state: Mutex::new(state), waited: AtomicU32::new(0) }
+        Self { shown, stop, state: Mutex::new(state) }
     }
 
     /// The work is over.
@@ -93,7 +92,6 @@ impl Observer for Progress {
     }
 
     fn advance(&self, items: usize) {
-        self.waited.fetch_add(1, Relaxed);
         if let Ok(state) = self.state.try_lock() {
             state.bar.inc(items as u64);
         }

@@ -1,10 +1,8 @@
 //! The boundary of a tetrahedral mesh: its outward side, and triangles that the file left out.
 use crate::mesh::TetMesh;
+use crate::mesh::adjacency::FACES;
 use crate::mesh::vector::volume6;
 use std::collections::{BTreeMap, HashMap};
-
-/// Faces of a positive tetrahedron, normals outward; face k lies opposite vertex k.
-const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// Nodes of the mesh's triangles, turned so that the right-hand normal leaves the tetrahedra; between two regions
 /// it leaves the one with the smaller reference. A triangle without a tetrahedron, or inside one region, stays as it is.
