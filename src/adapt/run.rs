@@ -10,7 +10,7 @@ use crate::geometry::discrete::outward_triangles;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::metric::Source;
-use crate::tasks::Pool;
+use crate::tasks::{Pool, stage};
 use std::collections::HashMap;
 
 /// How to adapt.
@@ -53,11 +53,13 @@ pub fn adapt(
     observer: &dyn Observer,
 ) -> Result<Adapted, build::Error> {
     let (store, waiting) = build::fill(mesh, place, source)?;
+    stage("store filled");
     let mut context = Context::new(store, source, model);
     context.required = Required::of(mesh);
     let mut pipeline = Pipeline::new(&mut context, pool, observer, options.criterion, waiting);
     pipeline.points = options.points;
     pipeline.run();
+    stage("passes");
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());
     let refs = References {
         faces: face_refs(mesh, place, model),
@@ -65,6 +67,7 @@ pub fn adapt(
         edges: edge_refs(mesh, place, model),
     };
     let extracted = build::extract(&context, mesh, &refs);
+    stage("extracted");
     Ok(Adapted { extracted, work, off_model })
 }
 

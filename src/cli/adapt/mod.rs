@@ -10,7 +10,7 @@ use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
 use crate::geometry::{Discrete, Model};
 use crate::mesh::{TetMesh, io};
 use crate::metric::{Analytic, Background, Field, Source, field};
-use crate::tasks::Pool;
+use crate::tasks::{Pool, stage};
 use progress::Progress;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -75,15 +75,21 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     files::check(arguments)?;
     let stop = progress::stop_on_interrupt();
+    stage("start");
     let mut read = io::read_mesh(&arguments.mesh)?;
+    stage("mesh read");
     let added = complete_boundary(&mut read.content);
+    stage("boundary complete");
     if added > 0 {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
     }
     let mesh = read.content;
     let mut source = source(arguments, &mesh, &mut read.notices)?;
+    stage("metric ready");
     let (model, place) = place(arguments, &mesh, &mut read.notices)?;
+    stage("classified");
     scale(arguments, &mesh, &mut source)?;
+    stage("complexity");
     let progress = Progress::new(!arguments.quiet, stop);
     for notice in read.notices.iter().filter(|_| !arguments.quiet) {
         eprintln!("geo-adapt: note: {notice}");
@@ -97,7 +103,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     progress.finish();
     let finished = start.elapsed();
     let report = report::Report::new(arguments, &mesh, &model, adapted, threads);
+    stage("report");
     let report = files::write(arguments, report, [prepared, finished, start.elapsed()])?;
+    stage("written");
     if !arguments.quiet {
         super::print(&report.text(arguments));
     }
