@@ -2,6 +2,7 @@
 //! vary as they do in a mesh.
 use criterion::{Criterion, criterion_group, criterion_main};
 use geo_adapt::mesh::vector::{Vec3, cross, unit};
+use geo_adapt::metric::batch::Batch;
 use geo_adapt::metric::quality::{edge_length, may_exceed, mean_ratio, mean_ratio_in};
 use geo_adapt::metric::{Background, Sym3};
 use std::hint::black_box;
@@ -75,6 +76,19 @@ fn quality(c: &mut Criterion) {
         })
         .collect();
     over(c, "mean_ratio", &tets, |(p, logs)| mean_ratio(*p, logs.each_ref()));
+    let batches: Vec<(Batch, Vec3, Sym3)> = tets
+        .chunks_exact(4)
+        .map(|four| {
+            let mut batch = Batch::default();
+            for (lane, (p, logs)) in four.iter().enumerate() {
+                batch.set(lane, [p[0], p[1], p[2]], [&logs[0], &logs[1], &logs[2]]);
+            }
+            batch.prepare();
+            (batch, four[0].0[3], four[0].1[3])
+        })
+        .collect();
+    over(c, "mean_ratio, four at once", &batches, |(batch, p, log)| batch.shapes(*p, log).mean_ratios());
+    over(c, "mean_ratio, four at once, cubed", &batches, |(batch, p, log)| batch.shapes(*p, log));
     over(c, "may_exceed (refusal)", &tets, |(p, logs)| may_exceed(*p, logs.each_ref(), 0.999));
     over(c, "mean_ratio_in", &tets, |(p, logs)| mean_ratio_in(*p, &logs[0], 1.0));
 }

@@ -2,7 +2,7 @@
 use super::context::Context;
 use super::ids::{FACE, TetId, VertexId};
 use super::required::Required;
-use super::shape::is_positive;
+use crate::mesh::predicate::is_positive;
 use super::store::Store;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Geometry, Topology};

@@ -1,7 +1,7 @@
 //! The whole store held against everything that the operations promise; for tests.
 use super::context::Context;
 use super::ids::{EDGE, FACE, TetId, VertexId};
-use super::shape::is_positive;
+use crate::mesh::predicate::is_positive;
 use super::store::Store;
 use crate::geometry::{Entity, Geometry};
 use crate::metric::quality::mean_ratio;

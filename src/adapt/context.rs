@@ -54,7 +54,7 @@ impl Default for Limits {
             collapse_floor: 0.2,
             improve_below: 1.0,
             since: 0,
-            tilt: 0.8,
+            tilt: 0.5,
             spread: 0.94,
             cavity: 96,
         }

@@ -35,7 +35,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let points = tet.map(|v| self.store.position(v));
         match criterion {
             Criterion::MeanRatio => Some(self.shape_above(tet, floor)).filter(|&q| q > 0.0),
-            _ if !super::shape::is_positive(points) => None,
+            _ if !crate::mesh::predicate::is_positive(points) => None,
             // Positive, but so flat that its volume rounds to nothing: no score can be trusted.
             _ if volume6(points[0], points[1], points[2], points[3]) <= 0.0 => None,
             Criterion::EdgeWeight => {
@@ -122,7 +122,7 @@ mod tests {
         let mut flat = REGULAR;
         flat[0] = [0.0, 0.0, 0.0];
         let positive = |x: [Vec3; 4]| if is_positive(x) { x } else { [x[1], x[0], x[2], x[3]] };
-        use super::super::shape::is_positive;
+        use crate::mesh::predicate::is_positive;
         assert!(edge_weight(positive(flat), &Sym3::IDENTITY) > edge_weight(positive(REGULAR), &Sym3::IDENTITY));
     }
 }

@@ -11,6 +11,7 @@ mod criteria;
 mod discipline;
 mod edge_removal;
 mod face_removal;
+mod fan;
 mod ids;
 mod insert;
 mod local;

@@ -2,23 +2,9 @@
 use super::access::Access;
 use super::ids::VertexId;
 use super::worker::Worker;
-use crate::mesh::vector::{Vec3, sub, volume6};
+use crate::mesh::predicate::is_positive;
+use crate::mesh::vector::sub;
 use crate::metric::quality::{edge_length, may_exceed, mean_ratio};
-use robust::{Coord3D, orient3d};
-
-/// Whether the tetrahedron is positive: exact.
-#[inline]
-pub fn is_positive(p: [Vec3; 4]) -> bool {
-    let volume = volume6(p[0], p[1], p[2], p[3]);
-    let size = |k: usize| sub(p[k], p[0]).iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    // Thrice the forward error bound of the 3×3 determinant of rounded differences.
-    if volume.abs() > 4e-14 * size(1) * size(2) * size(3) {
-        return volume > 0.0;
-    }
-    let [a, b, c, d] = p.map(|[x, y, z]| Coord3D { x, y, z });
-    // robust's sign is opposite: positive when d sees (a, b, c) clockwise from the other side.
-    orient3d(a, b, c, d) < 0.0
-}
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Length of the edge in the metric.

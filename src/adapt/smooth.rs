@@ -4,14 +4,14 @@
 //! the energy Σ 1/Q³ of its tetrahedra, measured in its metric. A step counts only if the energy falls, no
 //! tetrahedron is inverted (exact), and the surface does not turn from its model.
 use super::access::Access;
+use super::fan::Fan;
 use super::ids::{FACE, TetId, VertexId};
 use super::outcome::Refusal;
 use super::surface::Placed;
 use super::worker::Worker;
 use crate::geometry::Entity;
-use crate::mesh::vector::{Vec3, add, area2, dot, lerp, scale, sub};
+use crate::mesh::vector::{Vec3, lerp};
 use crate::metric::Sym3;
-use crate::metric::quality::mean_log;
 
 /// Where a vertex is, to be put back.
 #[derive(Clone, Copy)]
@@ -29,16 +29,6 @@ const GAIN: f64 = 0.01;
 
 /// Parts of a direction that are tried.
 const STEPS: [f64; 2] = [0.8, 0.3];
-
-/// Weight of the edge lengths in the energy, beside the shapes.
-const LENGTH_WEIGHT: f64 = 1.0;
-
-/// ((L − 1/L)/2)² = sinh² ln L, weighted: 0 at unit length, the same for twice and for half of it.
-#[inline(always)]
-fn misfit(length: f64) -> f64 {
-    let difference = length - 1.0 / length;
-    0.25 * LENGTH_WEIGHT * difference * difference
-}
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Smooths one vertex whose worst tetrahedron is below the limit.
@@ -71,13 +61,26 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Tries the directions in turn, each with shorter and shorter steps, until the vertex moves; whether it did.
     fn descend(&mut self, v: VertexId, ball: &[TetId], triangles: &[([VertexId; 3], u32)]) -> bool {
-        let from = self.store.position(v);
-        let (energy, pliant) = self.present_energy(v, ball);
-        let limit = energy * (1.0 - GAIN);
+        let mut fan = std::mem::take(&mut self.state.fan);
+        fan.fill(self.store, v, ball, &self.state.star.link);
+        let moved = self.descend_in(v, ball, triangles, &mut fan);
+        self.state.fan = fan;
+        moved
+    }
+
+    fn descend_in(&mut self, v: VertexId, ball: &[TetId], triangles: &[([VertexId; 3], u32)], fan: &mut Fan) -> bool {
+        let held = self.hold(v);
+        let from = held.placed.point;
+        let (present, pliant) = fan.present(from, &held.log, &held.metric);
+        let limit = present * (1.0 - GAIN);
         for direction in 0..2 {
-            let to = if direction == 0 { pliant } else { self.gradient_point(v, ball) };
+            let to = if direction == 0 { pliant } else { fan.downhill(from, &held.log, &held.metric) };
             for step in STEPS {
-                if self.try_move(v, lerp(from, to, step), ball, triangles, limit) {
+                if self.try_move(v, &held, lerp(from, to, step), triangles, fan, limit) {
+                    for (&t, shape) in ball.iter().zip(fan.mean_ratios()) {
+                        self.store.set_quality(t, shape);
+                        self.store.touch(t);
+                    }
                     return true;
                 }
             }
@@ -85,33 +88,33 @@ impl<A: Access> Worker<'_, '_, A> {
         false
     }
 
-    /// Moves the vertex to the closest point of its entity when the energy falls below `limit` there; else puts it back.
+    /// Moves the vertex to the closest point of its entity when the energy falls below `limit` there and the surface stays.
     fn try_move(
         &mut self,
         v: VertexId,
+        held: &Held,
         target: Vec3,
-        ball: &[TetId],
         triangles: &[([VertexId; 3], u32)],
+        fan: &mut Fan,
         limit: f64,
     ) -> bool {
-        let held = self.hold(v);
         let placed = self.place(held.placed.entity, target, &[v]);
-        let facing = (!triangles.is_empty()).then(|| self.facing(triangles));
-        self.set_point(v, placed.point, held.hint);
-        self.store.set_place(v, placed.entity, placed.parameters);
-        let mut shapes = std::mem::take(&mut self.state.shapes);
-        let falls = self.energy(v, ball, limit, &mut shapes) < limit;
-        let moved = falls && facing.is_none_or(|facing| self.compare_normals(facing, triangles, 0.0).is_ok());
-        if moved {
-            for (&t, &shape) in ball.iter().zip(&shapes) {
-                self.store.set_quality(t, shape);
-                self.store.touch(t);
-            }
-        } else {
-            self.put_back(v, &held);
+        let mut hint = held.hint;
+        let log = self.context.source.log_at(placed.point, &mut hint);
+        if !fan.falls_below(limit, placed.point, &log) {
+            return false;
         }
-        self.state.shapes = shapes;
-        moved
+        let metric = log.exp();
+        if !fan.lengths_allow(limit, placed.point, &metric) {
+            return false;
+        }
+        let facing = (!triangles.is_empty()).then(|| self.facing(triangles));
+        self.put_back(v, &Held { placed, log, metric, hint });
+        let stays = facing.is_none_or(|facing| self.compare_normals(facing, triangles, 0.0).is_ok());
+        if !stays {
+            self.put_back(v, held);
+        }
+        stays
     }
 
     /// Remembers where a claimed vertex is.
@@ -134,64 +137,6 @@ impl<A: Access> Worker<'_, '_, A> {
         self.store.set_metric(v, &held.log, &held.metric);
         self.store.set_place(v, held.placed.entity, held.placed.parameters);
         self.store.set_hint(v, held.hint);
-    }
-
-    /// The energy as the vertex lies, from the kept mean ratios; and the place that the lengths ask for: the mean of the points that
-    /// have unit distance from the neighbours, in the direction of v (pliant).
-    fn present_energy(&self, v: VertexId, ball: &[TetId]) -> (f64, Vec3) {
-        let shapes = ball.iter().map(|&t| self.store.quality(t).max(1e-6));
-        let mut energy = shapes.map(|shape| 1.0 / (shape * shape * shape)).sum::<f64>();
-        let p = self.store.position(v);
-        let mut sum = [0.0; 3];
-        let link = &self.state.star.link;
-        for &x in link {
-            let length = self.length(v, x);
-            energy += misfit(length);
-            sum = add(sum, lerp(self.store.position(x), p, 1.0 / length.max(0.1)));
-        }
-        (energy, scale(sum, 1.0 / link.len() as f64))
-    }
-
-    /// Σ 1/Q³ over the ball and Σ ((L − 1/L)/2)² over the edges at v; infinite when a tetrahedron is inverted or the sum passes
-    /// `limit`. Leaves the mean ratios in `shapes`.
-    fn energy(&self, v: VertexId, ball: &[TetId], limit: f64, shapes: &mut Vec<f64>) -> f64 {
-        shapes.clear();
-        let mut energy = 0.0;
-        for &t in ball {
-            let shape = self.shape(self.store.vertices(t));
-            if shape <= 0.0 || energy > limit {
-                return f64::INFINITY;
-            }
-            energy += 1.0 / (shape * shape * shape);
-            shapes.push(shape);
-        }
-        energy + self.state.star.link.iter().map(|&x| misfit(self.length(v, x))).sum::<f64>()
-    }
-
-    /// A step down the energy's gradient: M⁻¹∇E, at most 0.3 long in the metric.
-    fn gradient_point(&self, v: VertexId, ball: &[TetId]) -> Vec3 {
-        let mut gradient = [0.0; 3];
-        let p = self.store.position(v);
-        for &t in ball {
-            let w = self.store.vertices(t);
-            let i = w.iter().position(|&x| x == v).expect("the ball holds its vertex");
-            let logs = w.map(|x| self.store.log(x));
-            let mean = mean_log([&logs[0], &logs[1], &logs[2], &logs[3]]).exp();
-            let x = w.map(|x| self.store.position(x));
-            let [a, b, c] = FACE[i].map(|k| x[k]);
-            // ∇Q/Q = ⅔ ∇V/V − ∇S/S, with V = area·(p − a)/6 and S the sum of squared edges, in the mean metric.
-            let area = area2(a, b, c);
-            let volume = dot(area, sub(p, a));
-            let edges = [sub(b, a), sub(c, a), sub(c, b), sub(p, a), sub(p, b), sub(p, c)];
-            let sum: f64 = edges.iter().map(|&e| mean.quadratic(e)).sum();
-            let pull = mean.apply(add(edges[3], add(edges[4], edges[5])));
-            let relative = sub(scale(area, 2.0 / (3.0 * volume)), scale(pull, 2.0 / sum));
-            let quality = self.store.quality(t).max(1e-3);
-            gradient = add(gradient, scale(relative, 1.0 / (quality * quality * quality)));
-        }
-        let step = self.store.metric(v).inverse().apply(gradient);
-        let length = self.store.metric(v).quadratic(step).sqrt();
-        add(p, scale(step, if length > 0.0 { 0.3 / length } else { 0.0 }))
     }
 
     /// Lists the vertices joined to v in `state.star.link`.

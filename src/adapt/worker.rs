@@ -81,8 +81,8 @@ pub struct State<'m> {
     pub neighbours: Vec<VertexId>,
     /// The tetrahedra at either of two vertices.
     pub union: Vec<TetId>,
-    /// Mean ratios of a ball at a position that is tried.
-    pub shapes: Vec<f64>,
+    /// A ball whose middle is tried at other places.
+    pub fan: super::fan::Fan,
     /// The ring about an edge.
     pub shell: super::shell::Shell,
     /// Boundary vertices that are not yet on the model.
@@ -104,7 +104,7 @@ impl<'m> State<'m> {
             ball: Vec::with_capacity(128),
             neighbours: Vec::with_capacity(64),
             union: Vec::with_capacity(128),
-            shapes: Vec::with_capacity(64),
+            fan: super::fan::Fan::default(),
             shell: super::shell::Shell::default(),
             waiting: Vec::new(),
             ring: super::edge_removal::RingTables::default(),

@@ -1,5 +1,5 @@
 //! The exact orientation predicate, in the sign convention of this project.
-use super::vector::Vec3;
+use super::vector::{Vec3, sub, volume6};
 use robust::Coord3D;
 
 /// Has the exact sign of [`super::vector::volume6`]: positive when d lies on the side that the right-hand normal of (a, b, c)
@@ -11,10 +11,21 @@ pub fn orientation(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
     -robust::orient3d(point(a), point(b), point(c), point(d))
 }
 
+/// Whether the tetrahedron is positive: exact.
+#[inline]
+pub fn is_positive(p: [Vec3; 4]) -> bool {
+    let volume = volume6(p[0], p[1], p[2], p[3]);
+    let size = |k: usize| sub(p[k], p[0]).iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    // Thrice the forward error bound of the 3×3 determinant of rounded differences.
+    if volume.abs() > 4e-14 * size(1) * size(2) * size(3) {
+        return volume > 0.0;
+    }
+    orientation(p[0], p[1], p[2], p[3]) > 0.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::vector::volume6;
 
     #[test]
     fn sign_of_the_volume() {

@@ -24,7 +24,7 @@ pub(super) fn invariants(s: &Sym3) -> (f64, f64) {
 }
 
 /// Interpolant of cos(acos(t)/3) at Chebyshev's points of [0, 1], off by 1.3e-8 at most.
-const COSINE: [f64; 8] = [
+pub(super) const COSINE: [f64; 8] = [
     0.866_025_416_391,
     0.166_665_043_063,
     -0.048_077_350_345,

@@ -8,11 +8,11 @@ use super::Sym3;
 use super::eigen::{Eigen, invariants, roots};
 
 /// Below this √p the power series is as exact and has no small divisors.
-const SERIES: f64 = 0.05;
+pub(super) const SERIES: f64 = 0.05;
 
 /// Beyond this difference of the eigenvalues of ln M (anisotropy 1e3) quadratic forms are summed along the
 /// eigenvectors: the figures that a matrix of six terms would lose are kept.
-const STRONG: f64 = 13.8;
+pub(super) const STRONG: f64 = 13.8;
 
 /// exp S of a traceless S, as coefficients of 1, S and S².
 struct Coefficients {

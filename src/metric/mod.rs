@@ -1,10 +1,12 @@
 //! Metrics: the tensor algebra, edge length and mean ratio, fields, analytic fields, the background.
 mod analytic;
 mod background;
+pub mod batch;
 mod eigen;
 mod error;
 mod exponential;
 pub mod field;
+pub mod lanes;
 pub mod quality;
 #[cfg(test)]
 mod random;

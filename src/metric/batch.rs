@@ -1,0 +1,388 @@
+//! Mean ratios of four tetrahedra at once: the inner loop of smoothing, of stars and of edge removal.
+//!
+//! A [`Batch`] holds four triangles with all that does not depend on the fourth vertex, the apex, so that trying another
+//! place for it costs little. Compiled for the baseline and for AVX2, chosen at run time; without fused
+//! multiplication, so that both give the same bits.
+use super::Sym3;
+use super::exponential::{SERIES, STRONG};
+use super::lanes::{
+    LANES, LaneSym3, LaneVec3, Lanes, add_dyad, apply, contract, cross, det, dot, everywhere, everywhere_tensor, squared, sub,
+};
+use super::quality::mean_ratio;
+use crate::mesh::predicate::is_positive;
+use crate::mesh::vector::Vec3;
+use multiversion::multiversion;
+
+/// (36/3^(1/3))³ (1/6)²: the factor of the cubed mean ratio when six times the volume is used.
+const FACTOR: f64 = 432.0;
+
+/// Error bound of the sign of six times a volume, in the product of the edges' greatest components: thrice the forward
+/// error of the 3×3 determinant of rounded differences.
+const UNCERTAIN: f64 = 4e-14;
+
+/// Four triangles (a, b, c), each to be joined to an apex p such that (a, b, c, p) is positive.
+#[derive(Clone)]
+pub struct Batch {
+    corners: [LaneVec3; 3],
+    logs: [LaneSym3; 3],
+    /// Normal of twice the area.
+    area: LaneVec3,
+    /// Error bound of the volume, in the apex's greatest component from a.
+    uncertain: Lanes,
+    /// Σ vvᵀ over the triangle's edges.
+    dyads: LaneSym3,
+    /// Σ ln M over the triangle's vertices.
+    log_sum: LaneSym3,
+}
+
+/// Mean ratios of the four tetrahedra of a [`Batch`].
+#[derive(Clone, Copy, Debug)]
+pub struct Shapes {
+    /// Q³: it needs no cube root. At most 0 where a tetrahedron is not positive.
+    pub cubes: Lanes,
+}
+
+impl Shapes {
+    /// Q; 0 where a tetrahedron is not positive.
+    #[inline]
+    pub fn mean_ratios(&self) -> [f64; LANES] {
+        roots(&self.cubes).0
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn roots(cubes: &Lanes) -> Lanes {
+    cubes.above(f64::MIN_POSITIVE, cubes.max(Lanes::all(f64::MIN_POSITIVE)).cbrt(), Lanes::ZERO)
+}
+
+impl Default for Batch {
+    fn default() -> Self {
+        Self {
+            corners: [[Lanes::ZERO; 3]; 3],
+            logs: [[Lanes::ZERO; 6]; 3],
+            area: [Lanes::ZERO; 3],
+            uncertain: Lanes::ZERO,
+            dyads: [Lanes::ZERO; 6],
+            log_sum: [Lanes::ZERO; 6],
+        }
+    }
+}
+
+impl Batch {
+    /// Sets one triangle; all four must be set, the last ones by repetition. Then [`Batch::prepare`].
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, points: [Vec3; 3], logs: [&Sym3; 3]) {
+        for k in 0..3 {
+            for i in 0..3 {
+                self.corners[k][i].0[lane] = points[k][i];
+            }
+            for i in 0..6 {
+                self.logs[k][i].0[lane] = logs[k].0[i];
+            }
+        }
+    }
+
+    /// Computes what does not depend on the apex.
+    #[inline]
+    pub fn prepare(&mut self) {
+        prepare(self);
+    }
+
+    /// The four tetrahedra with one apex p, its metric given as ln M.
+    #[inline]
+    pub fn shapes(&self, p: Vec3, log: &Sym3) -> Shapes {
+        self.shapes_each(&everywhere(p), &everywhere_tensor(log))
+    }
+
+    /// The four tetrahedra, each with an apex of its own.
+    #[inline]
+    pub fn shapes_each(&self, apex: &LaneVec3, log: &LaneSym3) -> Shapes {
+        let (cubes, certain) = cubes(self, apex, log);
+        if certain { Shapes { cubes } } else { self.shapes_exactly(apex, log, cubes) }
+    }
+
+    /// One by one, the sign of the volume by the exact predicate: flat tetrahedra, and metrics of strong anisotropy.
+    #[cold]
+    fn shapes_exactly(&self, apex: &LaneVec3, log: &LaneSym3, cubes: Lanes) -> Shapes {
+        let mut exact = cubes;
+        for lane in 0..LANES {
+            let [a, b, c] = self.corners.map(|corner| corner.map(|x| x.0[lane]));
+            let points = [a, b, c, apex.map(|x| x.0[lane])];
+            let of_lane = |tensor: &LaneSym3| Sym3(tensor.map(|x| x.0[lane]));
+            let [la, lb, lc] = [0, 1, 2].map(|k| of_lane(&self.logs[k]));
+            exact.0[lane] = match is_positive(points) {
+                true => mean_ratio(points, [&la, &lb, &lc, &of_lane(log)]).max(0.0).powi(3),
+                false => 0.0,
+            };
+        }
+        Shapes { cubes: exact }
+    }
+
+    /// Σ w ∇Q/Q with the weights w = 1/Q³ over the first `count` tetrahedra, for a common apex with the given Q³.
+    #[inline]
+    pub fn pull(&self, p: Vec3, log: &Sym3, cubes: &Lanes, count: usize) -> Vec3 {
+        let pulls = pulls(self, &everywhere(p), &everywhere_tensor(log), cubes);
+        pulls.map(|x| x.0.iter().take(count).sum())
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn prepare(batch: &mut Batch) {
+    let [a, b, c] = &batch.corners;
+    let (ab, ac, bc) = (sub(b, a), sub(c, a), sub(c, b));
+    let largest = |v: &LaneVec3| v[0].abs().max(v[1].abs()).max(v[2].abs());
+    batch.area = cross(&ab, &ac);
+    batch.uncertain = largest(&ab) * largest(&ac) * UNCERTAIN;
+    let mut dyads = [Lanes::ZERO; 6];
+    for v in [ab, ac, bc] {
+        add_dyad(&mut dyads, &v);
+    }
+    batch.dyads = dyads;
+    batch.log_sum = std::array::from_fn(|i| batch.logs[0][i] + batch.logs[1][i] + batch.logs[2][i]);
+}
+
+/// exp S of traceless tensors S as coefficients of 1, S and S², and whether no S is of strong anisotropy: as in
+/// exponential.rs, without its branches.
+#[inline(always)]
+fn exponential(s: &LaneSym3, s2: &LaneSym3) -> ([Lanes; 3], bool) {
+    let p = (s2[0] + s2[2] + s2[5]) * (1.0 / 6.0);
+    let r = det(s) * 0.5;
+    let least = Lanes::all(SERIES * SERIES);
+    let safe = p.max(least);
+    // The roots of x³ = 3p x + 2r: the isolated one, then y ≤ z.
+    let root = safe.sqrt();
+    let c = cosine_of_third((r.abs() / (safe * root)).min(Lanes::all(1.0)));
+    let x = (root * c * 2.0).copysign(r);
+    let close = ((safe * 3.0 - x * x * 0.75) * 4.0).max(Lanes::all(1e-10)).sqrt();
+    let (y, z) = (x * -0.5 - close * 0.5, x * -0.5 + close * 0.5);
+    let (ex, ey, ez) = (x.exp(), y.exp(), z.exp());
+    let fxy = (ey - ex) / (y - x);
+    let fyz = (ez - ey) / close;
+    let fxyz = (fyz - fxy) / (z - x);
+    let newton = [ex - fxy * x + fxyz * x * y, fxy + fxyz * z, fxyz];
+    let spread = close.max(x.abs() * 1.5 + close * 0.5);
+    let a = if p.any_below(SERIES * SERIES) {
+        let series = series(&p, &r);
+        [0, 1, 2].map(|i| p.above(SERIES * SERIES, newton[i], series[i]))
+    } else {
+        newton
+    };
+    (a, !spread.any_above(STRONG))
+}
+
+/// Σ Sⁿ/n! up to n = 9.
+#[inline(always)]
+fn series(p: &Lanes, r: &Lanes) -> [Lanes; 3] {
+    let mut a = [Lanes::all(1.0), Lanes::ZERO, Lanes::ZERO];
+    for n in (1..=9).rev() {
+        let over = 1.0 / f64::from(n);
+        a = [*r * a[2] * (2.0 * over) + 1.0, (a[0] + *p * a[2] * 3.0) * over, a[1] * over];
+    }
+    a
+}
+
+/// As in eigen.rs.
+#[inline(always)]
+fn cosine_of_third(t: Lanes) -> Lanes {
+    let (t2, k) = (t * t, &super::eigen::COSINE);
+    let low = (t * k[1] + k[0]) + (t * k[3] + k[2]) * t2;
+    let high = (t * k[5] + k[4]) + (t * k[7] + k[6]) * t2;
+    let c = low + high * (t2 * t2);
+    let c2 = c * c;
+    c - (c * (c2 * 4.0 + -3.0) - t) / (c2 * 12.0 + -3.0)
+}
+
+/// The traceless part of the mean of ln M.
+#[inline(always)]
+fn deviator(batch: &Batch, log: &LaneSym3) -> LaneSym3 {
+    let mut s: LaneSym3 = std::array::from_fn(|i| (batch.log_sum[i] + log[i]) * 0.25);
+    let mean = (s[0] + s[2] + s[5]) * (1.0 / 3.0);
+    for i in [0, 2, 5] {
+        s[i] = s[i] - mean;
+    }
+    s
+}
+
+/// Cubed mean ratios, and whether all are certain.
+#[multiversion(targets("x86_64+avx2"))]
+fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> (Lanes, bool) {
+    let [a, b, c] = &batch.corners;
+    let (pa, pb, pc) = (sub(apex, a), sub(apex, b), sub(apex, c));
+    let volume = dot(&batch.area, &pa);
+    let largest = pa[0].abs().max(pa[1].abs()).max(pa[2].abs());
+    let doubt = batch.uncertain * largest - volume.abs();
+    if !volume.any_above(0.0) && !doubt.any_above(0.0) {
+        return (Lanes::ZERO, true);
+    }
+    let mut dyads = batch.dyads;
+    for v in [pa, pb, pc] {
+        add_dyad(&mut dyads, &v);
+    }
+    let s = deviator(batch, log);
+    let s2 = squared(&s);
+    let ([a0, a1, a2], mild) = exponential(&s, &s2);
+    let sum = a0 * (dyads[0] + dyads[2] + dyads[5]) + a1 * contract(&dyads, &s) + a2 * contract(&dyads, &s2);
+    let cubes = volume * volume / (sum * sum * sum) * FACTOR;
+    (volume.above(0.0, cubes, Lanes::ZERO), mild && !doubt.any_above(0.0))
+}
+
+/// ∇Q/Q³·1/Q of the four tetrahedra, by the apex.
+#[multiversion(targets("x86_64+avx2"))]
+fn pulls(batch: &Batch, apex: &LaneVec3, log: &LaneSym3, cubes: &Lanes) -> LaneVec3 {
+    let [a, b, c] = &batch.corners;
+    let (pa, pb, pc) = (sub(apex, a), sub(apex, b), sub(apex, c));
+    let volume = dot(&batch.area, &pa);
+    let mut dyads = batch.dyads;
+    for v in [pa, pb, pc] {
+        add_dyad(&mut dyads, &v);
+    }
+    let s = deviator(batch, log);
+    let s2 = squared(&s);
+    let ([a0, a1, a2], _) = exponential(&s, &s2);
+    let sum = a0 * (dyads[0] + dyads[2] + dyads[5]) + a1 * contract(&dyads, &s) + a2 * contract(&dyads, &s2);
+    let out: LaneVec3 = std::array::from_fn(|i| pa[i] + pb[i] + pc[i]);
+    let (first, second) = (apply(&s, &out), apply(&s2, &out));
+    // ∇Q/Q = ⅔ ∇V/V − ∇S/S, with S the sum of squared edges in the mean metric.
+    let (of_volume, of_sum) = (Lanes::all(2.0 / 3.0) / volume, Lanes::all(2.0) / sum);
+    let weight = Lanes::all(1.0) / cubes.max(Lanes::all(1e-9));
+    std::array::from_fn(|i| {
+        (batch.area[i] * of_volume - (a0 * out[i] + a1 * first[i] + a2 * second[i]) * of_sum) * weight
+    })
+}
+
+/// Four edges from one vertex: the other ends.
+#[derive(Clone, Copy)]
+pub struct Spokes {
+    ends: LaneVec3,
+    metrics: LaneSym3,
+}
+
+impl Default for Spokes {
+    fn default() -> Self {
+        Self { ends: [Lanes::ZERO; 3], metrics: [Lanes::ZERO; 6] }
+    }
+}
+
+impl Spokes {
+    /// Sets one end.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, point: Vec3, metric: &Sym3) {
+        for i in 0..3 {
+            self.ends[i].0[lane] = point[i];
+        }
+        for i in 0..6 {
+            self.metrics[i].0[lane] = metric.0[i];
+        }
+    }
+
+    /// One end.
+    #[inline(always)]
+    pub fn end(&self, lane: usize) -> Vec3 {
+        self.ends.map(|x| x.0[lane])
+    }
+
+    /// Lengths of the edges to p, of metric M there: the log law of METHOD.md §1, which near equal lengths at both ends is
+    /// their mean to within its square.
+    #[inline]
+    pub fn lengths(&self, p: Vec3, metric: &Sym3) -> [f64; LANES] {
+        lengths(self, &everywhere(p), &everywhere_tensor(metric)).0
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn lengths(spokes: &Spokes, p: &LaneVec3, metric: &LaneSym3) -> Lanes {
+    let v = sub(&spokes.ends, p);
+    let here = dot(&v, &apply(metric, &v)).max(Lanes::all(f64::MIN_POSITIVE)).sqrt();
+    let there = dot(&v, &apply(&spokes.metrics, &v)).max(Lanes::all(f64::MIN_POSITIVE)).sqrt();
+    let (difference, sum) = (here - there, here + there);
+    let by_law = difference / (here / there).ln();
+    (difference.abs() - sum * 1e-4).above(0.0, by_law, sum * 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::quality::{edge_length, mean_log};
+    use super::super::random::spd;
+    use super::*;
+    use proptest::prelude::*;
+
+    fn points() -> impl Strategy<Value = [Vec3; 7]> {
+        prop::array::uniform7(prop::array::uniform3(-1.0..1.0f64))
+    }
+
+    fn batch(x: &[Vec3; 7], logs: &[Sym3; 4]) -> Batch {
+        let mut batch = Batch::default();
+        for lane in 0..LANES {
+            batch.set(lane, [x[lane], x[lane + 1], x[lane + 2]], [&logs[0], &logs[1], &logs[2]]);
+        }
+        batch.prepare();
+        batch
+    }
+
+    proptest! {
+        /// The batch gives what the tetrahedra give one by one, of any anisotropy.
+        #[test]
+        fn as_one_by_one(x in points(), m in prop::array::uniform4(prop_oneof![spd(0.1), spd(6.0), spd(14.0)])) {
+            let logs = m.map(|m| m.ln());
+            let batch = batch(&x, &logs);
+            let shapes = batch.shapes(x[6], &logs[3]);
+            for (lane, found) in shapes.mean_ratios().into_iter().enumerate() {
+                let one = [x[lane], x[lane + 1], x[lane + 2], x[6]];
+                let wanted = mean_ratio(one, logs.each_ref()).max(0.0);
+                prop_assert!((found - wanted).abs() <= 1e-9 * wanted, "lane {lane}: {found} {wanted}");
+            }
+        }
+
+        /// The pull is the gradient of ln Q weighted by 1/Q³, found here by differences along the axes.
+        #[test]
+        fn the_pull_is_the_gradient(x in points(), m in prop::array::uniform4(spd(2.0))) {
+            let logs = m.map(|m| m.ln());
+            let batch = batch(&x, &logs);
+            let shapes = batch.shapes(x[6], &logs[3]);
+            let q = shapes.mean_ratios();
+            prop_assume!(q[0] > 0.05);
+            let pull = batch.pull(x[6], &logs[3], &shapes.cubes, 1);
+            // The metric is held at its mean while the apex moves: so it is in the differences.
+            for i in 0..3 {
+                let at = |step: f64| {
+                    let mut p = x[6];
+                    p[i] += step;
+                    batch.shapes(p, &logs[3]).mean_ratios()[0].ln()
+                };
+                let difference = (at(1e-6) - at(-1e-6)) / 2e-6 / q[0].powi(3);
+                prop_assert!((pull[i] - difference).abs() < 1e-4 * (1.0 + pull.iter().fold(0.0f64, |s, x| s.max(x.abs()))), "{pull:?} {i} {difference}");
+            }
+            prop_assert!(mean_log(logs.each_ref()).0.iter().all(|x| x.is_finite()));
+        }
+
+        /// Lengths as one by one.
+        #[test]
+        fn spokes_as_edges(x in points(), m in prop::array::uniform4(prop_oneof![spd(0.01), spd(3.0)])) {
+            let mut spokes = Spokes::default();
+            for lane in 0..LANES {
+                spokes.set(lane, x[lane], &m[lane.min(2)]);
+            }
+            for (lane, found) in spokes.lengths(x[6], &m[3]).into_iter().enumerate() {
+                let v: Vec3 = std::array::from_fn(|i| x[lane][i] - x[6][i]);
+                let wanted = edge_length(v, &m[lane.min(2)], &m[3]);
+                // Below a difference of 1e-3 METHOD.md takes the mean.
+                prop_assert!((found - wanted).abs() <= 1e-6 * wanted + 2e-4, "{found} {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn flat_and_inverted_tetrahedra_have_none() {
+        let logs = [Sym3::ZERO; 4];
+        let mut batch = Batch::default();
+        for lane in 0..LANES {
+            batch.set(lane, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [&logs[0]; 3]);
+        }
+        batch.prepare();
+        assert_eq!(batch.shapes([0.2, 0.3, 0.0], &logs[3]).mean_ratios(), [0.0; 4]);
+        assert_eq!(batch.shapes([0.2, 0.3, -1.0], &logs[3]).mean_ratios(), [0.0; 4]);
+        // So flat that only the exact predicate knows the sign.
+        let q = batch.shapes([0.2, 0.3, 1e-17], &logs[3]).mean_ratios();
+        assert!(q[0] > 0.0 && q[0] < 1e-9, "{q:?}");
+    }
+}
