@@ -63,6 +63,11 @@ impl Locator {
         &self.faces
     }
 
+    /// The mesh.
+    pub fn mesh(&self) -> &TetMesh {
+        &self.mesh
+    }
+
     /// The vertices.
     pub fn vertices(&self) -> &[Vec3] {
         &self.mesh.vertices
