@@ -10,6 +10,7 @@ mod create;
 mod criteria;
 mod discipline;
 mod edge_removal;
+mod edges;
 mod extract;
 mod face_removal;
 mod fan;

@@ -2,13 +2,12 @@
 use super::context::{Context, LONG, Limits};
 use super::create::{self, PointCreation};
 use super::criteria::Criterion;
-use super::ids::{EDGE, TetId, VertexId};
+use super::edges;
+use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
 use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::worker::State;
-use crate::mesh::vector::sub;
-use crate::metric::quality::edge_length;
 use crate::tasks::Pool;
 use std::time::{Duration, Instant};
 
@@ -350,47 +349,27 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         counts
     }
 
-    /// Edges whose length passes the test, each once, with their length; only those with an end where something changed.
-    fn edges(&self, since: u32, wanted: impl Fn(f64) -> bool) -> Vec<(EdgeItem, f64)> {
-        let store = &self.context.store;
-        let changed = self.changed(since);
-        let mut found = Vec::new();
-        for t in store.live_tets() {
-            let v = store.vertices(t);
-            if !v.iter().any(|x| changed[x.index()]) {
-                continue;
-            }
-            let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
-            for [i, j] in EDGE {
-                if !changed[v[i].index()] && !changed[v[j].index()] {
-                    continue;
-                }
-                let length = edge_length(sub(p[j], p[i]), &m[i], &m[j]);
-                if wanted(length) {
-                    found.push((EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t }, length));
-                }
-            }
-        }
-        found.sort_unstable_by_key(|(item, _)| (item.a, item.b, item.tet));
-        found.dedup_by_key(|(item, _)| (item.a, item.b));
-        found
-    }
-
     /// Edges to be split: those of the model's edges first, then of its faces, then inside; long ones first.
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
-        let mut found = self.edges(since, |length| length > self.context.limits.long);
-        let store = &self.context.store;
+        let (store, limit) = (&self.context.store, self.context.limits.long);
+        let mut found = edges::measured(store, &self.changed(since), |length| length > limit);
         let rank = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
-        found.sort_by(|(x, lx), (y, ly)| rank(x).cmp(&rank(y)).then(ly.total_cmp(lx)));
-        found.into_iter().map(|(item, _)| item).collect()
+        found.sort_unstable_by(|x, y| {
+            let by_rank = rank(&x.item).cmp(&rank(&y.item));
+            by_rank.then(y.length.total_cmp(&x.length)).then_with(|| x.item.ends().cmp(&y.item.ends()))
+        });
+        found.into_iter().map(|edge| edge.item).collect()
     }
 
     /// Edges to be collapsed, short ones first.
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
-        let mut found = self.edges(since, |length| length < self.context.limits.short);
-        found.sort_by(|(_, lx), (_, ly)| lx.total_cmp(ly));
-        found.into_iter().map(|(item, _)| item).collect()
+        let (store, limit) = (&self.context.store, self.context.limits.short);
+        let mut found = edges::measured(store, &self.changed(since), |length| length < limit);
+        found.sort_unstable_by(|x, y| {
+            x.length.total_cmp(&y.length).then_with(|| x.item.ends().cmp(&y.item.ends()))
+        });
+        found.into_iter().map(|edge| edge.item).collect()
     }
 }
