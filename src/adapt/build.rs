@@ -1,16 +1,14 @@
 //! From the plain mesh to the store.
 use super::ids::{TetId, VertexId};
 use super::numbering::Numbering;
-use super::store::Store;
+use super::store::{ROOM, Store};
 use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, TriangleIndex, sorted3};
 use crate::mesh::predicate::is_positive;
 use crate::mesh::vector::Vec3;
-use crate::metric::batch::Batch;
-use crate::metric::lanes::{LANES, Lanes};
-use crate::metric::{Source, Sym3};
+use crate::metric::{Source, mean_ratios};
 
 /// A mesh that cannot be adapted.
 #[derive(Debug, thiserror::Error)]
@@ -48,9 +46,6 @@ pub enum Error {
     },
 }
 
-/// Vertices and tetrahedra at least that there is room for beside those of the input.
-const ROOM: usize = 1 << 16;
-
 /// A mesh in a store.
 pub struct Filled {
     /// The store, numbered along the Hilbert curve.
@@ -71,7 +66,6 @@ pub fn fill(mesh: &TetMesh, place: &Classification, source: &Source) -> Result<F
     if mesh.tets.is_empty() {
         return Err(Error::Empty);
     }
-    check_positive(mesh)?;
     let own;
     let faces = match source.faces_of(mesh) {
         Some(faces) => faces,
@@ -92,8 +86,12 @@ pub fn fill(mesh: &TetMesh, place: &Classification, source: &Source) -> Result<F
     filling.join_ridges();
     let waiting = filling.leave_inverting();
     filling.set_metrics(source);
-    let Filling { store, order, .. } = filling;
-    measure(&store);
+    let Filling { mut store, order, .. } = filling;
+    store.note_order();
+    if measure(&store) {
+        // Their mean ratio is 0, also where it is only too small for a number.
+        check_positive(mesh)?;
+    }
     Ok(Filled { store, waiting, ids: order.vertex_ids })
 }
 
@@ -233,31 +231,16 @@ impl Filling<'_> {
     }
 }
 
-/// Gives every tetrahedron its mean ratio.
-pub fn measure(store: &Store) {
-    let mut batch = Batch::default();
-    let mut ids = [TetId::NONE; LANES];
-    let mut tets = store.live_tets();
-    loop {
-        let mut count = 0;
-        for (id, t) in ids.iter_mut().zip(&mut tets) {
-            *id = t;
-            count += 1;
-        }
-        if count == 0 {
-            return;
-        }
-        let (mut apexes, mut apex_logs) = ([Lanes::ZERO; 3], [Lanes::ZERO; 6]);
-        for lane in 0..LANES {
-            let vertices = store.vertices(ids[lane.min(count - 1)]);
-            let points = vertices.map(|v| store.position(v));
-            let logs: [Sym3; 4] = vertices.map(|v| store.log(v));
-            batch.set(lane, [points[0], points[1], points[2]], [&logs[0], &logs[1], &logs[2]]);
-            (0..3).for_each(|i| apexes[i].0[lane] = points[3][i]);
-            (0..6).for_each(|i| apex_logs[i].0[lane] = logs[3].0[i]);
-        }
-        batch.prepare();
-        let ratios = batch.shapes_each(&apexes, &apex_logs).mean_ratios();
-        ids.iter().zip(ratios).take(count).for_each(|(&t, ratio)| store.set_quality(t, ratio));
-    }
+/// Gives every tetrahedron its mean ratio; whether one is 0, as that of an inverted or flat one is.
+pub fn measure(store: &Store) -> bool {
+    let corners = |t: TetId| {
+        let vertices = store.vertices(t);
+        (vertices.map(|v| store.position(v)), vertices.map(|v| store.log(v)))
+    };
+    let mut zero = false;
+    mean_ratios(store.live_tets(), corners, |t, ratio| {
+        zero |= ratio == 0.0;
+        store.set_quality(t, ratio);
+    });
+    zero
 }

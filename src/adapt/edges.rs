@@ -13,7 +13,7 @@ pub struct Measured {
     pub length: f32,
 }
 
-/// The edges whose length passes the test, each once, in the order of their vertices; of those that have an end where something
+/// The edges whose length passes the test, each once, in no particular order; of those that have an end where something
 /// changed (`changed`, by vertex). Between sweeps only.
 ///
 /// Each vertex is asked for its edges to greater ones, so that no list of all edges of all tetrahedra is made and sorted.
@@ -35,8 +35,6 @@ pub fn measured(store: &Store, changed: &[bool], wanted: impl Fn(f64) -> bool) -
             }
         }
     }
-    // Where everything changed they come nearly in order, and sorting costs little.
-    found.sort_unstable_by_key(|edge| (edge.item.a, edge.item.b));
     found
 }
 

@@ -33,9 +33,14 @@ pub struct Extracted {
 pub fn extract(context: &Context, input: &TetMesh, refs: &References) -> Extracted {
     let store = &context.store;
     let mut number = vec![u32::MAX; store.vertex_bound()];
-    let mut mesh = TetMesh::default();
-    let mut classification = Classification::default();
-    let mut metrics = Vec::new();
+    let (live, live_tets) = (store.live_vertices().count(), store.live_tets().count());
+    let mut mesh = TetMesh { vertices: Vec::with_capacity(live), ..TetMesh::default() };
+    mesh.vertex_refs.reserve_exact(live);
+    mesh.tets = Elements { nodes: Vec::with_capacity(live_tets), refs: Vec::with_capacity(live_tets) };
+    let mut classification =
+        Classification { entities: Vec::with_capacity(live), parameters: Vec::with_capacity(live), ..Default::default() };
+    classification.projected.reserve_exact(live);
+    let mut metrics = Vec::with_capacity(live);
     let mut original = vec![VertexId::NONE; store.vertex_bound()];
     for (v, id) in context.ids.iter().enumerate().filter(|(_, id)| id.is_some()) {
         original[id.index()] = VertexId(v as u32);

@@ -13,6 +13,9 @@ use crate::metric::Sym3;
 use bytemuck::Zeroable;
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
+/// Vertices that there is room for beside those of a small mesh; tetrahedra six times as many.
+pub const ROOM: usize = 1 << 16;
+
 /// What operations read of a vertex: two cache lines.
 #[derive(Zeroable)]
 #[repr(C)]
@@ -64,6 +67,8 @@ pub struct Store {
     next_tet: AtomicUsize,
     /// Ticks with every sweep; a tetrahedron is stamped with it when it is written.
     clock: AtomicU32,
+    /// The time when the ids were last in the order of the curve.
+    ordered: Option<u32>,
 }
 
 #[inline(always)]
@@ -119,6 +124,7 @@ impl Store {
             next_vertex: AtomicUsize::new(0),
             next_tet: AtomicUsize::new(0),
             clock: AtomicU32::new(1),
+            ordered: None,
         }
     }
 

@@ -90,13 +90,59 @@ impl TriangleIndex {
 
 /// The edges of the tetrahedra, each once, lower node first, sorted.
 pub fn unique_edges(tets: &[[u32; 4]]) -> Vec<[u32; 2]> {
-    let mut edges: Vec<[u32; 2]> = Vec::with_capacity(6 * tets.len());
-    for nodes in tets {
-        edges.extend(EDGES.iter().map(|&[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]));
-    }
-    edges.sort_unstable();
-    edges.dedup();
+    let mut edges = Vec::new();
+    for_each_edge(tets, |edge| edges.push(edge));
     edges
+}
+
+/// Parts in which the edges of a mesh are gathered: one after the other, for the memory.
+const PARTS: usize = 4;
+
+/// Calls `f` with the edges of the tetrahedra, each once, lower node first, in the order of their nodes.
+///
+/// Edges are gathered at their lower node, a part of the nodes at a time: beside 12 bytes a vertex this needs 6 bytes a tetrahedron.
+pub fn for_each_edge(tets: &[[u32; 4]], mut f: impl FnMut([u32; 2])) {
+    let vertices = tets.iter().flatten().max().map_or(0, |&greatest| greatest as usize + 1);
+    let ends = |nodes: &[u32; 4]| EDGES.map(|[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]);
+    let mut counts = vec![0u32; vertices];
+    tets.iter().flat_map(ends).for_each(|[low, _]| counts[low as usize] += 1);
+    let share = (6 * tets.len()).div_ceil(PARTS);
+    let mut seen = vec![u32::MAX; vertices];
+    let (mut upper, mut starts, mut begin) = (Vec::new(), Vec::new(), 0);
+    while begin < vertices {
+        starts.clear();
+        starts.push(0);
+        let (mut end, mut total) = (begin, 0);
+        while end < vertices && (end == begin || total + counts[end] as usize <= share) {
+            total += counts[end] as usize;
+            starts.push(total);
+            end += 1;
+        }
+        upper.resize(total, 0);
+        // From each node's end to its beginning, so that no second list of places is needed.
+        let mut left = counts[begin..end].to_vec();
+        for [low, high] in tets.iter().flat_map(ends) {
+            if let Some(left) = (low as usize).checked_sub(begin).and_then(|at| Some((left.get_mut(at)?, starts[at]))) {
+                *left.0 -= 1;
+                upper[left.1 + *left.0 as usize] = high;
+            }
+        }
+        for (low, bounds) in (begin..end).zip(starts.windows(2)) {
+            let found = &mut upper[bounds[0]..bounds[1]];
+            // Each edge comes once for each of its tetrahedra.
+            let mut count = 0;
+            for at in 0..found.len() {
+                let high = found[at];
+                if std::mem::replace(&mut seen[high as usize], low as u32) != low as u32 {
+                    found[count] = high;
+                    count += 1;
+                }
+            }
+            found[..count].sort_unstable();
+            found[..count].iter().for_each(|&high| f([low as u32, high]));
+        }
+        begin = end;
+    }
 }
 
 #[cfg(test)]
@@ -134,7 +180,13 @@ mod tests {
         let mesh = cube(3);
         let (v, t) = (mesh.vertices.len(), mesh.tets.len());
         let f = (4 * t + mesh.triangles.len()) / 2;
-        assert_eq!(unique_edges(&mesh.tets.nodes).len(), v + f - t - 1);
+        let edges = unique_edges(&mesh.tets.nodes);
+        assert_eq!(edges.len(), v + f - t - 1);
+        assert!(edges.is_sorted() && edges.iter().all(|[low, high]| low < high));
+        let ends = |nodes: &[u32; 4]| EDGES.map(|[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]);
+        let all: std::collections::BTreeSet<[u32; 2]> = mesh.tets.nodes.iter().flat_map(ends).collect();
+        assert!(edges.into_iter().eq(all));
+        assert!(unique_edges(&[]).is_empty());
         for nodes in [[1, 2, 3], [3, 2, 1], [2, 3, 1], [2, 1, 3], [3, 1, 2], [1, 3, 2]] {
             assert_eq!(sorted3(nodes), [1, 2, 3]);
         }

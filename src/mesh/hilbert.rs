@@ -12,35 +12,42 @@ pub fn key(p: Vec3, low: Vec3, high: Vec3) -> u64 {
         let extent = high[i] - low[i];
         if extent > 0.0 { ((p[i] - low[i]) / extent * cells).clamp(0.0, cells) as u32 } else { 0 }
     });
-    // Undo excess work of the curve's turns, from the highest bit down.
-    let mut q = 1u32 << (BITS - 1);
-    while q > 1 {
-        let lower = q - 1;
+    // Undo excess work of the curve's turns, from the highest bit down. Which way is even chance, so there are no branches: where the
+    // bit is set the lower bits of x[0] are inverted, else those of x[0] and x[i] are exchanged.
+    for bit in (1..BITS).rev() {
+        let lower = (1u32 << bit) - 1;
         for i in 0..3 {
-            if x[i] & q != 0 {
-                x[0] ^= lower;
-            } else {
-                let swap = (x[0] ^ x[i]) & lower;
-                x[0] ^= swap;
-                x[i] ^= swap;
-            }
+            let set = (x[i] >> bit & 1).wrapping_neg() & lower;
+            let exchange = (x[0] ^ x[i]) & (lower ^ set);
+            x[i] ^= exchange;
+            x[0] ^= exchange ^ set;
         }
-        q >>= 1;
     }
     // Gray code.
     x[1] ^= x[0];
     x[2] ^= x[1];
-    let mut flip = 0;
-    let mut q = 1u32 << (BITS - 1);
-    while q > 1 {
-        if x[2] & q != 0 {
-            flip ^= q - 1;
-        }
-        q >>= 1;
+    // Each bit of the others is flipped when an odd number of the higher bits of x[2] is set.
+    let mut flip = x[2] >> 1;
+    for shift in [1, 2, 4, 8, 16] {
+        flip ^= flip >> shift;
     }
-    (0..BITS)
-        .rev()
-        .fold(0, |key, bit| x.iter().fold(key, |key, &coordinate| key << 1 | u64::from((coordinate ^ flip) >> bit & 1)))
+    let [x, y, z] = x.map(|coordinate| spread(coordinate ^ flip));
+    x << 2 | y << 1 | z
+}
+
+/// The lowest 21 bits with two zeros between neighbours.
+fn spread(bits: u32) -> u64 {
+    let mut x = u64::from(bits);
+    for (shift, mask) in [
+        (32, 0x001F_0000_0000_FFFF),
+        (16, 0x001F_0000_FF00_00FF),
+        (8, 0x100F_00F0_0F00_F00F),
+        (4, 0x10C3_0C30_C30C_30C3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
+        x = (x | x << shift) & mask;
+    }
+    x
 }
 
 /// The points in the order of the Hilbert curve through their box; those of one cell in the order given.
@@ -76,6 +83,38 @@ mod tests {
         for pair in cells.windows(2) {
             let steps: i32 = (0..3).map(|c| (pair[0].1[c] - pair[1].1[c]).abs()).sum();
             assert_eq!(steps, 1, "{pair:?}");
+        }
+    }
+
+    /// The curve as Skilling writes it, bit by bit.
+    fn by_bits(mut x: [u32; 3]) -> u64 {
+        for bit in (1..BITS).rev() {
+            let lower = (1u32 << bit) - 1;
+            for i in 0..3 {
+                if x[i] >> bit & 1 == 1 {
+                    x[0] ^= lower;
+                } else {
+                    let swap = (x[0] ^ x[i]) & lower;
+                    x[0] ^= swap;
+                    x[i] ^= swap;
+                }
+            }
+        }
+        x[1] ^= x[0];
+        x[2] ^= x[1];
+        let flip = (1..BITS).filter(|bit| x[2] >> bit & 1 == 1).fold(0, |flip, bit| flip ^ ((1u32 << bit) - 1));
+        let bits = (0..BITS).rev().flat_map(|bit| x.map(|coordinate| u64::from((coordinate ^ flip) >> bit & 1)));
+        bits.fold(0, |key, bit| key << 1 | bit)
+    }
+
+    #[test]
+    fn the_key_is_that_of_the_definition() {
+        let cells = (1u32 << BITS) - 1;
+        let mut cell = [12_345u32, 999_999, 77];
+        for _ in 0..2000 {
+            cell = cell.map(|x| x.wrapping_mul(1_103_515_245).wrapping_add(12_345 + cell[0]) & cells);
+            let p = cell.map(|x| (f64::from(x) + 0.5) / f64::from(cells));
+            assert_eq!(key(p, [0.0; 3], [1.0; 3]), by_bits(cell));
         }
     }
 

@@ -10,6 +10,7 @@ pub mod lanes;
 pub mod quality;
 #[cfg(test)]
 mod random;
+mod ratios;
 mod source;
 pub mod statistics;
 pub mod tensor;
@@ -21,6 +22,7 @@ pub use background::Background;
 pub use eigen::Eigen;
 pub use error::Error;
 pub use field::Field;
+pub use ratios::mean_ratios;
 pub use source::Source;
 pub use statistics::{Distribution, Statistics};
 pub use tensor::Sym3;

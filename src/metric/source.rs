@@ -1,5 +1,5 @@
 //! Where a new vertex takes its metric from.
-use super::field::complexity_between;
+use super::field::{complexity_between, complexity_of_logs};
 use super::{Analytic, Background, Sym3};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{EDGES, MatchedFaces};
@@ -56,6 +56,15 @@ impl Source {
                 let corners = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
                 mesh.tets.nodes.iter().map(|tet| self.integrate(corners(tet), depth)).sum()
             }
+        }
+    }
+
+    /// No less than the complexity, and quickly found, where the field lies on the mesh itself: the exponential function is convex,
+    /// so the mean over a tetrahedron is at most that of its vertices.
+    pub fn complexity_bound(&self, mesh: &TetMesh) -> f64 {
+        match self {
+            Self::Background(background) => complexity_of_logs(mesh, background.logs()),
+            Self::Analytic { .. } => f64::INFINITY,
         }
     }
 

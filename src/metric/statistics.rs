@@ -1,7 +1,7 @@
 //! The figures of a mesh in a metric: edge lengths, mean ratios, complexity.
-use super::quality::{edge_length, mean_ratio_log};
-use super::{Sym3, field, quality};
-use crate::mesh::adjacency::unique_edges;
+use super::quality::edge_length;
+use super::{Sym3, field, mean_ratios};
+use crate::mesh::adjacency::for_each_edge;
 use crate::mesh::vector::{distance, sub, volume6};
 use crate::mesh::{Elements, TetMesh};
 use serde::Serialize;
@@ -48,27 +48,50 @@ impl Distribution {
     /// Of values, with the bounds of the classes (ascending). A value equal to a bound belongs to the class above, but
     /// with `closed_above` to the class below.
     pub fn of(values: &[f64], bounds: &[f64], closed_above: bool) -> Self {
+        let mut gathering = Gathering::new(bounds, closed_above);
+        values.iter().for_each(|&value| gathering.add(value));
+        gathering.distribution()
+    }
+}
+
+/// A [`Distribution`] of values that come one by one.
+struct Gathering<'b> {
+    bounds: &'b [f64],
+    closed_above: bool,
+    sum: f64,
+    found: Distribution,
+}
+
+impl<'b> Gathering<'b> {
+    /// Of no value yet.
+    fn new(bounds: &'b [f64], closed_above: bool) -> Self {
         let finite = |x: f64| x.is_finite().then_some(x);
-        let mut classes: Vec<Class> =
-            bounds.windows(2).map(|b| Class { low: finite(b[0]), high: finite(b[1]), count: 0 }).collect();
-        let (mut argmin, mut max, mut sum) = (0, f64::NEG_INFINITY, 0.0);
-        for (i, &value) in values.iter().enumerate() {
-            if value < values[argmin] {
-                argmin = i;
-            }
-            max = max.max(value);
-            sum += value;
-            let above = bounds.partition_point(|&b| if closed_above { b < value } else { b <= value });
-            if !classes.is_empty() {
-                let class = above.clamp(1, classes.len()) - 1;
-                classes[class].count += 1;
-            }
+        let classes = bounds.windows(2).map(|b| Class { low: finite(b[0]), high: finite(b[1]), count: 0 }).collect();
+        let found = Distribution { min: f64::INFINITY, max: f64::NEG_INFINITY, classes, ..Distribution::default() };
+        Self { bounds, closed_above, sum: 0.0, found }
+    }
+
+    fn add(&mut self, value: f64) {
+        let found = &mut self.found;
+        if value < found.min {
+            (found.min, found.argmin) = (value, found.count);
         }
-        if values.is_empty() {
-            return Self { classes, ..Self::default() };
+        found.max = found.max.max(value);
+        found.count += 1;
+        self.sum += value;
+        let above = self.bounds.partition_point(|&b| if self.closed_above { b < value } else { b <= value });
+        if !found.classes.is_empty() {
+            let class = above.clamp(1, found.classes.len()) - 1;
+            found.classes[class].count += 1;
         }
-        let mean = sum / values.len() as f64;
-        Self { count: values.len(), min: values[argmin], mean, max, argmin, classes }
+    }
+
+    fn distribution(mut self) -> Distribution {
+        if self.found.count == 0 {
+            return Distribution { classes: self.found.classes, ..Distribution::default() };
+        }
+        self.found.mean = self.sum / self.found.count as f64;
+        self.found
     }
 }
 
@@ -118,8 +141,7 @@ impl Statistics {
             let v = sub(mesh.vertices[b as usize], mesh.vertices[a as usize]);
             edge_length(v, &metrics[a as usize], &metrics[b as usize])
         };
-        let mut statistics =
-            Self::of(mesh, length, &LENGTH_CLASSES, |tet| quality::mean_log(tet.map(|v| &logs[v as usize])));
+        let mut statistics = Self::of(mesh, length, &LENGTH_CLASSES, |v| logs[v as usize]);
         let classes = &statistics.edge_lengths.classes;
         let unit: usize = classes
             .iter()
@@ -145,12 +167,13 @@ impl Statistics {
         mesh: &TetMesh,
         length: impl Fn([u32; 2]) -> f64,
         length_classes: &[f64],
-        mean_log: impl Fn(&[u32; 4]) -> Sym3,
+        log: impl Fn(u32) -> Sym3,
     ) -> Self {
-        let lengths: Vec<f64> = unique_edges(&mesh.tets.nodes).into_iter().map(length).collect();
+        let mut lengths = Gathering::new(length_classes, false);
+        for_each_edge(&mesh.tets.nodes, |edge| lengths.add(length(edge)));
         let points = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
-        let ratio = |tet: &[u32; 4]| mean_ratio_log(points(tet), &mean_log(tet)).max(0.0);
-        let ratios: Vec<f64> = mesh.tets.nodes.iter().map(ratio).collect();
+        let mut ratios = Gathering::new(&RATIO_CLASSES, true);
+        mean_ratios(mesh.tets.nodes.iter(), |tet| (points(tet), tet.map(&log)), |_, ratio| ratios.add(ratio));
         let volume = |tet: &[u32; 4]| {
             let [a, b, c, d] = points(tet);
             volume6(a, b, c, d) / 6.0
@@ -164,8 +187,8 @@ impl Statistics {
             regions: by_reference(&mesh.tets),
             patches: by_reference(&mesh.triangles),
             curves: by_reference(&mesh.edges),
-            edge_lengths: Distribution::of(&lengths, length_classes, false),
-            mean_ratios: Distribution::of(&ratios, &RATIO_CLASSES, true),
+            edge_lengths: lengths.distribution(),
+            mean_ratios: ratios.distribution(),
             metric: None,
         }
     }

@@ -1,5 +1,5 @@
 //! Renumbering along a space-filling curve: what is near in space comes near in memory, and dead records go. All in place.
-use super::Store;
+use super::{ROOM, Store};
 use crate::adapt::ids::{TetId, VertexId};
 use crate::adapt::numbering::{by_first, permute};
 use crate::geometry::Entity;
@@ -11,6 +11,9 @@ impl Store {
     /// Numbers the mesh along the Hilbert curve; returns for each old vertex id the new one (`NONE` for dead ones). Blocks of ids
     /// that were taken before mean nothing any more. Between sweeps only.
     pub fn reorder(&mut self) -> Vec<VertexId> {
+        if self.ordered == Some(self.clock()) {
+            return (0..self.vertex_bound() as u32).map(VertexId).collect();
+        }
         let mut number = self.compact_vertices();
         let mut tet_number = self.compact_tets();
         let (order, place) = self.vertices_along_curve();
@@ -29,7 +32,13 @@ impl Store {
         self.renumber_vertices(&number);
         self.renumber_tets(&number, &tet_number);
         self.shrink();
+        self.note_order();
         number
+    }
+
+    /// Notes that the ids are in the order of the curve, until the next sweep.
+    pub fn note_order(&mut self) {
+        self.ordered = Some(self.clock());
     }
 
     /// Moves the live vertices to the front, in their order; returns for each old id the new one.
@@ -105,7 +114,7 @@ impl Store {
 
     /// Gives memory back when most of it lies idle.
     fn shrink(&mut self) {
-        let (vertices, tets) = (2 * self.vertex_bound(), 2 * self.tet_bound());
+        let (vertices, tets) = (2 * self.vertex_bound() + ROOM, 2 * self.tet_bound() + 6 * ROOM);
         if 2 * vertices < self.vertices.len() {
             self.vertices.truncate(vertices);
             self.vertices.shrink_to_fit();

@@ -140,6 +140,9 @@ fn source(
 
 /// Scales the source to the complexity that is asked for, and refuses one that no mesh can have.
 fn scale(arguments: &Arguments, mesh: &TetMesh, source: &mut Source) -> Result<(), String> {
+    if arguments.complexity.is_none() && source.complexity_bound(mesh) <= GREATEST_COMPLEXITY {
+        return Ok(());
+    }
     let own = source.complexity(mesh);
     if let Some(target) = arguments.complexity {
         source.scale(field::complexity_factor(own, target).ln());
