@@ -13,6 +13,35 @@ pub struct Measured {
     pub length: f32,
 }
 
+/// Ranks of lengths: exponent and seven bits behind the point.
+pub const LENGTHS: u32 = 1 << 15;
+
+impl Measured {
+    /// Rank of the length, less than [`LENGTHS`]: the longer the greater, in steps of at most 1/128.
+    pub fn rank(&self) -> u32 {
+        self.length.max(0.0).to_bits() >> 16
+    }
+}
+
+/// The edges in the order of their ranks; those of one rank, whose lengths hardly differ, stay in the order of the mesh, so that what
+/// is done next is near in memory. A counting sort.
+pub fn in_order(edges: &[Measured], rank: impl Fn(&Measured) -> u32) -> Vec<EdgeItem> {
+    let greatest = edges.iter().map(&rank).max().unwrap_or(0) as usize;
+    let mut places = vec![0usize; greatest + 2];
+    edges.iter().for_each(|edge| places[rank(edge) as usize + 1] += 1);
+    for at in 1..places.len() {
+        places[at] += places[at - 1];
+    }
+    let nothing = EdgeItem { a: VertexId::NONE, b: VertexId::NONE, tet: TetId::NONE };
+    let mut items = vec![nothing; edges.len()];
+    for edge in edges {
+        let place = &mut places[rank(edge) as usize];
+        items[*place] = edge.item;
+        *place += 1;
+    }
+    items
+}
+
 /// The edges whose length passes the test, each once, in no particular order; of those that have an end where something
 /// changed (`changed`, by vertex). Between sweeps only.
 ///
@@ -87,5 +116,57 @@ impl<'s> Ball<'s> {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::build::{self, Filled};
+    use super::*;
+    use crate::geometry::Discrete;
+    use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
+    use crate::mesh::adjacency::unique_edges;
+    use crate::mesh::samples::cube;
+    use crate::metric::{Background, Source, Sym3};
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_wanted_edge_once_with_its_least_tetrahedron() {
+        let mesh = cube(3);
+        let (_, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).unwrap();
+        let logs = vec![Sym3::ZERO; mesh.vertices.len()];
+        let source = Source::Background(Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs));
+        let Filled { store, ids, .. } = build::fill(&mesh, &place, &source).unwrap();
+        let ends = |[a, b]: [u32; 2]| {
+            let (a, b) = (ids[a as usize], ids[b as usize]);
+            [a.min(b), a.max(b)]
+        };
+        let is_short = |length: f64| length < 0.4;
+        let all: BTreeSet<_> = unique_edges(&mesh.tets.nodes).into_iter().map(ends).collect();
+        let length = |[a, b]: [VertexId; 2]| crate::mesh::vector::distance(store.position(a), store.position(b));
+        for changed in [vec![true; ids.len()], (0..ids.len()).map(|v| v % 5 == 0).collect()] {
+            let touched = |edge: &&[VertexId; 2]| edge.iter().any(|v| changed[v.index()]);
+            let expected: BTreeSet<_> = all.iter().filter(touched).copied().filter(|&e| is_short(length(e))).collect();
+            let found = measured(&store, &changed, is_short);
+            assert_eq!(found.len(), expected.len());
+            assert_eq!(found.iter().map(|edge| edge.item.ends()).collect::<BTreeSet<_>>(), expected);
+            for Measured { item, length: measured } in &found {
+                assert!((f64::from(*measured) - length(item.ends())).abs() < 1e-6);
+                let holds = |t: &TetId| item.ends().iter().all(|v| store.vertices(*t).contains(v));
+                assert_eq!(store.live_tets().find(holds), Some(item.tet));
+            }
+        }
+    }
+
+    #[test]
+    fn ranks_follow_the_lengths() {
+        let lengths = [0.3, 2.0, 0.1, 0.301, 7.5, 0.0, 0.1];
+        let vertex = |k: usize| VertexId(k as u32);
+        let item = |k| EdgeItem { a: vertex(k), b: vertex(k + 1), tet: TetId(0) };
+        let edges: Vec<_> = lengths.iter().enumerate().map(|(k, &length)| Measured { item: item(k), length }).collect();
+        let order = |items: Vec<EdgeItem>| items.iter().map(|item| item.a.0).collect::<Vec<_>>();
+        assert_eq!(order(in_order(&edges, Measured::rank)), [5, 2, 6, 0, 3, 1, 4]);
+        assert_eq!(order(in_order(&edges, |edge| LENGTHS - 1 - edge.rank())), [4, 1, 0, 3, 2, 6, 5]);
+        assert!(edges.iter().all(|edge| edge.rank() < LENGTHS) && in_order(&[], Measured::rank).is_empty());
     }
 }

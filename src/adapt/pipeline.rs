@@ -2,7 +2,7 @@
 use super::context::{Context, LONG, Limits};
 use super::create::{self, PointCreation};
 use super::criteria::Criterion;
-use super::edges;
+use super::edges::{self, Measured};
 use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
@@ -353,23 +353,16 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
         let (store, limit) = (&self.context.store, self.context.limits.long);
-        let mut found = edges::measured(store, &self.changed(since), |length| length > limit);
-        let rank = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
-        found.sort_unstable_by(|x, y| {
-            let by_rank = rank(&x.item).cmp(&rank(&y.item));
-            by_rank.then(y.length.total_cmp(&x.length)).then_with(|| x.item.ends().cmp(&y.item.ends()))
-        });
-        found.into_iter().map(|edge| edge.item).collect()
+        let found = edges::measured(store, &self.changed(since), |length| length > limit);
+        let dimension = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
+        edges::in_order(&found, |edge| (dimension(&edge.item) + 1) * edges::LENGTHS - 1 - edge.rank())
     }
 
     /// Edges to be collapsed, short ones first.
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
         let (store, limit) = (&self.context.store, self.context.limits.short);
-        let mut found = edges::measured(store, &self.changed(since), |length| length < limit);
-        found.sort_unstable_by(|x, y| {
-            x.length.total_cmp(&y.length).then_with(|| x.item.ends().cmp(&y.item.ends()))
-        });
-        found.into_iter().map(|edge| edge.item).collect()
+        let found = edges::measured(store, &self.changed(since), |length| length < limit);
+        edges::in_order(&found, Measured::rank)
     }
 }

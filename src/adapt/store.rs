@@ -13,8 +13,9 @@ use crate::metric::Sym3;
 use bytemuck::Zeroable;
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
-/// Vertices that there is room for beside those of a small mesh; tetrahedra six times as many.
-pub const ROOM: usize = 1 << 16;
+/// Vertices that there is room for beside those of a small mesh; tetrahedra six times as many. Room that is not used costs no
+/// memory, but growth does: for a moment there are two arrays.
+pub const ROOM: usize = 1 << 19;
 
 /// What operations read of a vertex: two cache lines.
 #[derive(Zeroable)]
@@ -128,16 +129,17 @@ impl Store {
         }
     }
 
-    /// Makes room for at least so many more vertices and tetrahedra. Between sweeps only.
+    /// Makes room for at least so many more vertices and tetrahedra, and where that takes growth for thrice as many, so that it is
+    /// seldom. Between sweeps only.
     pub fn reserve(&mut self, vertices: usize, tets: usize) {
-        let (used, wanted) = (self.vertex_bound(), self.vertex_bound() + vertices);
-        if wanted > self.vertices.len() {
-            enlarge(&mut self.vertices, used, wanted);
-            enlarge(&mut self.places, used, wanted);
+        let used = self.vertex_bound();
+        if used + vertices > self.vertices.len() {
+            enlarge(&mut self.vertices, used, used + 3 * vertices);
+            enlarge(&mut self.places, used, used + 3 * vertices);
         }
-        let (used, wanted) = (self.tet_bound(), self.tet_bound() + tets);
-        if wanted > self.tets.len() {
-            enlarge(&mut self.tets, used, wanted);
+        let used = self.tet_bound();
+        if used + tets > self.tets.len() {
+            enlarge(&mut self.tets, used, used + 3 * tets);
         }
     }
 
