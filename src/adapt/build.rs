@@ -152,7 +152,8 @@ impl Filling<'_> {
             let before = self.store.tags(id)[i];
             self.store.set_tag(id, i, if before == 0 { tag } else { tag.min(before) });
         });
-        for (t, neighbours) in faces.neighbours.iter().enumerate().filter(|(_, neighbours)| neighbours.contains(&NONE)) {
+        for (t, neighbours) in faces.neighbours.iter().enumerate().filter(|(_, neighbours)| neighbours.contains(&NONE))
+        {
             let tags = self.store.tags(self.order.tet_ids[t]);
             if let Some(open) = (0..4).find(|&i| neighbours[i] == NONE && tags[i] == 0) {
                 let nodes = sorted3(FACES[open].map(|k| self.mesh.tets.nodes[t][k]));

@@ -130,6 +130,10 @@ mod tests {
     use crate::metric::{Background, Source, Sym3};
     use std::collections::BTreeSet;
 
+    fn ends_of(item: &EdgeItem) -> [VertexId; 2] {
+        [item.a, item.b]
+    }
+
     #[test]
     fn every_wanted_edge_once_with_its_least_tetrahedron() {
         let mesh = cube(3);
@@ -149,10 +153,10 @@ mod tests {
             let expected: BTreeSet<_> = all.iter().filter(touched).copied().filter(|&e| is_short(length(e))).collect();
             let found = measured(&store, &changed, is_short);
             assert_eq!(found.len(), expected.len());
-            assert_eq!(found.iter().map(|edge| edge.item.ends()).collect::<BTreeSet<_>>(), expected);
+            assert_eq!(found.iter().map(|edge| ends_of(&edge.item)).collect::<BTreeSet<_>>(), expected);
             for Measured { item, length: measured } in &found {
-                assert!((f64::from(*measured) - length(item.ends())).abs() < 1e-6);
-                let holds = |t: &TetId| item.ends().iter().all(|v| store.vertices(*t).contains(v));
+                assert!((f64::from(*measured) - length(ends_of(item))).abs() < 1e-6);
+                let holds = |t: &TetId| ends_of(item).iter().all(|v| store.vertices(*t).contains(v));
                 assert_eq!(store.live_tets().find(holds), Some(item.tet));
             }
         }

@@ -37,8 +37,11 @@ pub fn extract(context: &Context, input: &TetMesh, refs: &References) -> Extract
     let mut mesh = TetMesh { vertices: Vec::with_capacity(live), ..TetMesh::default() };
     mesh.vertex_refs.reserve_exact(live);
     mesh.tets = Elements { nodes: Vec::with_capacity(live_tets), refs: Vec::with_capacity(live_tets) };
-    let mut classification =
-        Classification { entities: Vec::with_capacity(live), parameters: Vec::with_capacity(live), ..Default::default() };
+    let mut classification = Classification {
+        entities: Vec::with_capacity(live),
+        parameters: Vec::with_capacity(live),
+        ..Default::default()
+    };
     classification.projected.reserve_exact(live);
     let mut metrics = Vec::with_capacity(live);
     let mut original = vec![VertexId::NONE; store.vertex_bound()];

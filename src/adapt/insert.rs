@@ -19,13 +19,6 @@ pub struct EdgeItem {
     pub tet: TetId,
 }
 
-impl EdgeItem {
-    /// Both ends.
-    pub fn ends(&self) -> [VertexId; 2] {
-        [self.a, self.b]
-    }
-}
-
 /// Where along a–b the metric length from both ends is equal, for sizes that change geometrically: l_a, l_b are the
 /// lengths of the whole edge in the metrics of its ends.
 fn middle(la: f64, lb: f64) -> f64 {

@@ -163,12 +163,7 @@ impl Statistics {
         Self::of(mesh, length, &[], |_| Sym3::ZERO)
     }
 
-    fn of(
-        mesh: &TetMesh,
-        length: impl Fn([u32; 2]) -> f64,
-        length_classes: &[f64],
-        log: impl Fn(u32) -> Sym3,
-    ) -> Self {
+    fn of(mesh: &TetMesh, length: impl Fn([u32; 2]) -> f64, length_classes: &[f64], log: impl Fn(u32) -> Sym3) -> Self {
         let mut lengths = Gathering::new(length_classes, false);
         for_each_edge(&mesh.tets.nodes, |edge| lengths.add(length(edge)));
         let points = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
