@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn ranks_follow_the_lengths() {
-        let lengths = [0.3, 2.0, 0.1, 0.301, 7.5, 0.0, 0.1];
+        let lengths = [0.3, 2.0, 0.1, 0.3005, 7.5, 0.0, 0.1];
         let vertex = |k: usize| VertexId(k as u32);
         let item = |k| EdgeItem { a: vertex(k), b: vertex(k + 1), tet: TetId(0) };
         let edges: Vec<_> = lengths.iter().enumerate().map(|(k, &length)| Measured { item: item(k), length }).collect();

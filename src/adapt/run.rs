@@ -62,8 +62,10 @@ pub fn adapt(
     let mut pipeline = Pipeline::new(&mut context, pool, observer, options.criterion, waiting);
     pipeline.points = options.points;
     pipeline.run();
-    stage("passes");
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());
+    drop(pipeline);
+    context.store.trim();
+    stage("passes");
     let refs = References {
         faces: face_refs(mesh, place, model),
         inward: inward_faces(mesh, place, model),

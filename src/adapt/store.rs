@@ -14,8 +14,8 @@ use bytemuck::Zeroable;
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
 /// Vertices that there is room for beside those of a small mesh; tetrahedra six times as many. Room that is not used costs no
-/// memory, but growth does: for a moment there are two arrays.
-pub const ROOM: usize = 1 << 19;
+/// memory.
+pub const ROOM: usize = 1 << 16;
 
 /// What operations read of a vertex: two cache lines.
 #[derive(Zeroable)]
@@ -84,13 +84,21 @@ fn save<const N: usize>(to: &[AtomicU64; N], values: [f64; N]) {
     }
 }
 
-/// Grows a zeroable array by copying its bits; needs the array exclusively, so between sweeps only.
-fn enlarge<T: Zeroable>(records: &mut Vec<T>, used: usize, capacity: usize) {
-    let mut larger: Vec<T> = bytemuck::allocation::zeroed_vec(capacity);
-    for (to, from) in larger.iter_mut().zip(records.iter_mut()).take(used) {
-        std::mem::swap(to, from);
+/// Records that [`rehouse`] moves at a time.
+const MOVED: usize = 1 << 15;
+
+/// Moves the used records to an array of another capacity; needs them exclusively, so between sweeps only. They go from the back, and
+/// the old array gives back its memory as it gets shorter, so that they never are there twice.
+fn rehouse<T: Zeroable>(records: &mut Vec<T>, used: usize, capacity: usize) {
+    let mut roomy: Vec<T> = bytemuck::allocation::zeroed_vec(capacity.max(used));
+    records.truncate(used);
+    while !records.is_empty() {
+        let start = (records.len() - 1) / MOVED * MOVED;
+        roomy[start..].iter_mut().zip(&mut records[start..]).for_each(|(to, from)| std::mem::swap(to, from));
+        records.truncate(start);
+        records.shrink_to_fit();
     }
-    *records = larger;
+    *records = roomy;
 }
 
 const INDEX_BITS: u32 = 30;
@@ -134,13 +142,24 @@ impl Store {
     pub fn reserve(&mut self, vertices: usize, tets: usize) {
         let used = self.vertex_bound();
         if used + vertices > self.vertices.len() {
-            enlarge(&mut self.vertices, used, used + 3 * vertices);
-            enlarge(&mut self.places, used, used + 3 * vertices);
+            rehouse(&mut self.vertices, used, used + 3 * vertices);
+            rehouse(&mut self.places, used, used + 3 * vertices);
         }
         let used = self.tet_bound();
         if used + tets > self.tets.len() {
-            enlarge(&mut self.tets, used, used + 3 * tets);
+            rehouse(&mut self.tets, used, used + 3 * tets);
         }
+    }
+
+    /// Gives back what the live records leave of the memory, room for more included. Between sweeps only.
+    pub fn trim(&mut self) {
+        let (vertices, tets) = (self.vertex_bound(), self.tet_bound());
+        self.vertices.truncate(vertices);
+        self.vertices.shrink_to_fit();
+        self.places.truncate(vertices);
+        self.places.shrink_to_fit();
+        self.tets.truncate(tets);
+        self.tets.shrink_to_fit();
     }
 
     /// Vertices and tetrahedra that still fit.

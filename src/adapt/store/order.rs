@@ -1,5 +1,5 @@
 //! Renumbering along a space-filling curve: what is near in space comes near in memory, and dead records go. All in place.
-use super::{ROOM, Store};
+use super::{ROOM, Store, rehouse};
 use crate::adapt::ids::{TetId, VertexId};
 use crate::adapt::numbering::{by_first, permute};
 use crate::geometry::Entity;
@@ -14,6 +14,7 @@ impl Store {
         if self.ordered == Some(self.clock()) {
             return (0..self.vertex_bound() as u32).map(VertexId).collect();
         }
+        let bounds = [self.vertex_bound(), self.tet_bound()];
         let mut number = self.compact_vertices();
         let mut tet_number = self.compact_tets();
         let (order, place) = self.vertices_along_curve();
@@ -31,7 +32,7 @@ impl Store {
         permute(tets, |i, j| self.tets.swap(i, j));
         self.renumber_vertices(&number);
         self.renumber_tets(&number, &tet_number);
-        self.shrink();
+        self.shrink(bounds);
         self.note_order();
         number
     }
@@ -112,18 +113,15 @@ impl Store {
         }
     }
 
-    /// Gives memory back when most of it lies idle.
-    fn shrink(&mut self) {
-        let (vertices, tets) = (2 * self.vertex_bound() + ROOM, 2 * self.tet_bound() + 6 * ROOM);
-        if 2 * vertices < self.vertices.len() {
-            self.vertices.truncate(vertices);
-            self.vertices.shrink_to_fit();
-            self.places.truncate(vertices);
-            self.places.shrink_to_fit();
+    /// Gives back the memory of dead records, if they were many.
+    fn shrink(&mut self, bounds: [usize; 2]) {
+        let (vertices, tets) = (self.vertex_bound(), self.tet_bound());
+        if vertices < bounds[0] - bounds[0] / 8 {
+            rehouse(&mut self.vertices, vertices, 2 * vertices + ROOM);
+            rehouse(&mut self.places, vertices, 2 * vertices + ROOM);
         }
-        if 2 * tets < self.tets.len() {
-            self.tets.truncate(tets);
-            self.tets.shrink_to_fit();
+        if tets < bounds[1] - bounds[1] / 8 {
+            rehouse(&mut self.tets, tets, 2 * tets + 6 * ROOM);
         }
     }
 }
