@@ -1,4 +1,4 @@
-//! Stages of a run, told on standard error to whoever measures: `GEO_ADAPT_TRACE=1`.
+//! Stages of a run, told on standard error to whoever measures: `GEO_ADAPT_STAGES=1`.
 use std::sync::{LazyLock, Mutex};
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ static BEGAN: LazyLock<(Instant, Mutex<(Instant, f64)>)> =
 /// Says, if the trace is wanted, that a stage is over: its seconds since the one before by the clock and (where the system tells it:
 /// Linux) on the processors, those since the first, the memory in use now and the most there was, MB.
 pub fn stage(name: &str) {
-    if std::env::var_os("GEO_ADAPT_TRACE").is_none() {
+    if std::env::var_os("GEO_ADAPT_STAGES").is_none() {
         return;
     }
     let (first, last) = &*BEGAN;
