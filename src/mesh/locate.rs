@@ -1,12 +1,16 @@
-//! Point location in a tetrahedral mesh: a walk from a hint, and a tree of boxes for where the walk cannot go.
+//! Point location in a tetrahedral mesh: a walk from a hint, and trees of boxes for where the walk cannot go: a small one of the faces on
+//! the boundary for points outside, and one of all tetrahedra.
 use super::adjacency::{FACES, MatchedFaces, NONE};
 use super::box_tree::BoxTree;
-use super::vector::{Vec3, add, cross, distance, dot, scale, sub, volume6};
+use super::vector::{Vec3, add, cross, distance, dot, norm, scale, sub, volume6};
 use super::{Elements, TetMesh};
 use std::sync::{Arc, OnceLock};
 
 /// A barycentric coordinate down to this counts as inside.
 const INSIDE: f64 = -1e-12;
+
+/// Distances that differ by this share are equal.
+const SLACK: f64 = 1e-12;
 
 /// Steps after which a walk gives up; a tree search costs about as much as so many steps.
 const STEPS: u32 = 200;
@@ -26,6 +30,8 @@ pub struct Location {
 pub struct Locator {
     mesh: Arc<TetMesh>,
     faces: MatchedFaces,
+    /// Sides 4·tet + face on the boundary, and the tree over them.
+    boundary: OnceLock<(Vec<u32>, BoxTree)>,
     tree: OnceLock<BoxTree>,
 }
 
@@ -55,7 +61,7 @@ impl Locator {
         assert!(!mesh.tets.is_empty(), "a mesh without tetrahedra cannot be searched");
         assert_eq!(mesh.tets.len(), faces.neighbours.len(), "one row of neighbours a tetrahedron");
         assert!(mesh.tets.nodes.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()), "node out of range");
-        Self { mesh, faces, tree: OnceLock::new() }
+        Self { mesh, faces, boundary: OnceLock::new(), tree: OnceLock::new() }
     }
 
     /// What lies across the faces of the tetrahedra.
@@ -84,7 +90,7 @@ impl Locator {
         let found = if (*hint as usize) < self.tets().len() {
             match self.walk(p, *hint) {
                 Walk::Found(found) => found,
-                Walk::Lost(tet) => self.search(p, self.nearest_in(tet, p)),
+                Walk::Lost(tet) => self.search_boundary(p, self.nearest_in(tet, p)),
             }
         } else {
             self.search(p, self.nearest_in(0, p))
@@ -128,6 +134,49 @@ impl Locator {
         Walk::Lost(tet)
     }
 
+    /// The nearest tetrahedron, given one that bounds the distance: where all faces of the boundary that are nearest to p have it
+    /// on their outer side, p is outside, and nothing is nearer.
+    fn search_boundary(&self, p: Vec3, bound: Location) -> Location {
+        let (sides, tree) = self.boundary.get_or_init(|| self.boundary_tree());
+        // Faces that meet where the nearest point is are equally near but for rounding.
+        let slack = |distance: f64| distance + SLACK * (distance + norm(p));
+        let (mut nearest, mut least, mut outer) = (None, slack(bound.distance), true);
+        tree.nearest(p, slack(least).powi(2), |item| {
+            let (tet, face) = (sides[item as usize] / 4, sides[item as usize] as usize % 4);
+            let corners = self.corners(tet);
+            let (_, away) = nearest_on_face(&corners, face, p);
+            if away <= slack(least) {
+                let is_outer = sub_volumes(&corners, p)[face] < 0.0;
+                // Clearly nearer than all before, those do not count.
+                outer = is_outer && (outer || slack(away) < least);
+                if away < least {
+                    (nearest, least) = (Some(tet), away);
+                }
+            }
+            slack(least).powi(2)
+        });
+        if let (Some(tet), true) = (nearest, outer) {
+            return self.nearest_in(tet, p);
+        }
+        self.search(p, bound)
+    }
+
+    fn boundary_tree(&self) -> (Vec<u32>, BoxTree) {
+        let open = |(t, around): (usize, &[u32; 4])| {
+            let around = *around;
+            (0..4).filter(move |&face| around[face] == NONE).map(move |face| (4 * t + face) as u32)
+        };
+        let sides: Vec<u32> = self.faces.neighbours.iter().enumerate().flat_map(open).collect();
+        let tree = BoxTree::new(sides.len(), |item| {
+            let side = sides[item as usize];
+            let corners = self.corners(side / 4);
+            let [a, b, c] = FACES[side as usize % 4].map(|i| corners[i]);
+            let corner = |f: fn(f64, f64) -> f64| -> Vec3 { std::array::from_fn(|i| f(f(a[i], b[i]), c[i])) };
+            [corner(f64::min), corner(f64::max)]
+        });
+        (sides, tree)
+    }
+
     /// The nearest tetrahedron of all, given one that bounds the distance.
     fn search(&self, p: Vec3, bound: Location) -> Location {
         let tree = self.tree.get_or_init(|| {
@@ -164,9 +213,7 @@ impl Locator {
             if total > 0.0 && volumes[face] >= 0.0 {
                 continue;
             }
-            let weights = nearest_on_triangle(p, nodes.map(|i| corners[i]));
-            let on_face = nodes.iter().zip(weights).fold([0.0; 3], |q, (&i, w)| add(q, scale(corners[i], w)));
-            let away = distance(p, on_face);
+            let (weights, away) = nearest_on_face(&corners, face, p);
             if away < best.distance {
                 best.distance = away;
                 best.weights = [0.0; 4];
@@ -177,6 +224,14 @@ impl Locator {
         }
         best
     }
+}
+
+/// Barycentric coordinates on a face of the point there nearest to p, and its distance.
+fn nearest_on_face(corners: &[Vec3; 4], face: usize, p: Vec3) -> ([f64; 3], f64) {
+    let points = FACES[face].map(|i| corners[i]);
+    let weights = nearest_on_triangle(p, points);
+    let foot = points.iter().zip(weights).fold([0.0; 3], |q, (&x, w)| add(q, scale(x, w)));
+    (weights, distance(p, foot))
 }
 
 /// Six times the volumes with p in the place of each corner: p's barycentric coordinates times the whole.
@@ -281,6 +336,20 @@ mod tests {
                     prop_assert!(least <= distance(p, at([u, v, 1.0 - u - v])) + 1e-12);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn outside_the_faces_of_the_boundary_suffice() {
+        for (locator, outside) in [
+            (locator(3), vec![[0.4, 0.7, -0.1], [-0.2, 1.1, 0.5], [1.3; 3]]),
+            (hollow(), vec![[0.5; 3], [0.7, 0.5, 0.4]]),
+        ] {
+            for p in outside {
+                let found = locator.locate(p, &mut 5);
+                assert!(found.distance > 0.0 && (found.distance - least_distance(&locator, p)).abs() < 1e-12);
+            }
+            assert!(locator.tree.get().is_none() && locator.boundary.get().is_some());
         }
     }
 
