@@ -31,8 +31,8 @@ pub struct Locator {
     mesh: Arc<TetMesh>,
     faces: MatchedFaces,
     /// Sides 4·tet + face on the boundary, and the tree over them.
-    boundary: OnceLock<(Vec<u32>, BoxTree)>,
-    tree: OnceLock<BoxTree>,
+    boundary: OnceLock<Box<(Vec<u32>, BoxTree)>>,
+    tree: OnceLock<Box<BoxTree>>,
 }
 
 /// How a walk ended.
@@ -137,7 +137,7 @@ impl Locator {
     /// The nearest tetrahedron, given one that bounds the distance: where all faces of the boundary that are nearest to p have it
     /// on their outer side, p is outside, and nothing is nearer.
     fn search_boundary(&self, p: Vec3, bound: Location) -> Location {
-        let (sides, tree) = self.boundary.get_or_init(|| self.boundary_tree());
+        let (sides, tree) = &**self.boundary.get_or_init(|| Box::new(self.boundary_tree()));
         // Faces that meet where the nearest point is are equally near but for rounding.
         let slack = |distance: f64| distance + SLACK * (distance + norm(p));
         let (mut nearest, mut least, mut outer) = (None, slack(bound.distance), true);
@@ -180,13 +180,14 @@ impl Locator {
     /// The nearest tetrahedron of all, given one that bounds the distance.
     fn search(&self, p: Vec3, bound: Location) -> Location {
         let tree = self.tree.get_or_init(|| {
-            BoxTree::new(self.tets().len(), |tet| {
+            let tree = BoxTree::new(self.tets().len(), |tet| {
                 let c = self.corners(tet);
                 let corner = |f: fn(f64, f64) -> f64| -> Vec3 {
                     std::array::from_fn(|i| f(f(c[0][i], c[1][i]), f(c[2][i], c[3][i])))
                 };
                 [corner(f64::min), corner(f64::max)]
-            })
+            });
+            Box::new(tree)
         });
         let mut best = bound;
         tree.nearest(p, best.distance * best.distance, |tet| {

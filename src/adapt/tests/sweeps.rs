@@ -40,3 +40,38 @@ fn an_interface_between_regions_stays_valid() {
 fn a_round_body_stays_valid() {
     each_was_done(rounds(Shape::Round, 4, 0.5, 3));
 }
+
+#[test]
+fn renumbering_leaves_a_valid_mesh_without_dead_records() {
+    for shape in [Shape::Cube, Shape::TwoRegions, Shape::Round] {
+        let sample = sample(shape, 5, 0.6);
+        let mut bench = Bench::new(&sample, 1, 3);
+        for task in [Task::Collapse, Task::Split, Task::Collapse] {
+            bench.sweep(task);
+        }
+        let places = |bench: &Bench| {
+            let store = &bench.context.store;
+            let mut places: Vec<_> =
+                store.live_vertices().map(|v| (store.position(v).map(f64::to_bits), store.entity(v))).collect();
+            places.sort_unstable();
+            places
+        };
+        let before = places(&bench);
+        let number = bench.context.reorder();
+        bench.states[0].pool.clear();
+        bench.check("renumbering");
+        let store = &bench.context.store;
+        assert!(store.vertex_bound() < number.len() && store.live_vertices().count() == store.vertex_bound());
+        assert_eq!(store.live_tets().count(), store.tet_bound());
+        assert_eq!(number.iter().filter(|v| v.is_some()).count(), store.vertex_bound());
+        assert!(store.live_tets().is_sorted_by_key(|t| store.vertices(t).into_iter().min()));
+        assert!(places(&bench) == before);
+        // At once again nothing changes, and work can go on.
+        assert!(bench.context.reorder().into_iter().zip(0..).all(|(v, old)| v.0 == old));
+        bench.context.store.reserve(1000, 6000);
+        bench.context.store.trim();
+        bench.context.store.reserve(1000, 6000);
+        bench.sweep(Task::Split);
+        bench.sweep(Task::Smooth);
+    }
+}
