@@ -2,11 +2,11 @@
 use super::context::Context;
 use super::ids::{FACE, TetId, VertexId};
 use super::required::Required;
-use crate::mesh::predicate::is_positive;
 use super::store::Store;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Geometry, Topology};
 use crate::mesh::adjacency::sorted_faces;
+use crate::mesh::predicate::is_positive;
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::quality::mean_ratio;
 use crate::metric::{Source, Sym3};

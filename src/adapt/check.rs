@@ -1,9 +1,9 @@
 //! The whole store held against everything that the operations promise; for tests.
 use super::context::Context;
 use super::ids::{EDGE, FACE, TetId, VertexId};
-use crate::mesh::predicate::is_positive;
 use super::store::Store;
 use crate::geometry::{Entity, Geometry};
+use crate::mesh::predicate::is_positive;
 use crate::metric::quality::mean_ratio;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::Ordering::Relaxed;

@@ -6,6 +6,7 @@ use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
 use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
+use super::store::Store;
 use super::worker::State;
 use crate::mesh::vector::sub;
 use crate::metric::quality::edge_length;
@@ -94,7 +95,7 @@ pub trait Observer: Sync {
 
 /// Limits while shapes are improved: nothing may become bad that is not.
 fn shape_limits() -> Limits {
-    Limits { improve_below: 0.9, insert_floor: 0.2, insert_loss: 1.0, ..Limits::default() }
+    Limits { improve_below: crate::adapt::context::env("IB", 0.9), insert_floor: 0.2, insert_loss: 1.0, ..Limits::default() }
 }
 
 /// The passes on one mesh.
@@ -147,7 +148,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
         self.reorder();
-        self.context.limits = Limits { improve_below: 0.4, ..Limits::default() };
+        self.context.limits = Limits { improve_below: crate::adapt::context::env("RS", 0.4), shortest_new: crate::adapt::context::env("SN", 0.5), ..Limits::default() };
         for _ in 0..SIZE_PASSES {
             if self.size_pass() || self.observer.stop() {
                 break;
@@ -184,8 +185,11 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.refine(1);
         self.collapse(1);
         self.reconnect(self.criterion, 1);
+        let b = self.context.limits.improve_below;
+        self.context.limits.improve_below = crate::adapt::context::env("SS", 0.4);
         self.smooth(1);
-        ((self.changes() - before) as f64) < LITTLE * self.context.store.vertex_bound() as f64
+        self.context.limits.improve_below = b;
+        ((self.changes() - before) as f64) < crate::adapt::context::env("LITTLE", 0.05) * self.context.store.vertex_bound() as f64
     }
 
     /// One pass of all operations; whether it changed little.
@@ -289,7 +293,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn smooth(&mut self, sweeps: usize) {
         for _ in 0..sweeps {
             let since = self.begin(Kind::Smooth);
-            let changed = self.changed(since);
+            let changed = self.changed(since, Store::moved);
             let live = self.context.store.live_vertices();
             let items: Vec<VertexId> = live.filter(|v| changed[v.index()]).collect();
             if self.observer.stop() || self.sweep(Kind::Smooth, &Smooth, &items).done == 0 {
@@ -304,10 +308,10 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     }
 
     /// For each vertex whether one of its tetrahedra changed at or after the time.
-    fn changed(&self, since: u32) -> Vec<bool> {
+    fn changed(&self, since: u32, stamp: impl Fn(&Store, TetId) -> u32) -> Vec<bool> {
         let store = &self.context.store;
         let mut changed = vec![false; store.vertex_bound()];
-        for t in store.live_tets().filter(|&t| store.stamp(t) >= since) {
+        for t in store.live_tets().filter(|&t| stamp(store, t) >= since) {
             store.vertices(t).iter().for_each(|v| changed[v.index()] = true);
         }
         changed
@@ -343,6 +347,29 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let advance = |n: usize| self.observer.advance(n);
         let counts = schedule::run(operation, items, self.context, &mut self.states, self.pool, &advance);
         self.observer.end(&counts);
+        if std::env::var_os("GEO_ADAPT_TRACE").is_some() {
+            let store = &self.context.store;
+            let (mut n, mut sum, mut min) = (0.0, 0.0, 1.0f64);
+            for t in store.live_tets() {
+                let q = store.quality(t);
+                n += 1.0;
+                sum += q;
+                min = min.min(q);
+            }
+            let (mut edges, mut unit) = (0.0, 0.0);
+            for t in store.live_tets() {
+                let v = store.vertices(t);
+                for [i, j] in EDGE {
+                    let d = sub(store.position(v[j]), store.position(v[i]));
+                    let l = edge_length(d, &store.metric(v[i]), &store.metric(v[j]));
+                    edges += 1.0;
+                    if l > 0.7071 && l < 1.41421 {
+                        unit += 1.0;
+                    }
+                }
+            }
+            eprintln!("      tets {n} mean {:.4} least {min:.4} unit {:.2}", sum / n, 100.0 * unit / edges);
+        }
         let work = &mut self.work[kind as usize];
         work.counts.add(&counts);
         work.sweeps += 1;
@@ -353,7 +380,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Edges whose length passes the test, each once, with their length; only those with an end where something changed.
     fn edges(&self, since: u32, wanted: impl Fn(f64) -> bool) -> Vec<(EdgeItem, f64)> {
         let store = &self.context.store;
-        let changed = self.changed(since);
+        let changed = self.changed(since, Store::stamp);
         let mut found = Vec::new();
         for t in store.live_tets() {
             let v = store.vertices(t);

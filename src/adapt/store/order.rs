@@ -67,6 +67,7 @@ impl Store {
         let vertices = self.vertices(old).map(|v| number[v.index()]);
         to.write_tet(new, vertices, self.region(old), self.quality(old));
         to.tets[new.index()].stamp.store(self.stamp(old), Relaxed);
+        to.tets[new.index()].moved.store(self.moved(old), Relaxed);
         let (neighbours, tags) = (self.neighbours(old), self.tags(old));
         for i in 0..4 {
             let n = neighbours[i];

@@ -240,7 +240,8 @@ impl<'m> Bench<'m> {
             let inner = |t: &TetId| store.vertices(*t).into_iter().find(|&x| store.dimension(x) == 3);
             let Some(x) = tets.iter().find_map(inner) else { continue };
             store.set_position(v, lerp(from, store.position(x), shift));
-            let positive = |t: &TetId| crate::mesh::predicate::is_positive(store.vertices(*t).map(|v| store.position(v)));
+            let positive =
+                |t: &TetId| crate::mesh::predicate::is_positive(store.vertices(*t).map(|v| store.position(v)));
             if !tets.iter().all(positive) {
                 store.set_position(v, from);
             }
