@@ -1,14 +1,15 @@
-//! From the plain mesh to the store, and back.
-use super::context::Context;
-use super::ids::{FACE, TetId, VertexId};
-use super::required::Required;
+//! From the plain mesh to the store.
+use super::ids::{TetId, VertexId};
+use super::numbering::Numbering;
 use super::store::Store;
+use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
-use crate::geometry::{Entity, Geometry, Topology};
-use crate::mesh::adjacency::sorted_faces;
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, TriangleIndex, sorted3};
 use crate::mesh::predicate::is_positive;
-use crate::mesh::{Elements, TetMesh};
-use crate::metric::quality::mean_ratio;
+use crate::mesh::vector::Vec3;
+use crate::metric::batch::Batch;
+use crate::metric::lanes::{LANES, Lanes};
 use crate::metric::{Source, Sym3};
 
 /// A mesh that cannot be adapted.
@@ -50,36 +51,50 @@ pub enum Error {
 /// Vertices and tetrahedra at least that there is room for beside those of the input.
 const ROOM: usize = 1 << 16;
 
+/// A mesh in a store.
+pub struct Filled {
+    /// The store, numbered along the Hilbert curve.
+    pub store: Store,
+    /// Vertices that are not at their projected points: a tetrahedron would be inverted.
+    pub waiting: Vec<VertexId>,
+    /// The id of each vertex of the mesh.
+    pub ids: Vec<VertexId>,
+}
+
 /// Fills a store: every vertex gets its place on the model and its metric, every face its neighbour or tag.
 ///
-/// Vertices start at their projected points, save those where a tetrahedron would be inverted there; the second value lists them.
+/// Vertices start at their projected points, save those where a tetrahedron would be inverted there.
 ///
 /// # Errors
-/// When a tetrahedron is inverted, or the triangles do not close the boundary.
-pub fn fill(mesh: &TetMesh, place: &Classification, source: &Source) -> Result<(Store, Vec<VertexId>), Error> {
-    let (nv, nt) = (mesh.vertices.len(), mesh.tets.len());
-    if nt == 0 {
+/// When a tetrahedron is inverted, a face has more than two, or the triangles do not close the boundary.
+pub fn fill(mesh: &TetMesh, place: &Classification, source: &Source) -> Result<Filled, Error> {
+    if mesh.tets.is_empty() {
         return Err(Error::Empty);
     }
     check_positive(mesh)?;
-    let mut store = Store::with_capacity(2 * nv + ROOM, 2 * nt + 6 * ROOM);
-    store.take_vertices(nv).expect("room was made");
-    store.take_tets(nt).expect("room was made");
-    for v in 0..nv {
-        let id = VertexId(v as u32);
-        store.set_position(id, mesh.vertices[v]);
-        store.set_place(id, place.entities[v], place.parameters[v]);
+    let own;
+    let faces = match source.faces_of(mesh) {
+        Some(faces) => faces,
+        None => {
+            own = MatchedFaces::of(&mesh.tets.nodes);
+            &own
+        }
+    };
+    if let Some(crowd) = faces.crowded {
+        return Err(Error::Shared { nodes: crowd.nodes.map(|v| v + 1), tets: crowd.tets });
     }
-    for (t, (nodes, region)) in mesh.tets.iter().enumerate() {
-        let id = TetId(t as u32);
-        store.write_tet(id, nodes.map(VertexId), region as u32, 1.0);
-        nodes.iter().for_each(|&v| store.set_tet_of(VertexId(v), id));
-    }
-    join_tets(mesh, place, &store)?;
-    join_ridges(place, &mut store);
-    let waiting = snap(mesh, place, &store);
-    measure(&store, source);
-    Ok((store, waiting))
+    let order = Numbering::along_curve(&place.projected, &mesh.tets.nodes);
+    let (nv, nt) = (mesh.vertices.len(), mesh.tets.len());
+    let mut filling = Filling { mesh, place, order, store: Store::with_capacity(2 * nv + ROOM, 2 * nt + 6 * ROOM) };
+    filling.write_vertices();
+    filling.write_tets(faces);
+    filling.tag_faces(faces)?;
+    filling.join_ridges();
+    let waiting = filling.leave_inverting();
+    filling.set_metrics(source);
+    let Filling { store, order, .. } = filling;
+    measure(&store);
+    Ok(Filled { store, waiting, ids: order.vertex_ids })
 }
 
 fn check_positive(mesh: &TetMesh) -> Result<(), Error> {
@@ -91,197 +106,158 @@ fn check_positive(mesh: &TetMesh) -> Result<(), Error> {
     }
 }
 
-/// Sets neighbours and face tags.
-fn join_tets(mesh: &TetMesh, place: &Classification, store: &Store) -> Result<(), Error> {
-    let mut triangles: Vec<([u32; 3], u32)> = Vec::with_capacity(mesh.triangles.len());
-    for (nodes, &face) in mesh.triangles.nodes.iter().zip(&place.faces) {
-        let mut key = *nodes;
-        key.sort_unstable();
-        triangles.push((key, face + 1));
-    }
-    triangles.sort_unstable();
-    let mut next = triangles.iter().peekable();
-    let local = |t: TetId, key: [u32; 3]| {
-        store.vertices(t).iter().position(|v| !key.contains(&v.0)).expect("a face leaves one vertex out")
-    };
-    for same in sorted_faces(&mesh.tets.nodes).chunk_by(|a, b| a.nodes == b.nodes) {
-        let key = same[0].nodes;
-        while next.next_if(|triangle| triangle.0 < key).is_some() {}
-        let tag = next.peek().filter(|triangle| triangle.0 == key).map_or(0, |triangle| triangle.1);
-        let tets: Vec<TetId> = same.iter().map(|side| TetId(side.side / 4)).collect();
-        match tets[..] {
-            [t] if tag != 0 => store.set_tag(t, local(t, key), tag),
-            [_] => return Err(Error::Open { nodes: key.map(|v| v + 1) }),
-            [a, b] => {
-                let (i, j) = (local(a, key), local(b, key));
-                store.set_neighbour(a, i, b);
-                store.set_neighbour(b, j, a);
-                store.set_tag(a, i, tag);
-                store.set_tag(b, j, tag);
-            }
-            _ => return Err(Error::Shared { nodes: key.map(|v| v + 1), tets: tets.len() }),
-        }
-    }
-    Ok(())
+/// A store that is being filled.
+struct Filling<'a> {
+    mesh: &'a TetMesh,
+    place: &'a Classification,
+    order: Numbering,
+    store: Store,
 }
 
-/// Sets the ridge neighbours of vertices on model edges and of corners.
-fn join_ridges(place: &Classification, store: &mut Store) {
-    let mut ends: Vec<(u32, u32, u32)> = Vec::with_capacity(2 * place.ridges.len());
-    for &([a, b], curve) in &place.ridges {
-        ends.push((a, b, curve));
-        ends.push((b, a, curve));
+impl Filling<'_> {
+    fn id(&self, v: u32) -> VertexId {
+        self.order.vertex_ids[v as usize]
     }
-    ends.sort_unstable();
-    for at_vertex in ends.chunk_by(|x, y| x.0 == y.0) {
-        let v = VertexId(at_vertex[0].0);
-        match store.entity(v) {
-            Entity::Edge(_) => {
-                let other = |k: usize| at_vertex.get(k).map_or(VertexId::NONE, |&(_, b, _)| VertexId(b));
-                store.set_ridge(v, [other(0), other(1)]);
-            }
-            _ => store.set_corner(v, at_vertex.iter().map(|&(_, b, curve)| (VertexId(b), curve)).collect()),
-        }
-    }
-    // Corners without a ridge (a required vertex on a face) still need their empty list.
-    let lonely: Vec<VertexId> = (0..place.entities.len() as u32)
-        .filter(|&v| matches!(place.entities[v as usize], Entity::Vertex(_)))
-        .filter(|&v| ends.binary_search_by_key(&v, |end| end.0).is_err())
-        .map(VertexId)
-        .collect();
-    for v in lonely {
-        store.set_corner(v, Vec::new());
-    }
-}
 
-/// Moves the vertices to their projected points; where that inverts a tetrahedron its vertices stay, and are returned.
-fn snap(mesh: &TetMesh, place: &Classification, store: &Store) -> Vec<VertexId> {
-    for (v, &point) in place.projected.iter().enumerate() {
-        store.set_position(VertexId(v as u32), point);
+    /// Sets position and place.
+    fn write_vertices(&self) {
+        self.store.take_vertices(self.order.vertices.len()).expect("room was made");
+        for (id, &v) in self.order.vertices.iter().enumerate() {
+            let (id, v) = (VertexId(id as u32), v as usize);
+            self.store.set_position(id, self.place.projected[v]);
+            self.store.set_place(id, self.place.entities[v], self.place.parameters[v]);
+        }
     }
-    let mut waiting = Vec::new();
-    loop {
-        let before = waiting.len();
-        for t in store.live_tets() {
-            let vertices = store.vertices(t);
-            if is_positive(vertices.map(|v| store.position(v))) {
-                continue;
+
+    /// Sets vertices and neighbours, and each vertex's tetrahedron.
+    fn write_tets(&self, faces: &MatchedFaces) {
+        self.store.take_tets(self.order.tets.len()).expect("room was made");
+        for (id, &t) in self.order.tets.iter().enumerate() {
+            let (id, t) = (TetId(id as u32), t as usize);
+            let vertices = self.mesh.tets.nodes[t].map(|v| self.id(v));
+            self.store.write_tet(id, vertices, self.mesh.tets.refs[t] as u32, 1.0);
+            for (i, &n) in faces.neighbours[t].iter().enumerate().filter(|(_, n)| **n != NONE) {
+                self.store.set_neighbour(id, i, self.order.tet_ids[n as usize]);
             }
-            for v in vertices.into_iter().filter(|v| store.position(*v) != mesh.vertices[v.index()]) {
-                store.set_position(v, mesh.vertices[v.index()]);
-                waiting.push(v);
+            vertices.iter().for_each(|&v| self.store.set_tet_of(v, id));
+        }
+    }
+
+    /// Sets the tags of faces with a triangle.
+    ///
+    /// # Errors
+    /// When a face on the boundary has none.
+    fn tag_faces(&self, faces: &MatchedFaces) -> Result<(), Error> {
+        let triangles = TriangleIndex::new(&self.mesh.triangles.nodes, self.mesh.vertices.len());
+        triangles.for_each_side(&self.mesh.tets.nodes, |triangle, t, i| {
+            let (id, tag) = (self.order.tet_ids[t as usize], self.place.faces[triangle as usize] + 1);
+            let before = self.store.tags(id)[i];
+            self.store.set_tag(id, i, if before == 0 { tag } else { tag.min(before) });
+        });
+        for (t, neighbours) in faces.neighbours.iter().enumerate().filter(|(_, neighbours)| neighbours.contains(&NONE)) {
+            let tags = self.store.tags(self.order.tet_ids[t]);
+            if let Some(open) = (0..4).find(|&i| neighbours[i] == NONE && tags[i] == 0) {
+                let nodes = sorted3(FACES[open].map(|k| self.mesh.tets.nodes[t][k]));
+                return Err(Error::Open { nodes: nodes.map(|v| v + 1) });
             }
         }
-        if waiting.len() == before {
+        Ok(())
+    }
+
+    /// Sets the ridge neighbours of vertices on model edges and of corners.
+    fn join_ridges(&mut self) {
+        let mut ends: Vec<(VertexId, VertexId, u32)> = Vec::with_capacity(2 * self.place.ridges.len());
+        for &([a, b], curve) in &self.place.ridges {
+            let (a, b) = (self.id(a), self.id(b));
+            ends.extend([(a, b, curve), (b, a, curve)]);
+        }
+        ends.sort_unstable();
+        for at_vertex in ends.chunk_by(|x, y| x.0 == y.0) {
+            let v = at_vertex[0].0;
+            match self.store.entity(v) {
+                Entity::Edge(_) => {
+                    let other = |k: usize| at_vertex.get(k).map_or(VertexId::NONE, |&(_, b, _)| b);
+                    self.store.set_ridge(v, [other(0), other(1)]);
+                }
+                _ => self.store.set_corner(v, at_vertex.iter().map(|&(_, b, curve)| (b, curve)).collect()),
+            }
+        }
+        // Corners without a ridge (a required vertex on a face) still need their empty list.
+        let corners = self.place.entities.iter().zip(&self.order.vertex_ids);
+        for (_, &v) in corners.filter(|(entity, _)| matches!(entity, Entity::Vertex(_))) {
+            if ends.binary_search_by_key(&v, |end| end.0).is_err() {
+                self.store.set_corner(v, Vec::new());
+            }
+        }
+    }
+
+    /// Where projected points invert a tetrahedron, its vertices go back to where they were, and are returned.
+    fn leave_inverting(&self) -> Vec<VertexId> {
+        let before = |v: VertexId| -> Vec3 { self.mesh.vertices[self.order.vertices[v.index()] as usize] };
+        let moved: Vec<bool> = self.store.live_vertices().map(|v| self.store.position(v) != before(v)).collect();
+        let mut waiting = Vec::new();
+        if !moved.contains(&true) {
             return waiting;
         }
-    }
-}
-
-/// Gives every vertex its metric and every tetrahedron its mean ratio.
-pub fn measure(store: &Store, source: &Source) {
-    let mut hint = 0;
-    for v in store.live_vertices() {
-        let log = source.log_at(store.position(v), &mut hint);
-        store.set_metric(v, &log, &log.exp());
-        store.set_hint(v, hint);
-    }
-    for t in store.live_tets() {
-        let vertices = store.vertices(t);
-        let logs = vertices.map(|v| store.log(v));
-        let points = vertices.map(|v| store.position(v));
-        store.set_quality(t, mean_ratio(points, [&logs[0], &logs[1], &logs[2], &logs[3]]));
-    }
-}
-
-/// What the mesh calls each face and each edge of the model, and how it turns a face's triangles.
-pub struct References {
-    /// By face.
-    pub faces: Vec<i32>,
-    /// Whether the triangles of a face look into the domain (between regions: into the lesser one).
-    pub inward: Vec<bool>,
-    /// By edge.
-    pub edges: Vec<i32>,
-}
-
-/// The store as a plain mesh with its classification, and the metric at its vertices.
-pub struct Extracted {
-    /// The mesh, without association; of its edges those that are required.
-    pub mesh: TetMesh,
-    /// Where its boundary lies.
-    pub classification: Classification,
-    /// M at its vertices.
-    pub metrics: Vec<Sym3>,
-}
-
-/// Takes the mesh out of the store, in the order of its ids, with what `input` required. `face_refs` gives each model
-/// face its reference.
-pub fn extract(context: &Context, input: &TetMesh, refs: &References) -> Extracted {
-    let store = &context.store;
-    let mut number = vec![u32::MAX; store.vertex_bound()];
-    let mut mesh = TetMesh::default();
-    let mut classification = Classification::default();
-    let mut metrics = Vec::new();
-    let mut original = vec![VertexId::NONE; store.vertex_bound()];
-    for (v, id) in context.ids.iter().enumerate().filter(|(_, id)| id.is_some()) {
-        original[id.index()] = VertexId(v as u32);
-    }
-    for v in store.live_vertices() {
-        number[v.index()] = mesh.vertices.len() as u32;
-        mesh.vertices.push(store.position(v));
-        // Only corners and frozen vertices surely are what they were: other ids may have been used again.
-        let is_old = matches!(store.entity(v), Entity::Vertex(_)) || context.is_frozen(v);
-        let kept = is_old.then(|| original[v.index()]).filter(|v| v.is_some());
-        mesh.vertex_refs.push(kept.map_or(0, |v| input.vertex_refs[v.index()]));
-        classification.entities.push(store.entity(v));
-        classification.parameters.push(store.parameters(v));
-        classification.projected.push(store.position(v));
-        metrics.push(store.metric(v));
-    }
-    let renumber = |v: VertexId| number[v.index()];
-    for t in store.live_tets() {
-        let (v, n, tags) = (store.vertices(t), store.neighbours(t), store.tags(t));
-        mesh.tets.push(v.map(renumber), store.region(t) as i32);
-        // Between two regions a triangle belongs to the lesser one.
-        let region = |t: TetId| (store.region(t) as i32, t);
-        for i in (0..4).filter(|&i| tags[i] != 0 && (!n[i].is_some() || region(t) < region(n[i]))) {
-            let [a, b, c] = FACE[i].map(|k| renumber(v[k]));
-            let face = tags[i] - 1;
-            let outward = !refs.inward[face as usize];
-            mesh.triangles.push(if outward { [a, c, b] } else { [a, b, c] }, refs.faces[face as usize]);
-            classification.faces.push(face);
-        }
-    }
-    classification.ridges = ridges(store, context.model.topology(), renumber);
-    for &(nodes, edge) in &classification.ridges {
-        mesh.edges.push(nodes, refs.edges[edge as usize]);
-    }
-    Required::list(input, &mut mesh, |v| renumber(context.ids[v.index()]));
-    Extracted { mesh, classification, metrics }
-}
-
-/// Each ridge edge once, in the order of its lower vertex.
-fn ridges(store: &Store, topology: &Topology, number: impl Fn(VertexId) -> u32) -> Vec<([u32; 2], u32)> {
-    let mut edges = Elements::<2>::default();
-    for v in store.live_vertices() {
-        match store.entity(v) {
-            Entity::Edge(curve) => {
-                for other in store.ridge(v).into_iter().filter(|w| w.is_some()) {
-                    if store.dimension(other) == 0 || v < other {
-                        edges.push([number(v), number(other)], curve as i32);
-                    }
+        loop {
+            let many = waiting.len();
+            for t in self.store.live_tets() {
+                let vertices = self.store.vertices(t);
+                if !vertices.iter().any(|v| moved[v.index()]) || is_positive(vertices.map(|v| self.store.position(v))) {
+                    continue;
+                }
+                for v in vertices.into_iter().filter(|&v| self.store.position(v) != before(v)) {
+                    self.store.set_position(v, before(v));
+                    waiting.push(v);
                 }
             }
-            Entity::Vertex(_) => {
-                for (other, curve) in store.corner_ridges(v) {
-                    if store.dimension(other) == 0 && v < other {
-                        edges.push([number(v), number(other)], curve as i32);
-                    }
-                }
+            if waiting.len() == many {
+                return waiting;
             }
-            _ => {}
         }
     }
-    debug_assert!(edges.refs.iter().all(|&curve| (curve as usize) < topology.edges.len()));
-    edges.iter().map(|(nodes, curve)| (nodes, curve as u32)).collect()
+
+    /// Gives every vertex its metric: at its own place that of the file, elsewhere the source's.
+    fn set_metrics(&self, source: &Source) {
+        let logs = source.logs_on(self.mesh);
+        for (v, &old) in self.store.live_vertices().zip(&self.order.vertices) {
+            let p = self.store.position(v);
+            let mut hint = self.order.tets[self.store.tet_of(v).index()];
+            let log = match logs {
+                Some(logs) if p == self.mesh.vertices[old as usize] => logs[old as usize],
+                _ => source.log_at(p, &mut hint),
+            };
+            self.store.set_metric(v, &log, &log.exp());
+            self.store.set_hint(v, hint);
+        }
+    }
+}
+
+/// Gives every tetrahedron its mean ratio.
+pub fn measure(store: &Store) {
+    let mut batch = Batch::default();
+    let mut ids = [TetId::NONE; LANES];
+    let mut tets = store.live_tets();
+    loop {
+        let mut count = 0;
+        for (id, t) in ids.iter_mut().zip(&mut tets) {
+            *id = t;
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        let (mut apexes, mut apex_logs) = ([Lanes::ZERO; 3], [Lanes::ZERO; 6]);
+        for lane in 0..LANES {
+            let vertices = store.vertices(ids[lane.min(count - 1)]);
+            let points = vertices.map(|v| store.position(v));
+            let logs: [Sym3; 4] = vertices.map(|v| store.log(v));
+            batch.set(lane, [points[0], points[1], points[2]], [&logs[0], &logs[1], &logs[2]]);
+            (0..3).for_each(|i| apexes[i].0[lane] = points[3][i]);
+            (0..6).for_each(|i| apex_logs[i].0[lane] = logs[3].0[i]);
+        }
+        batch.prepare();
+        let ratios = batch.shapes_each(&apexes, &apex_logs).mean_ratios();
+        ids.iter().zip(ratios).take(count).for_each(|(&t, ratio)| store.set_quality(t, ratio));
+    }
 }

@@ -106,8 +106,7 @@ impl<'m> Context<'m> {
 
     /// Renumbers the mesh along a space-filling curve; returns the new id of each old one. Pools of free ids must be emptied.
     pub fn reorder(&mut self) -> Vec<VertexId> {
-        let (store, number) = self.store.reordered();
-        self.store = store;
+        let number = self.store.reorder();
         self.required.renumber(&number);
         for id in self.ids.iter_mut().filter(|id| id.is_some()) {
             *id = number[id.index()];

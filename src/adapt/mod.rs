@@ -10,6 +10,7 @@ mod create;
 mod criteria;
 mod discipline;
 mod edge_removal;
+mod extract;
 mod face_removal;
 mod fan;
 mod ids;
@@ -18,6 +19,7 @@ mod local;
 mod lock;
 mod mend;
 mod merge;
+mod numbering;
 mod outcome;
 mod pipeline;
 mod project;
@@ -38,9 +40,10 @@ mod worker;
 // The atomics of the lock words; tests/lock_protocol.rs has loom's in their place.
 use std::sync::atomic;
 
-pub use build::{Error, Extracted};
+pub use build::Error;
 pub use create::PointCreation;
 pub use criteria::Criterion;
+pub use extract::Extracted;
 pub use outcome::{Counts, Refusal};
 pub use pipeline::{KINDS, Kind, Observer, Work};
 pub use run::{Adapted, Options, adapt};

@@ -1,8 +1,9 @@
 //! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
-use super::build::{self, Extracted, References};
+use super::build::{self, Filled};
 use super::context::Context;
 use super::create::PointCreation;
 use super::criteria::Criterion;
+use super::extract::{self, Extracted, References};
 use super::pipeline::{KINDS, Observer, Pipeline, Work};
 use super::required::Required;
 use crate::geometry::classify::Classification;
@@ -10,7 +11,7 @@ use crate::geometry::discrete::outward_triangles;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::metric::Source;
-use crate::tasks::Pool;
+use crate::tasks::{Pool, stage};
 use std::collections::HashMap;
 
 /// How to adapt.
@@ -52,19 +53,24 @@ pub fn adapt(
     pool: &Pool,
     observer: &dyn Observer,
 ) -> Result<Adapted, build::Error> {
-    let (store, waiting) = build::fill(mesh, place, source)?;
+    let Filled { store, waiting, ids } = build::fill(mesh, place, source)?;
+    stage("store filled");
     let mut context = Context::new(store, source, model);
     context.required = Required::of(mesh);
+    context.required.renumber(&ids);
+    context.ids = ids;
     let mut pipeline = Pipeline::new(&mut context, pool, observer, options.criterion, waiting);
     pipeline.points = options.points;
     pipeline.run();
+    stage("passes");
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());
     let refs = References {
         faces: face_refs(mesh, place, model),
         inward: inward_faces(mesh, place, model),
         edges: edge_refs(mesh, place, model),
     };
-    let extracted = build::extract(&context, mesh, &refs);
+    let extracted = extract::extract(&context, mesh, &refs);
+    stage("extracted");
     Ok(Adapted { extracted, work, off_model })
 }
 

@@ -2,7 +2,7 @@
 use super::classify::Classification;
 use super::{Entity, Evaluate, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::{FACES, FaceKey, sorted_faces, sorted3};
+use crate::mesh::adjacency::{FACES, TriangleIndex};
 use crate::mesh::vector::{Vec3, add, area2, distance, dot, norm, scale, unit};
 use serde::Serialize;
 
@@ -98,7 +98,7 @@ fn distance_from_model(topology: &Topology, evaluator: &mut impl Evaluate, p: Ve
 
 fn measure_normals(mesh: &TetMesh, model: &Model, classification: &Classification, fidelity: &mut Fidelity) {
     let mut evaluator = model.evaluator();
-    let faces = sorted_faces(&mesh.tets.nodes);
+    let sides = sides(mesh);
     let (mut sum, mut count) = (0.0, 0usize);
     for (triangle, (nodes, &face)) in mesh.triangles.nodes.iter().zip(&classification.faces).enumerate() {
         let [a, b, c] = nodes.map(|v| mesh.vertices[v as usize]);
@@ -106,7 +106,7 @@ fn measure_normals(mesh: &TetMesh, model: &Model, classification: &Classificatio
         let guess = nodes.iter().find_map(|&v| parameters_on(&mut evaluator, classification, v, face));
         let foot = evaluator.closest_on_face(face, at, guess);
         let truth = evaluator.face_normal(face, foot.uv);
-        let Some(side) = side_of(mesh, &faces, *nodes) else { continue };
+        let Some(side) = sides[triangle] else { continue };
         if dot(truth, truth) == 0.0 {
             continue;
         }
@@ -136,19 +136,23 @@ fn parameters_on(
     }
 }
 
-/// +1 when the triangle's normal points out of its only tetrahedron, −1 when into it, no sign between two
+/// For each triangle +1 when its normal points out of its only tetrahedron, −1 when into it, no sign between two
 /// tetrahedra; none when it is no face of any.
-fn side_of(mesh: &TetMesh, faces: &[FaceKey], nodes: [u32; 3]) -> Option<Option<f64>> {
-    let key = sorted3(nodes);
-    let first = faces.partition_point(|face| face.nodes < key);
-    let same = faces[first..].iter().take_while(|face| face.nodes == key).count();
-    if same != 1 {
-        return (same > 1).then_some(None);
-    }
-    let side = faces[first].side as usize;
-    let outward = FACES[side % 4].map(|i| mesh.tets.nodes[side / 4][i]);
-    let turned = (0..3).any(|i| (0..3).all(|j| outward[(i + j) % 3] == nodes[j]));
-    Some(Some(if turned { 1.0 } else { -1.0 }))
+fn sides(mesh: &TetMesh) -> Vec<Option<Option<f64>>> {
+    let mut sides = vec![None; mesh.triangles.len()];
+    let index = TriangleIndex::new(&mesh.triangles.nodes, mesh.vertices.len());
+    index.for_each_side(&mesh.tets.nodes, |triangle, tet, face| {
+        let side = &mut sides[triangle as usize];
+        if side.is_some() {
+            *side = Some(None);
+            return;
+        }
+        let nodes = mesh.triangles.nodes[triangle as usize];
+        let outward = FACES[face].map(|i| mesh.tets.nodes[tet as usize][i]);
+        let turned = (0..3).any(|i| (0..3).all(|j| outward[(i + j) % 3] == nodes[j]));
+        *side = Some(Some(if turned { 1.0 } else { -1.0 }));
+    });
+    sides
 }
 
 #[cfg(test)]

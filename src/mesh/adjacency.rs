@@ -1,4 +1,5 @@
-//! Neighbours of tetrahedra and unique edges of a plain mesh, by sorting.
+//! Neighbours of tetrahedra, triangles among their faces, and unique edges of a plain mesh.
+pub use super::matched_faces::{Crowd, MatchedFaces};
 
 /// No neighbour: the face is on the boundary.
 pub const NONE: u32 = u32::MAX;
@@ -41,15 +42,50 @@ pub fn sorted_faces(tets: &[[u32; 4]]) -> Vec<FaceKey> {
 /// The neighbour across each face, shape (n, 4); [`NONE`] on the boundary. Of a face of more than two tetrahedra the
 /// first two are neighbours.
 pub fn neighbours(tets: &[[u32; 4]]) -> Vec<[u32; 4]> {
-    let mut neighbours = vec![[NONE; 4]; tets.len()];
-    let keys = sorted_faces(tets);
-    for same in keys.chunk_by(|a, b| a.nodes == b.nodes) {
-        if let [a, b, ..] = same {
-            neighbours[a.side as usize / 4][a.side as usize % 4] = b.side / 4;
-            neighbours[b.side as usize / 4][b.side as usize % 4] = a.side / 4;
+    MatchedFaces::of(tets).neighbours
+}
+
+/// The triangles of a mesh by their nodes.
+pub struct TriangleIndex {
+    /// Sorted nodes and triangle, in increasing order.
+    triangles: Vec<([u32; 3], u32)>,
+    /// Whether a vertex is one of a triangle's.
+    on_surface: Vec<bool>,
+}
+
+impl TriangleIndex {
+    /// Of triangles on so many vertices.
+    pub fn new(triangles: &[[u32; 3]], vertices: usize) -> Self {
+        let mut index = Self {
+            triangles: triangles.iter().map(|&nodes| sorted3(nodes)).zip(0..).collect(),
+            on_surface: vec![false; vertices],
+        };
+        index.triangles.sort_unstable();
+        triangles.iter().flatten().for_each(|&v| index.on_surface[v as usize] = true);
+        index
+    }
+
+    /// The triangles of these nodes, in whichever order.
+    pub fn find(&self, nodes: [u32; 3]) -> impl Iterator<Item = u32> + '_ {
+        let key = sorted3(nodes);
+        let first = self.triangles.partition_point(|triangle| triangle.0 < key);
+        self.triangles[first..].iter().take_while(move |triangle| triangle.0 == key).map(|triangle| triangle.1)
+    }
+
+    /// Calls `f` with each triangle that is a face of a tetrahedron, that tetrahedron and the number of the face there, in the order
+    /// of the tetrahedra.
+    pub fn for_each_side(&self, tets: &[[u32; 4]], mut f: impl FnMut(u32, u32, usize)) {
+        for (t, nodes) in tets.iter().enumerate() {
+            let on = nodes.map(|v| self.on_surface[v as usize]);
+            // Most tetrahedra are far from the surface.
+            if on.into_iter().map(u8::from).sum::<u8>() < 3 {
+                continue;
+            }
+            for (k, face) in FACES.iter().enumerate().filter(|(_, face)| face.iter().all(|&i| on[i])) {
+                self.find(face.map(|i| nodes[i])).for_each(|triangle| f(triangle, t as u32, k));
+            }
         }
     }
-    neighbours
 }
 
 /// The edges of the tetrahedra, each once, lower node first, sorted.

@@ -43,6 +43,18 @@ pub fn key(p: Vec3, low: Vec3, high: Vec3) -> u64 {
         .fold(0, |key, bit| x.iter().fold(key, |key, &coordinate| key << 1 | u64::from((coordinate ^ flip) >> bit & 1)))
 }
 
+/// The points in the order of the Hilbert curve through their box; those of one cell in the order given.
+pub fn order(points: &[Vec3]) -> Vec<u32> {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for p in points {
+        low = std::array::from_fn(|i| low[i].min(p[i]));
+        high = std::array::from_fn(|i| high[i].max(p[i]));
+    }
+    let mut keys: Vec<(u64, u32)> = points.iter().map(|&p| key(p, low, high)).zip(0..).collect();
+    keys.sort_unstable();
+    keys.into_iter().map(|(_, point)| point).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,8 +1,9 @@
 //! Point location in a tetrahedral mesh: a walk from a hint, and a tree of boxes for where the walk cannot go.
-use super::adjacency::{FACES, NONE, neighbours};
+use super::adjacency::{FACES, MatchedFaces, NONE};
 use super::box_tree::BoxTree;
 use super::vector::{Vec3, add, cross, distance, dot, scale, sub, volume6};
-use std::sync::OnceLock;
+use super::{Elements, TetMesh};
+use std::sync::{Arc, OnceLock};
 
 /// A barycentric coordinate down to this counts as inside.
 const INSIDE: f64 = -1e-12;
@@ -23,9 +24,8 @@ pub struct Location {
 
 /// A mesh to search. Shared by threads; a query allocates nothing.
 pub struct Locator {
-    vertices: Vec<Vec3>,
-    tets: Vec<[u32; 4]>,
-    neighbours: Vec<[u32; 4]>,
+    mesh: Arc<TetMesh>,
+    faces: MatchedFaces,
     tree: OnceLock<BoxTree>,
 }
 
@@ -42,26 +42,46 @@ impl Locator {
     /// # Panics
     /// When there is no tetrahedron or an index is out of range.
     pub fn new(vertices: Vec<Vec3>, tets: Vec<[u32; 4]>) -> Self {
-        assert!(!tets.is_empty(), "a mesh without tetrahedra cannot be searched");
-        assert!(tets.iter().flatten().all(|&v| (v as usize) < vertices.len()), "node out of range");
-        let neighbours = neighbours(&tets);
-        Self { vertices, tets, neighbours, tree: OnceLock::new() }
+        let faces = MatchedFaces::of(&tets);
+        let tets = Elements { nodes: tets, refs: Vec::new() };
+        Self::on(Arc::new(TetMesh { vertices, tets, ..TetMesh::default() }), faces)
+    }
+
+    /// On a mesh that others use too, with its [`MatchedFaces`].
+    ///
+    /// # Panics
+    /// When there is no tetrahedron, an index is out of range, or the faces are those of fewer tetrahedra.
+    pub fn on(mesh: Arc<TetMesh>, faces: MatchedFaces) -> Self {
+        assert!(!mesh.tets.is_empty(), "a mesh without tetrahedra cannot be searched");
+        assert_eq!(mesh.tets.len(), faces.neighbours.len(), "one row of neighbours a tetrahedron");
+        assert!(mesh.tets.nodes.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()), "node out of range");
+        Self { mesh, faces, tree: OnceLock::new() }
+    }
+
+    /// What lies across the faces of the tetrahedra.
+    pub fn faces(&self) -> &MatchedFaces {
+        &self.faces
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &TetMesh {
+        &self.mesh
     }
 
     /// The vertices.
     pub fn vertices(&self) -> &[Vec3] {
-        &self.vertices
+        &self.mesh.vertices
     }
 
     /// The tetrahedra.
     pub fn tets(&self) -> &[[u32; 4]] {
-        &self.tets
+        &self.mesh.tets.nodes
     }
 
     /// The tetrahedron that contains p, else the nearest one. `hint` is where the walk starts (any number will do: one
     /// out of range starts with the tree) and becomes the tetrahedron found.
     pub fn locate(&self, p: Vec3, hint: &mut u32) -> Location {
-        let found = if (*hint as usize) < self.tets.len() {
+        let found = if (*hint as usize) < self.tets().len() {
             match self.walk(p, *hint) {
                 Walk::Found(found) => found,
                 Walk::Lost(tet) => self.search(p, self.nearest_in(tet, p)),
@@ -76,7 +96,7 @@ impl Locator {
     /// Corners of a tetrahedron.
     #[inline]
     fn corners(&self, tet: u32) -> [Vec3; 4] {
-        self.tets[tet as usize].map(|v| self.vertices[v as usize])
+        self.mesh.tets.nodes[tet as usize].map(|v| self.mesh.vertices[v as usize])
     }
 
     /// Visibility walk that remembers where it came from: always through the face that p lies farthest behind, in
@@ -95,7 +115,7 @@ impl Locator {
             let mut next = NONE;
             let mut least = 0.0;
             for (face, &volume) in volumes.iter().enumerate() {
-                let beyond = self.neighbours[tet as usize][face];
+                let beyond = self.faces.neighbours[tet as usize][face];
                 if volume < least && beyond != NONE && beyond != previous {
                     (next, least) = (beyond, volume);
                 }
@@ -111,7 +131,7 @@ impl Locator {
     /// The nearest tetrahedron of all, given one that bounds the distance.
     fn search(&self, p: Vec3, bound: Location) -> Location {
         let tree = self.tree.get_or_init(|| {
-            BoxTree::new(self.tets.len(), |tet| {
+            BoxTree::new(self.tets().len(), |tet| {
                 let c = self.corners(tet);
                 let corner = |f: fn(f64, f64) -> f64| -> Vec3 {
                     std::array::from_fn(|i| f(f(c[0][i], c[1][i]), f(c[2][i], c[3][i])))

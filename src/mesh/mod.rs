@@ -5,6 +5,7 @@ mod flaw;
 pub mod hilbert;
 pub mod io;
 pub mod locate;
+mod matched_faces;
 pub mod predicate;
 #[cfg(test)]
 pub(crate) mod samples;

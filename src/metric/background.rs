@@ -1,7 +1,10 @@
 //! The background metric: the input mesh with ln M at its vertices, kept unchanged while the mesh is adapted.
 use super::Sym3;
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::locate::Locator;
 use crate::mesh::vector::Vec3;
+use std::sync::Arc;
 
 /// A mesh with ln M at its vertices. Shared by all threads; every caller keeps its own hint.
 pub struct Background {
@@ -17,6 +20,15 @@ impl Background {
     pub fn new(vertices: Vec<Vec3>, tets: Vec<[u32; 4]>, logs: Vec<Sym3>) -> Self {
         assert_eq!(vertices.len(), logs.len(), "one ln M a vertex");
         Self { locator: Locator::new(vertices, tets), logs }
+    }
+
+    /// On a mesh that others use too, with its [`MatchedFaces`] and ln M at its vertices.
+    ///
+    /// # Panics
+    /// As [`Background::new`].
+    pub fn on(mesh: Arc<TetMesh>, faces: MatchedFaces, logs: Vec<Sym3>) -> Self {
+        assert_eq!(mesh.vertices.len(), logs.len(), "one ln M a vertex");
+        Self { locator: Locator::on(mesh, faces), logs }
     }
 
     /// ln M at p, log-Euclidean in the tetrahedron that contains p, or in the nearest one at the point nearest to p.

@@ -14,18 +14,19 @@ pub struct Field {
 impl Field {
     /// Reads a .sol or .solb file of a mesh of so many vertices. Every tensor must be positive definite.
     pub fn read(path: &Path, vertices: usize) -> Result<Read<Self>, Error> {
-        let Read { content, notices } = io::read_solution(path)?;
-        let tensors = only_tensors(path, &content)?;
-        if content.vertices != vertices {
-            return Err(Error::Count { path: path.into(), found: content.vertices, expected: vertices });
-        }
-        let metrics: Vec<Sym3> =
-            tensors.values.chunks_exact(6).map(|m| Sym3([m[0], m[1], m[2], m[3], m[4], m[5]])).collect();
-        if let Some(vertex) = metrics.iter().position(|m| !m.is_spd()) {
-            let eigenvalues = metrics[vertex].eigen_jacobi().values;
-            return Err(Error::NotPositive { path: path.into(), vertex: vertex + 1, eigenvalues });
-        }
+        let Read { content: metrics, notices } = read_each(path, vertices, |m| m.is_spd().then_some(m))?;
         Ok(Read { content: Self { metrics }, notices })
+    }
+
+    /// Reads ln M at every vertex from a .sol or .solb file of M, as [`Field::read`] checks it: the eigenvalues that tell whether a
+    /// tensor is positive definite give its logarithm.
+    pub fn read_logs(path: &Path, vertices: usize) -> Result<Read<Vec<Sym3>>, Error> {
+        read_each(path, vertices, |m| {
+            let mut eigen = m.eigen_spd();
+            let positive = eigen.values[0] > 0.0;
+            eigen.values = eigen.values.map(f64::ln);
+            positive.then(|| Sym3::from_eigen(&eigen))
+        })
     }
 
     /// Writes .sol or .solb by the extension.
@@ -34,11 +35,24 @@ impl Field {
         let field = SolutionField { kind: FieldKind::SymmetricTensor, values };
         Ok(io::write_solution(path, &Solution { vertices: self.metrics.len(), fields: vec![field] })?)
     }
+}
 
-    /// ln M at every vertex.
-    pub fn logs(&self) -> Vec<Sym3> {
-        self.metrics.iter().map(Sym3::ln).collect()
+/// What `convert` makes of the tensors of a file; none for one that is not positive definite.
+fn read_each(path: &Path, vertices: usize, convert: impl Fn(Sym3) -> Option<Sym3>) -> Result<Read<Vec<Sym3>>, Error> {
+    let Read { content, notices } = io::read_solution(path)?;
+    let tensors = only_tensors(path, &content)?;
+    if content.vertices != vertices {
+        return Err(Error::Count { path: path.into(), found: content.vertices, expected: vertices });
     }
+    let mut converted = Vec::with_capacity(vertices);
+    for (vertex, &m) in tensors.values.as_chunks().0.iter().enumerate() {
+        let Some(tensor) = convert(Sym3(m)) else {
+            let eigenvalues = Sym3(m).eigen_jacobi().values;
+            return Err(Error::NotPositive { path: path.into(), vertex: vertex + 1, eigenvalues });
+        };
+        converted.push(tensor);
+    }
+    Ok(Read { content: converted, notices })
 }
 
 /// The one tensor field of a solution.

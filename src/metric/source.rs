@@ -2,7 +2,7 @@
 use super::field::complexity_between;
 use super::{Analytic, Background, Sym3};
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::EDGES;
+use crate::mesh::adjacency::{EDGES, MatchedFaces};
 use crate::mesh::vector::{Vec3, add, distance, lerp, scale, volume6};
 
 /// Samples of an analytic field when its complexity is measured, about.
@@ -29,6 +29,21 @@ impl Source {
             Self::Analytic { field, log_scale } => field.log_at(p).plus_identity(*log_scale),
             Self::Background(background) => background.log_at(p, hint),
         }
+    }
+
+    /// ln M at the vertices of a mesh, when it is the very mesh of the background.
+    pub fn logs_on(&self, mesh: &TetMesh) -> Option<&[Sym3]> {
+        self.background_on(mesh).map(Background::logs)
+    }
+
+    /// The matched faces of a mesh, when it is the very mesh of the background.
+    pub fn faces_of(&self, mesh: &TetMesh) -> Option<&MatchedFaces> {
+        self.background_on(mesh).map(|background| background.locator().faces())
+    }
+
+    fn background_on(&self, mesh: &TetMesh) -> Option<&Background> {
+        let Self::Background(background) = self else { return None };
+        std::ptr::eq(background.locator().mesh(), mesh).then_some(background)
     }
 
     /// Complexity ∫ √det M of the field on a mesh, for the background the mesh it came with. An analytic field is integrated by the

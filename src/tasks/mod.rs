@@ -1,4 +1,6 @@
-//! The tasking front-end. Knows no mesh.
+//! Threads and the trace of a run; knows nothing of meshes.
 mod pool;
+mod stage;
 
-pub use pool::Pool;
+pub use pool::{Error, Pool};
+pub use stage::stage;

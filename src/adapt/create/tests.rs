@@ -3,7 +3,8 @@ use super::super::access::Exclusive;
 use super::super::pipeline::{Kind, Observer};
 use super::super::schedule::{self, Create};
 use super::super::worker::State;
-use super::super::{Counts, Options, adapt, build};
+use super::super::build::{self, Filled};
+use super::super::{Counts, Options, adapt, extract};
 use super::*;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
@@ -93,7 +94,7 @@ fn refine_inner_tet(longest: f64) -> Result<(), Refusal> {
     let n = 4;
     let size = 3.0_f64.sqrt() / f64::from(n) / longest;
     let (mesh, place, model, source) = cube(n, [size; 3]);
-    let (store, _) = build::fill(&mesh, &place, &source).expect("the cube is valid");
+    let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
     let context = Context::new(store, &source, &model);
     let store = &context.store;
     store.tick();
@@ -115,7 +116,7 @@ fn a_candidate_nearer_to_a_vertex_than_an_edge_may_be_short_is_dropped() {
 fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh() {
     for threads in [1, 3] {
         let (mesh, place, model, source) = cube(2, [0.15; 3]);
-        let (store, _) = build::fill(&mesh, &place, &source).expect("the cube is valid");
+        let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
         let context = Context::new(store, &source, &model);
         let pool = Pool::new(threads).expect("a pool");
         let mut states: Vec<_> = (0..threads).map(|_| State::new(&context)).collect();
@@ -132,8 +133,8 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let topology = model.topology();
         let edges = vec![1; topology.edges.len()];
         let faces = vec![1; topology.faces.len()];
-        let refs = build::References { inward: vec![false; faces.len()], faces, edges };
-        let extracted = build::extract(&context, &mesh, &refs);
+        let refs = extract::References { inward: vec![false; faces.len()], faces, edges };
+        let extracted = extract::extract(&context, &mesh, &refs);
         assert_valid_cube(&extracted.mesh);
     }
 }

@@ -1,79 +1,120 @@
-//! Renumbering along a space-filling curve: what is near in space comes near in memory, and dead records go.
-use super::{CornerRidge, Store};
+//! Renumbering along a space-filling curve: what is near in space comes near in memory, and dead records go. All in place.
+use super::Store;
 use crate::adapt::ids::{TetId, VertexId};
+use crate::adapt::numbering::{by_first, permute};
 use crate::geometry::Entity;
 use crate::mesh::hilbert;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use crate::mesh::vector::Vec3;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 impl Store {
-    /// The same mesh with its ids in the order of the Hilbert curve, and for each old vertex id the new one (`NONE` for
-    /// dead ones). Blocks of ids that were taken from this store mean nothing in the new one.
-    pub fn reordered(&self) -> (Store, Vec<VertexId>) {
-        let order = self.vertices_along_curve();
+    /// Numbers the mesh along the Hilbert curve; returns for each old vertex id the new one (`NONE` for dead ones). Blocks of ids
+    /// that were taken before mean nothing any more. Between sweeps only.
+    pub fn reorder(&mut self) -> Vec<VertexId> {
+        let mut number = self.compact_vertices();
+        let mut tet_number = self.compact_tets();
+        let (order, place) = self.vertices_along_curve();
+        number.iter_mut().filter(|v| v.is_some()).for_each(|v| *v = place[v.index()]);
+        drop(place);
+        // Only now, when the vertices have their numbers, the order of the tetrahedra is known.
+        let first = |t: usize| self.vertices(TetId(t as u32)).map(|v| number[v.index()].0).into_iter().min();
+        let (tets, place) = by_first(self.tet_bound(), order.len(), |t| first(t).unwrap_or(0));
+        tet_number.iter_mut().filter(|t| t.is_some()).for_each(|t| *t = place[t.index()]);
+        drop(place);
+        permute(order, |i, j| {
+            self.vertices.swap(i, j);
+            self.places.swap(i, j);
+        });
+        permute(tets, |i, j| self.tets.swap(i, j));
+        self.renumber_vertices(&number);
+        self.renumber_tets(&number, &tet_number);
+        self.shrink();
+        number
+    }
+
+    /// Moves the live vertices to the front, in their order; returns for each old id the new one.
+    fn compact_vertices(&mut self) -> Vec<VertexId> {
         let mut number = vec![VertexId::NONE; self.vertex_bound()];
-        order.iter().enumerate().for_each(|(new, old)| number[old.index()] = VertexId(new as u32));
-        let first = |t: TetId| self.vertices(t).map(|v| number[v.index()]).into_iter().min();
-        let mut tets: Vec<TetId> = self.live_tets().collect();
-        tets.sort_by_cached_key(|&t| first(t));
-        let mut tet_number = vec![TetId::NONE; self.tet_bound()];
-        tets.iter().enumerate().for_each(|(new, old)| tet_number[old.index()] = TetId(new as u32));
-
-        let mut store = Store::with_capacity(self.vertices.len(), self.tets.len());
-        store.take_vertices(order.len()).expect("the new store is as large");
-        store.take_tets(tets.len()).expect("the new store is as large");
-        store.clock.store(self.clock(), Relaxed);
-        for (new, &old) in order.iter().enumerate() {
-            self.copy_vertex(old, &store, VertexId(new as u32), &number);
-        }
-        for (new, &old) in tets.iter().enumerate() {
-            self.copy_tet(old, &store, TetId(new as u32), &number, &tet_number);
-        }
-        let renumbered = |ridge: &CornerRidge| CornerRidge {
-            other: AtomicU32::new(number[ridge.other.load(Relaxed) as usize].0),
-            curve: ridge.curve,
-        };
-        store.corners = self.corners.iter().map(|ridges| ridges.iter().map(renumbered).collect()).collect();
-        (store, number)
-    }
-
-    fn vertices_along_curve(&self) -> Vec<VertexId> {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for v in self.live_vertices() {
-            let p = self.position(v);
-            low = std::array::from_fn(|i| low[i].min(p[i]));
-            high = std::array::from_fn(|i| high[i].max(p[i]));
-        }
-        let mut order: Vec<VertexId> = self.live_vertices().collect();
-        order.sort_by_cached_key(|&v| hilbert::key(self.position(v), low, high));
-        order
-    }
-
-    fn copy_vertex(&self, old: VertexId, to: &Store, new: VertexId, number: &[VertexId]) {
-        to.set_position(new, self.position(old));
-        to.set_metric(new, &self.log(old), &self.metric(old));
-        to.set_place(new, self.entity(old), self.parameters(old));
-        to.set_hint(new, self.hint(old));
-        match self.entity(old) {
-            Entity::Edge(_) => {
-                let renumber = |v: VertexId| if v.is_some() { number[v.index()] } else { v };
-                to.set_ridge(new, self.ridge(old).map(renumber));
+        let mut live = 0;
+        for v in 0..number.len() {
+            if self.is_vertex(VertexId(v as u32)) {
+                number[v] = VertexId(live as u32);
+                if v != live {
+                    self.vertices.swap(v, live);
+                    self.places.swap(v, live);
+                }
+                live += 1;
             }
-            // The place of a corner's list.
-            _ => to.places[new.index()].ridge[0].store(self.places[old.index()].ridge[0].load(Relaxed), Relaxed),
+        }
+        self.next_vertex = AtomicUsize::new(live);
+        number
+    }
+
+    /// As [`Store::compact_vertices`], for tetrahedra.
+    fn compact_tets(&mut self) -> Vec<TetId> {
+        let mut number = vec![TetId::NONE; self.tet_bound()];
+        let mut live = 0;
+        for t in 0..number.len() {
+            if self.is_tet(TetId(t as u32)) {
+                number[t] = TetId(live as u32);
+                if t != live {
+                    self.tets.swap(t, live);
+                }
+                live += 1;
+            }
+        }
+        self.next_tet = AtomicUsize::new(live);
+        number
+    }
+
+    /// The order of the vertices along the curve, and the place of each in it.
+    fn vertices_along_curve(&self) -> (Vec<u32>, Vec<VertexId>) {
+        let points: Vec<Vec3> = self.live_vertices().map(|v| self.position(v)).collect();
+        let order = hilbert::order(&points);
+        let mut place = vec![VertexId::NONE; order.len()];
+        order.iter().zip(0..).for_each(|(&old, new)| place[old as usize] = VertexId(new));
+        (order, place)
+    }
+
+    /// Renumbers the ridges.
+    fn renumber_vertices(&mut self, number: &[VertexId]) {
+        let renumber = |v: VertexId| if v.is_some() { number[v.index()] } else { v };
+        for v in self.live_vertices().filter(|&v| matches!(self.entity(v), Entity::Edge(_))) {
+            self.set_ridge(v, self.ridge(v).map(renumber));
+        }
+        for ridge in self.corners.iter().flatten() {
+            ridge.other.store(number[ridge.other.load(Relaxed) as usize].0, Relaxed);
         }
     }
 
-    fn copy_tet(&self, old: TetId, to: &Store, new: TetId, number: &[VertexId], tet_number: &[TetId]) {
-        let vertices = self.vertices(old).map(|v| number[v.index()]);
-        to.write_tet(new, vertices, self.region(old), self.quality(old));
-        to.tets[new.index()].stamp.store(self.stamp(old), Relaxed);
-        to.tets[new.index()].moved.store(self.moved(old), Relaxed);
-        let (neighbours, tags) = (self.neighbours(old), self.tags(old));
-        for i in 0..4 {
-            let n = neighbours[i];
-            to.set_neighbour(new, i, if n.is_some() { tet_number[n.index()] } else { n });
-            to.set_tag(new, i, tags[i]);
+    /// Renumbers vertices and neighbours of the tetrahedra, and the tetrahedra of the vertices.
+    fn renumber_tets(&self, number: &[VertexId], tet_number: &[TetId]) {
+        for t in self.live_tets() {
+            let record = &self.tets[t.index()];
+            let vertices = self.vertices(t).map(|v| number[v.index()]);
+            for i in 0..4 {
+                record.vertices[i].store(vertices[i].0, Relaxed);
+                let n = record.neighbours[i].load(Relaxed);
+                if n != TetId::NONE.0 {
+                    record.neighbours[i].store(tet_number[n as usize].0, Relaxed);
+                }
+            }
+            vertices.iter().for_each(|&v| self.set_tet_of(v, t));
         }
-        vertices.iter().for_each(|&v| to.set_tet_of(v, new));
+    }
+
+    /// Gives memory back when most of it lies idle.
+    fn shrink(&mut self) {
+        let (vertices, tets) = (2 * self.vertex_bound(), 2 * self.tet_bound());
+        if 2 * vertices < self.vertices.len() {
+            self.vertices.truncate(vertices);
+            self.vertices.shrink_to_fit();
+            self.places.truncate(vertices);
+            self.places.shrink_to_fit();
+        }
+        if 2 * tets < self.tets.len() {
+            self.tets.truncate(tets);
+            self.tets.shrink_to_fit();
+        }
     }
 }

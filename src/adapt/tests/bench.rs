@@ -1,5 +1,5 @@
 //! What the kernel's tests work on: small meshes with a model and a metric, and sweeps over all of their items in random order.
-use crate::adapt::build;
+use crate::adapt::build::{self, Filled};
 use crate::adapt::check::check;
 use crate::adapt::context::{Context, Limits};
 use crate::adapt::criteria::Criterion;
@@ -133,7 +133,7 @@ impl<'m> Bench<'m> {
     /// A bench with so many threads. Limits are lax, so that much is done: edges of any length are split and collapsed, and bad
     /// elements come of it.
     pub fn new(sample: &'m Sample, threads: usize, seed: u64) -> Self {
-        let (store, waiting) = build::fill(&sample.mesh, &sample.place, &sample.source).unwrap();
+        let Filled { store, waiting, .. } = build::fill(&sample.mesh, &sample.place, &sample.source).unwrap();
         assert!(waiting.is_empty(), "the samples lie on their models");
         let mut context = Context::new(store, &sample.source, &sample.model);
         context.limits = Limits { insert_floor: 0.02, collapse_floor: 0.02, ..Limits::default() };
@@ -246,6 +246,6 @@ impl<'m> Bench<'m> {
                 store.set_position(v, from);
             }
         }
-        build::measure(store, self.context.source);
+        build::measure(store);
     }
 }

@@ -6,14 +6,16 @@ mod report;
 use super::{Outcome, load};
 use crate::adapt::{self, Criterion, Options, PointCreation};
 use crate::geometry::classify::{self, Classification};
-use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
+use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
 use crate::geometry::{Discrete, Model};
+use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, io};
 use crate::metric::{Analytic, Background, Field, Source, field};
-use crate::tasks::Pool;
+use crate::tasks::{Pool, stage};
 use progress::Progress;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Exit code after an interrupt: 128 + SIGINT, as shells have it. The last valid mesh is written all the same.
@@ -75,15 +77,22 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     files::check(arguments)?;
     let stop = progress::stop_on_interrupt();
+    stage("start");
     let mut read = io::read_mesh(&arguments.mesh)?;
-    let added = complete_boundary(&mut read.content);
+    stage("mesh read");
+    let faces = MatchedFaces::of(&read.content.tets.nodes);
+    let added = complete_matched(&mut read.content, &faces);
+    stage("boundary complete");
     if added > 0 {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
     }
-    let mesh = read.content;
-    let mut source = source(arguments, &mesh, &mut read.notices)?;
+    let mesh = Arc::new(read.content);
+    let mut source = source(arguments, &mesh, faces, &mut read.notices)?;
+    stage("metric ready");
     let (model, place) = place(arguments, &mesh, &mut read.notices)?;
+    stage("classified");
     scale(arguments, &mesh, &mut source)?;
+    stage("complexity");
     let progress = Progress::new(!arguments.quiet, stop);
     for notice in read.notices.iter().filter(|_| !arguments.quiet) {
         eprintln!("geo-adapt: note: {notice}");
@@ -97,7 +106,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     progress.finish();
     let finished = start.elapsed();
     let report = report::Report::new(arguments, &mesh, &model, adapted, threads);
+    stage("report");
     let report = files::write(arguments, report, [prepared, finished, start.elapsed()])?;
+    stage("written");
     if !arguments.quiet {
         super::print(&report.text(arguments));
     }
@@ -111,20 +122,20 @@ fn available() -> usize {
 /// The metric's source: the analytic field, or the input mesh with the file's metric as background.
 fn source(
     arguments: &Arguments,
-    mesh: &TetMesh,
+    mesh: &Arc<TetMesh>,
+    faces: MatchedFaces,
     notices: &mut Vec<String>,
 ) -> Result<Source, Box<dyn std::error::Error>> {
     if let Some(field) = arguments.field.analytic {
         return Ok(Source::Analytic { field, log_scale: 0.0 });
     }
     let path = arguments.field.metric.as_ref().ok_or("neither --metric nor --analytic")?;
-    let read = Field::read(path, mesh.vertices.len())?;
+    let read = Field::read_logs(path, mesh.vertices.len())?;
     notices.extend(read.notices);
     if mesh.tets.is_empty() {
         return Err(format!("{}: {}", arguments.mesh.display(), adapt::Error::Empty).into());
     }
-    let logs = read.content.logs();
-    Ok(Source::Background(Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs)))
+    Ok(Source::Background(Background::on(Arc::clone(mesh), faces, read.content)))
 }
 
 /// Scales the source to the complexity that is asked for, and refuses one that no mesh can have.

@@ -1,36 +1,25 @@
 //! The boundary of a tetrahedral mesh: its outward side, and triangles that the file left out.
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::FACES;
+use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, TriangleIndex, sorted3};
 use crate::mesh::vector::volume6;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashSet};
 
 /// Nodes of the mesh's triangles, turned so that the right-hand normal leaves the tetrahedra; between two regions
 /// it leaves the one with the smaller reference. A triangle without a tetrahedron, or inside one region, stays as it is.
 pub fn outward_triangles(mesh: &TetMesh) -> Vec<[u32; 3]> {
     let mut triangles = mesh.triangles.nodes.clone();
-    let mut on_surface = vec![false; mesh.vertices.len()];
-    let mut index = HashMap::with_capacity(triangles.len());
-    for (t, nodes) in triangles.iter().enumerate() {
-        nodes.iter().for_each(|&v| on_surface[v as usize] = true);
-        index.insert(sorted(*nodes), t);
-    }
     // Per triangle the least region beside it with that tetrahedron's fourth vertex, and whether all regions agree.
     let mut inner: Vec<Option<(i32, u32, u8)>> = vec![None; triangles.len()];
-    for (tet, region) in mesh.tets.iter() {
-        for k in 0..4 {
-            let face = FACES[k].map(|i| tet[i]);
-            if !face.iter().all(|&v| on_surface[v as usize]) {
-                continue;
-            }
-            let Some(&t) = index.get(&sorted(face)) else { continue };
-            inner[t] = Some(match inner[t] {
-                None => (region, tet[k], 1),
-                Some((other, apex, _)) if other < region => (other, apex, 1),
-                Some((other, ..)) if region < other => (region, tet[k], 1),
-                Some((other, apex, _)) => (other, apex, 2),
-            });
-        }
-    }
+    TriangleIndex::new(&triangles, mesh.vertices.len()).for_each_side(&mesh.tets.nodes, |triangle, tet, k| {
+        let (apex, region) = (mesh.tets.nodes[tet as usize][k], mesh.tets.refs[tet as usize]);
+        let inner = &mut inner[triangle as usize];
+        *inner = Some(match *inner {
+            None => (region, apex, 1),
+            Some((other, apex, _)) if other < region => (other, apex, 1),
+            Some((other, ..)) if region < other => (region, apex, 1),
+            Some((other, apex, _)) => (other, apex, 2),
+        });
+    });
     for (nodes, inner) in triangles.iter_mut().zip(inner) {
         let Some((_, apex, 1)) = inner else { continue };
         let [a, b, c, d] = [nodes[0], nodes[1], nodes[2], apex].map(|v| mesh.vertices[v as usize]);
@@ -41,22 +30,24 @@ pub fn outward_triangles(mesh: &TetMesh) -> Vec<[u32; 3]> {
     triangles
 }
 
-fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
-    nodes.sort_unstable();
-    nodes
-}
-
 /// Adds the triangles that the mesh lacks on the boundary of its tetrahedra and between its regions, normals outward (of
 /// the smaller region). New ones take references that the mesh does not use: one for the boundary of each region,
 /// one for each pair of regions. Returns how many were added.
 pub fn complete_boundary(mesh: &mut TetMesh) -> usize {
-    let known: std::collections::HashSet<[u32; 3]> = mesh.triangles.nodes.iter().map(|n| sorted(*n)).collect();
+    let faces = MatchedFaces::of(&mesh.tets.nodes);
+    complete_matched(mesh, &faces)
+}
+
+/// [`complete_boundary`] of a mesh whose faces have been matched.
+pub fn complete_matched(mesh: &mut TetMesh, faces: &MatchedFaces) -> usize {
+    let known: HashSet<[u32; 3]> = mesh.triangles.nodes.iter().map(|n| sorted3(*n)).collect();
     let mut missing: Vec<([u32; 3], [i32; 2])> = Vec::new();
-    for_each_pair(mesh, |face, regions| {
-        if regions[0] != regions[1] && !known.contains(&sorted(face)) {
+    for_each_interface(mesh, faces, |face, regions| {
+        if !known.contains(&sorted3(face)) {
             missing.push((face, regions));
         }
     });
+    missing.sort_unstable_by_key(|(face, _)| sorted3(*face));
     let mut fresh = BTreeMap::new();
     for (_, regions) in &missing {
         fresh.insert(*regions, 0);
@@ -74,34 +65,15 @@ pub fn complete_boundary(mesh: &mut TetMesh) -> usize {
 /// Marks the side of a face without a tetrahedron.
 const OUTSIDE: i32 = i32::MAX;
 
-/// Calls f with each face of the tetrahedra, once, and the regions of its two sides, the smaller first; the face's
+/// Calls f with each face on the boundary or between regions, once, and the regions of its two sides, the smaller first; the face's
 /// normal leaves that one.
-fn for_each_pair(mesh: &TetMesh, mut f: impl FnMut([u32; 3], [i32; 2])) {
-    let least = |tet: [u32; 4], k: usize| FACES[k].map(|i| tet[i]).into_iter().min().unwrap_or(0);
-    let mut starts = vec![0u32; mesh.vertices.len() + 1];
-    for &tet in &mesh.tets.nodes {
-        (0..4).for_each(|k| starts[least(tet, k) as usize + 1] += 1);
-    }
-    for v in 1..starts.len() {
-        starts[v] += starts[v - 1];
-    }
-    let mut next = starts.clone();
-    let mut sides = vec![(0u32, 0u32, 0u32); 4 * mesh.tets.len()];
-    for (i, &tet) in mesh.tets.nodes.iter().enumerate() {
-        for k in 0..4 {
-            let [a, b, c] = sorted(FACES[k].map(|i| tet[i]));
-            sides[next[a as usize] as usize] = (b, c, (4 * i + k) as u32);
-            next[a as usize] += 1;
-        }
-    }
-    for v in 0..mesh.vertices.len() {
-        let bucket = &mut sides[starts[v] as usize..starts[v + 1] as usize];
-        bucket.sort_unstable();
-        for pair in bucket.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1)) {
-            let region = |i: usize| pair.get(i).map_or(OUTSIDE, |side| mesh.tets.refs[side.2 as usize / 4]);
-            let (first, second) = (region(0), region(1));
-            let side = if first <= second { pair[0].2 } else { pair[1].2 };
-            f(outward_face(mesh, side), [first.min(second), first.max(second)]);
+fn for_each_interface(mesh: &TetMesh, faces: &MatchedFaces, mut f: impl FnMut([u32; 3], [i32; 2])) {
+    for (t, (&neighbours, &region)) in faces.neighbours.iter().zip(&mesh.tets.refs).enumerate() {
+        for (k, &n) in neighbours.iter().enumerate() {
+            let beyond = if n == NONE { OUTSIDE } else { mesh.tets.refs[n as usize] };
+            if region < beyond {
+                f(outward_face(mesh, (4 * t + k) as u32), [region, beyond]);
+            }
         }
     }
 }

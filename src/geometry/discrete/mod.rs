@@ -14,7 +14,7 @@ pub(crate) mod samples;
 mod tests;
 mod tree;
 
-pub use boundary::{complete_boundary, outward_triangles};
+pub use boundary::{complete_boundary, complete_matched, outward_triangles};
 pub use build::{DEFAULT_RIDGE_ANGLE, Discrete};
 pub use evaluate::DiscreteEvaluator;
 

@@ -1,0 +1,172 @@
+//! Which tetrahedra share a face.
+use super::adjacency::{FACES, NONE, sorted3};
+
+/// A face of more than two tetrahedra.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crowd {
+    /// Its nodes, ascending.
+    pub nodes: [u32; 3],
+    /// How many tetrahedra share it.
+    pub tets: usize,
+}
+
+/// What lies across each face of each tetrahedron.
+#[derive(Clone, Debug)]
+pub struct MatchedFaces {
+    /// The neighbour across each face, shape (n, 4); [`NONE`] on the boundary. Of a face of more than two tetrahedra the
+    /// first two are neighbours.
+    pub neighbours: Vec<[u32; 4]>,
+    /// The face of more than two tetrahedra that comes first in the order of the nodes, if there is one.
+    pub crowded: Option<Crowd>,
+}
+
+impl MatchedFaces {
+    /// Of tetrahedra, fewer than 2³⁰. Faces are gathered at their least node and matched there in a small table: time and memory
+    /// (16 bytes a tetrahedron beside the result) grow with the number of tetrahedra only, and little memory is
+    /// walked at random where the numbers of near nodes are near.
+    pub fn of(tets: &[[u32; 4]]) -> Self {
+        let (starts, sides) = sides_by_least_node(tets);
+        let mut matched = Self { neighbours: vec![[NONE; 4]; tets.len()], crowded: None };
+        let mut table = Table::default();
+        for (v, bounds) in starts.windows(2).enumerate() {
+            matched.match_at(v as u32, &sides[bounds[0] as usize..bounds[1] as usize], tets, &mut table);
+        }
+        matched
+    }
+
+    /// Matches the faces whose least node is v.
+    fn match_at(&mut self, v: u32, sides: &[u32], tets: &[[u32; 4]], table: &mut Table) {
+        table.clear(sides.len());
+        for &side in sides {
+            let (tet, face) = (side / 4, side as usize % 4);
+            let nodes = tets[tet as usize];
+            let [_, b, c] = sorted3(FACES[face].map(|i| nodes[i]));
+            let slot = table.slot([b, c]);
+            slot.count += 1;
+            match slot.count {
+                1 => (slot.key, slot.side) = ([b, c], side),
+                2 => {
+                    let (other, across) = (slot.side / 4, slot.side as usize % 4);
+                    self.neighbours[tet as usize][face] = other;
+                    self.neighbours[other as usize][across] = tet;
+                }
+                tets => {
+                    let crowd = Crowd { nodes: [v, b, c], tets: tets as usize };
+                    if self.crowded.is_none_or(|known| crowd.nodes <= known.nodes) {
+                        self.crowded = Some(crowd);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The sides 4·tet + face in the order of the least node of the face, and where those of each node begin.
+fn sides_by_least_node(tets: &[[u32; 4]]) -> (Vec<u32>, Vec<u32>) {
+    // Three faces have the least node of the tetrahedron, and the one opposite to it has the second least.
+    let least = |nodes: &[u32; 4]| {
+        let at = (1..4).fold(0, |least, i| if nodes[i] < nodes[least] { i } else { least });
+        let second = (0..4).filter(|&i| i != at).map(|i| nodes[i]).min().unwrap_or(nodes[at]);
+        (at, nodes[at], second)
+    };
+    let vertices = tets.iter().flatten().max().map_or(0, |&greatest| greatest as usize + 1);
+    // Counted two places on: while the sides are dealt out, each start moves to the next one's place.
+    let mut starts = vec![0u32; vertices + 2];
+    for nodes in tets {
+        let (_, first, second) = least(nodes);
+        starts[first as usize + 2] += 3;
+        starts[second as usize + 2] += 1;
+    }
+    for v in 2..starts.len() {
+        starts[v] += starts[v - 1];
+    }
+    let mut sides = vec![0u32; 4 * tets.len()];
+    for (t, nodes) in tets.iter().enumerate() {
+        let (at, first, second) = least(nodes);
+        for face in 0..4 {
+            let start = &mut starts[if face == at { second } else { first } as usize + 1];
+            sides[*start as usize] = (4 * t + face) as u32;
+            *start += 1;
+        }
+    }
+    starts.pop();
+    (starts, sides)
+}
+
+/// A face at its least node.
+#[derive(Clone, Copy)]
+struct Slot {
+    /// The other two nodes, ascending.
+    key: [u32; 2],
+    /// The first side with them.
+    side: u32,
+    /// How many sides have them; 0 in a free slot.
+    count: u32,
+}
+
+const FREE: Slot = Slot { key: [0; 2], side: 0, count: 0 };
+
+/// Faces by their nodes, with open addressing; it lives in the first cache.
+#[derive(Default)]
+struct Table {
+    slots: Vec<Slot>,
+    mask: usize,
+}
+
+impl Table {
+    /// Makes room for so many faces, and forgets those of before.
+    fn clear(&mut self, faces: usize) {
+        let size = (2 * faces).next_power_of_two();
+        self.mask = size - 1;
+        self.slots.clear();
+        self.slots.resize(size, FREE);
+    }
+
+    /// The slot of a face, or the free one for it.
+    #[inline]
+    fn slot(&mut self, key: [u32; 2]) -> &mut Slot {
+        // Fibonacci hashing: the upper bits of the product are well mixed.
+        let word = (u64::from(key[1]) << 32 | u64::from(key[0])).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mut at = (word >> 40) as usize & self.mask;
+        while self.slots[at].count != 0 && self.slots[at].key != key {
+            at = (at + 1) & self.mask;
+        }
+        &mut self.slots[at]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::adjacency::{neighbours, sorted_faces};
+    use super::super::samples::cube;
+    use super::*;
+
+    #[test]
+    fn matched_as_by_sorting() {
+        let mut tets = cube(4).tets.nodes;
+        // Some more that share faces with those that are there, and one that comes twice.
+        for t in [7, 100, 250] {
+            let [a, b, c, _] = tets[t];
+            tets.push([b, a, c, 3]);
+        }
+        tets.push(tets[31]);
+        let mut expected = vec![[NONE; 4]; tets.len()];
+        let mut crowds = Vec::new();
+        let keys = sorted_faces(&tets);
+        for same in keys.chunk_by(|a, b| a.nodes == b.nodes) {
+            if let [a, b, ..] = same {
+                expected[a.side as usize / 4][a.side as usize % 4] = b.side / 4;
+                expected[b.side as usize / 4][b.side as usize % 4] = a.side / 4;
+            }
+            if same.len() > 2 {
+                crowds.push(Crowd { nodes: same[0].nodes, tets: same.len() });
+            }
+        }
+        let found = MatchedFaces::of(&tets);
+        assert_eq!(found.neighbours, expected);
+        assert!(crowds.len() > 3);
+        assert_eq!(found.crowded, Some(crowds[0]));
+        assert_eq!(MatchedFaces::of(&cube(2).tets.nodes).crowded, None);
+        assert!(neighbours(&[]).is_empty());
+    }
+}
