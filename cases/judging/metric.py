@@ -4,11 +4,13 @@ import numpy as np
 
 H0 = 0.001
 UNIT = (np.sqrt(0.5), np.sqrt(2.0))
-FIELDS = ("linear", "polar-1", "polar-2")
+FIELDS = ("linear", "polar-1", "polar-2", "front")
 
 
 def analytic(name, points):
-    """The UGAWG fields on the cube-cylinder at `points`, shape (n, 3); returns (n, 3, 3)."""
+    """A field at `points`, shape (n, 3); returns (n, 3, 3). `front` is ours, the others are UGAWG's on the cube-cylinder."""
+    if name == "front":
+        return front(points)
     x, y, z = points.T
     if name == "linear":
         sizes = np.stack([np.full_like(x, 0.1), np.full_like(x, 0.1), H0 + 2 * (0.1 - H0) * np.abs(z - 0.5)], 1)
@@ -23,6 +25,19 @@ def analytic(name, points):
     sizes = np.stack([along_r, around, np.full_like(r, 0.1)], 1)
     turned = np.einsum("nki,nk,nkj->nij", frame, sizes**-2, frame)
     return (turned + turned.transpose(0, 2, 1)) / 2  # rounding leaves the halves apart
+
+
+def front(points, thickness=0.01):
+    """A spherical front of radius 0.5 about the corner at the origin of the unit cube; returns (n, 3, 3).
+
+    Like UGAWG's layers: along the radius h = h0 + 2(0.1 − h0)|r − 0.5| with h0 the thickness, across it 0.1. That suits
+    the curvature: an edge of length t on the sphere of radius r departs from it by t²/8r, at the front h0/4, and nowhere by more than h
+    (towards the corner h and 0.1 become the same, so that the field has no singularity there).
+    """
+    r = np.linalg.norm(points, axis=1)
+    along = thickness + 2 * (0.1 - thickness) * np.abs(r - 0.5)
+    normal = points / np.maximum(r, 1e-300)[:, None]
+    return 100 * np.eye(3) + (along**-2 - 100)[:, None, None] * np.einsum("ni,nj->nij", normal, normal)
 
 
 def logarithm(matrices):
@@ -48,7 +63,9 @@ def volumes(points, tets):
 def complexity(points, tets, metric):
     """C = Σ_v √det(M_v)·V_v, V_v a quarter of the volume of the tets at v."""
     share = np.zeros(len(points))
-    np.add.at(share, tets, (volumes(points, tets) / 4)[:, None])
+    quarter = volumes(points, tets) / 4
+    for corner in tets.T:
+        share += np.bincount(corner, weights=quarter, minlength=len(points))
     return float((np.sqrt(np.linalg.det(metric)) * share).sum())
 
 
