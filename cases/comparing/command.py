@@ -21,7 +21,7 @@ from judging import cycles  # noqa: E402
 
 def arguments():
     listing = "\n".join(f"  {case.name:<12} {case.summary}" for case in CASES.values())
-    parser = argparse.ArgumentParser(prog="cases/compare", description=__doc__, epilog=f"cases:\n{listing}",
+    parser = argparse.ArgumentParser(prog="cases/compare", allow_abbrev=False, description=__doc__, epilog=f"cases:\n{listing}",
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all")
     parser.add_argument("--cycles", type=int, help="instead of the case's own; floors and targets are not held then")
