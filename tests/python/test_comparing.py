@@ -1,5 +1,7 @@
 """The comparison measures what it says: inputs, processes, keys of rows, floors and targets."""
 
+import contextlib
+import io
 import sys
 import tempfile
 import unittest
@@ -9,7 +11,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "cases"))
-from comparing import cases, expected, published, runs, table  # noqa: E402
+from comparing import cases, command, expected, published, runs, table  # noqa: E402
 from comparing.uniform import uniform_cube  # noqa: E402
 from judging import cube, cycles, meshfile, metric, validity  # noqa: E402
 
@@ -107,6 +109,18 @@ class Expectations(unittest.TestCase):
         self.assertEqual(set(expected.EXPECTED), set(cases.CASES))
         for bound in sum(expected.EXPECTED.values(), []):
             self.assertTrue(bound.floor is None or not bound.met(bound.floor, bound.target) or bound.floor == bound.target, bound)
+
+    def test_a_lost_floor_and_a_bad_mesh_are_both_lost_and_a_missed_target_is_not(self):
+        good = {"unit_edges": 1.0, "ratio_least": 0.9, "ratio_mean": 0.95}
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            self.assertEqual(command.hold({"cube-linear": good}, {}, held=True), [])
+            lost = command.hold({"cube-linear": good | {"unit_edges": 0.5}}, {"cube-linear": ["1 tetrahedra are inverted"]}, held=True)
+            shorter = command.hold({"cube-linear": good | {"unit_edges": 0.5}}, {}, held=False)
+        self.assertEqual(len(lost), 2)
+        self.assertIn("unit_edges 0.5", lost[0])
+        self.assertIn("inverted", lost[1])
+        self.assertEqual(shorter, [])
+        self.assertIn("LOST", printed.getvalue())
 
     def test_published_figures_belong_to_cases_and_are_marked(self):
         self.assertLessEqual({row.case for row in published.PUBLISHED}, set(cases.CASES))
