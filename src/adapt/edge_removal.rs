@@ -91,8 +91,7 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Refuses when the two claimed vertices are joined by an edge already.
     fn refuse_joined(&mut self, x: VertexId, y: VertexId) -> Result<(), Refusal> {
-        self.collect_ball(x);
-        let joined = self.state.ball.iter().any(|&t| self.store.vertices(t).contains(&y));
+        let joined = self.with_passing_ball(x, |ball| ball.link.contains(&y));
         if joined { Err(Refusal::Topology) } else { Ok(()) }
     }
 

@@ -1,6 +1,7 @@
 //! The kernel: the mesh store, its operations, and the passes that make a unit mesh.
 mod access;
 mod build;
+mod ball;
 mod cavity;
 #[cfg(test)]
 mod check;

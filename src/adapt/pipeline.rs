@@ -6,6 +6,7 @@ use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
 use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
+use super::shape::{is_longer, is_shorter};
 use super::store::Store;
 use super::worker::State;
 use crate::mesh::vector::sub;
@@ -377,47 +378,56 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         counts
     }
 
-    /// Edges whose length passes the test, each once, with their length; only those with an end where something changed.
-    fn edges(&self, since: u32, wanted: impl Fn(f64) -> bool) -> Vec<(EdgeItem, f64)> {
+    /// Edges that pass the test of their squared lengths in the metrics of both ends, each once, with their class; only those
+    /// with an end where something changed. Sorted by `order` of the class, then by place in memory: that is place in space.
+    fn edges<K: Ord + Copy>(
+        &self,
+        since: u32,
+        wanted: impl Fn(f64, f64) -> bool,
+        order: impl Fn(&Store, VertexId, VertexId, u16) -> K,
+    ) -> Vec<EdgeItem> {
         let store = &self.context.store;
         let changed = self.changed(since, Store::stamp);
         let mut found = Vec::new();
         for t in store.live_tets() {
             let v = store.vertices(t);
-            if !v.iter().any(|x| changed[x.index()]) {
+            let new = v.map(|x| changed[x.index()]);
+            if new == [false; 4] {
                 continue;
             }
             let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
             for [i, j] in EDGE {
-                if !changed[v[i].index()] && !changed[v[j].index()] {
-                    continue;
-                }
-                let length = edge_length(sub(p[j], p[i]), &m[i], &m[j]);
-                if wanted(length) {
-                    found.push((EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t }, length));
+                let e = sub(p[j], p[i]);
+                let (at_i, at_j) = (m[i].quadratic(e), m[j].quadratic(e));
+                if (new[i] || new[j]) && wanted(at_i, at_j) {
+                    let (a, b) = (v[i].min(v[j]), v[i].max(v[j]));
+                    found.push((order(store, a, b, class(at_i * at_j)), EdgeItem { a, b, tet: t }));
                 }
             }
         }
-        found.sort_unstable_by_key(|(item, _)| (item.a, item.b, item.tet));
-        found.dedup_by_key(|(item, _)| (item.a, item.b));
-        found
+        found.sort_unstable_by_key(|&(key, item)| (key, item.a, item.b, item.tet));
+        found.dedup_by_key(|(_, item)| (item.a, item.b));
+        found.into_iter().map(|(_, item)| item).collect()
     }
 
     /// Edges to be split: those of the model's edges first, then of its faces, then inside; long ones first.
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
-        let mut found = self.edges(since, |length| length > self.context.limits.long);
-        let store = &self.context.store;
-        let rank = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
-        found.sort_by(|(x, lx), (y, ly)| rank(x).cmp(&rank(y)).then(ly.total_cmp(lx)));
-        found.into_iter().map(|(item, _)| item).collect()
+        let limit = self.context.limits.long;
+        let order = |store: &Store, a, b, class| (store.dimension(a).max(store.dimension(b)) as u16, u16::MAX - class);
+        self.edges(since, |a, b| is_longer(a, b, limit), order)
     }
 
     /// Edges to be collapsed, short ones first.
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
-        let mut found = self.edges(since, |length| length < self.context.limits.short);
-        found.sort_by(|(_, lx), (_, ly)| lx.total_cmp(ly));
-        found.into_iter().map(|(item, _)| item).collect()
+        let limit = self.context.limits.short;
+        self.edges(since, |a, b| is_shorter(a, b, limit), |_, _, _, class| class)
     }
+}
+
+/// Class of an edge whose fourth power of the length is given: lengths in one class differ by less than a fifth.
+#[inline(always)]
+fn class(fourth_power: f64) -> u16 {
+    (fourth_power.to_bits() >> 52) as u16
 }

@@ -4,8 +4,9 @@
 //! once; how much a step can save is known before anything is tried. A step counts only if the energy falls
 //! with the metric of the new place, no tetrahedron is inverted (exact), and the surface does not turn from its model.
 use super::access::Access;
+use super::ball::Ball;
 use super::fan::Fan;
-use super::ids::{FACE, TetId, VertexId};
+use super::ids::VertexId;
 use super::outcome::Refusal;
 use super::surface::Placed;
 use super::worker::Worker;
@@ -43,37 +44,34 @@ impl<A: Access> Worker<'_, '_, A> {
         if matches!(entity, Entity::Vertex(_)) || self.context.is_frozen(v) {
             return Err(Refusal::Geometry);
         }
-        self.gather_ball(v)?;
-        let ball = std::mem::take(&mut self.state.ball);
-        let result = self.smooth_in(v, &ball);
+        let mut ball = std::mem::take(&mut self.state.ball);
+        let result = self.gather_ball(v, &mut ball).and_then(|()| self.smooth_in(v, &ball));
         self.state.ball = ball;
         result
     }
 
-    fn smooth_in(&mut self, v: VertexId, ball: &[TetId]) -> Result<(), Refusal> {
-        let worst = ball.iter().map(|&t| self.store.quality(t)).fold(f64::INFINITY, f64::min);
-        if worst >= self.context.limits.improve_below {
+    fn smooth_in(&mut self, v: VertexId, ball: &Ball) -> Result<(), Refusal> {
+        if self.worst_of(&ball.tets) >= self.context.limits.improve_below {
             return Err(Refusal::Stale);
         }
-        self.list_link(v, ball);
         let mut triangles = std::mem::take(&mut self.state.star.surface);
         triangles.clear();
-        self.list_surface(v, ball, &mut triangles);
+        self.list_surface(v, &ball.tets, &mut triangles);
         let moved = self.descend(v, ball, &triangles);
         self.state.star.surface = triangles;
         if moved { Ok(()) } else { Err(Refusal::Shape) }
     }
 
     /// Tries the directions in turn, each with shorter and shorter steps, until the vertex moves; whether it did.
-    fn descend(&mut self, v: VertexId, ball: &[TetId], triangles: &[([VertexId; 3], u32)]) -> bool {
+    fn descend(&mut self, v: VertexId, ball: &Ball, triangles: &[([VertexId; 3], u32)]) -> bool {
         let mut fan = std::mem::take(&mut self.state.fan);
-        fan.fill(self.store, v, ball, &self.state.star.link);
+        fan.fill(self.store, v, &ball.tets, &ball.link);
         let moved = self.descend_in(v, ball, triangles, &mut fan);
         self.state.fan = fan;
         moved
     }
 
-    fn descend_in(&mut self, v: VertexId, ball: &[TetId], triangles: &[([VertexId; 3], u32)], fan: &mut Fan) -> bool {
+    fn descend_in(&mut self, v: VertexId, ball: &Ball, triangles: &[([VertexId; 3], u32)], fan: &mut Fan) -> bool {
         let held = self.hold(v);
         let from = held.placed.point;
         let Some(bowl) = fan.bowl(from, &held.log, &held.metric) else {
@@ -123,7 +121,7 @@ impl<A: Access> Worker<'_, '_, A> {
         v: VertexId,
         held: &Held,
         target: Vec3,
-        ball: &[TetId],
+        ball: &Ball,
         triangles: &[([VertexId; 3], u32)],
         fan: &mut Fan,
         limit: f64,
@@ -131,7 +129,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if !self.try_move(v, held, target, triangles, fan, limit) {
             return false;
         }
-        for (&t, shape) in ball.iter().zip(fan.mean_ratios()) {
+        for (&t, shape) in ball.tets.iter().zip(fan.mean_ratios()) {
             self.store.set_quality(t, shape);
             self.store.touch(t);
         }
@@ -187,30 +185,5 @@ impl<A: Access> Worker<'_, '_, A> {
         self.store.set_metric(v, &held.log, &held.metric);
         self.store.set_place(v, held.placed.entity, held.placed.parameters);
         self.store.set_hint(v, held.hint);
-    }
-
-    /// Lists the vertices joined to v in `state.star.link`.
-    pub fn list_link(&mut self, v: VertexId, ball: &[TetId]) {
-        let (set, link) = (&mut self.state.set, &mut self.state.star.link);
-        set.clear();
-        link.clear();
-        set.insert(v.0);
-        for &t in ball {
-            link.extend(self.store.vertices(t).into_iter().filter(|x| set.insert(x.0)));
-        }
-    }
-
-    /// Adds the surface triangles at v to the list, outward, with their tags.
-    pub fn list_surface(&self, v: VertexId, ball: &[TetId], triangles: &mut Vec<([VertexId; 3], u32)>) {
-        if self.store.dimension(v) == 3 {
-            return;
-        }
-        for &t in ball {
-            let (w, tags, n) = (self.store.vertices(t), self.store.tags(t), self.store.neighbours(t));
-            for i in (0..4).filter(|&i| tags[i] != 0 && w[i] != v && w.contains(&v) && (!n[i].is_some() || t < n[i])) {
-                let [a, b, c] = FACE[i].map(|k| w[k]);
-                triangles.push(([a, c, b], tags[i]));
-            }
-        }
     }
 }

@@ -1,5 +1,6 @@
 //! What one thread has in hand while it works: the store, its access, its pools, its scratch.
 use super::access::Access;
+use super::ball::Ball;
 use super::cavity::Replacement;
 use super::context::Context;
 use super::ids::{TetId, VertexId};
@@ -75,10 +76,14 @@ pub struct State<'m> {
     pub face_map: FaceMap<super::cavity::FaceSlot>,
     /// A set for any use within one function.
     pub set: LocalSet,
-    /// The tetrahedra at a vertex.
-    pub ball: Vec<TetId>,
-    /// The vertices about a vertex, while they are tried in turn.
-    pub neighbours: Vec<VertexId>,
+    /// Vertices on the surface near another.
+    pub near: LocalSet,
+    /// The ball of a vertex.
+    pub ball: Ball,
+    /// The ball of a second vertex.
+    pub other_ball: Ball,
+    /// A ball for use within one function.
+    pub passing_ball: Ball,
     /// The tetrahedra at either of two vertices.
     pub union: Vec<TetId>,
     /// A ball whose middle is tried at other places.
@@ -101,8 +106,10 @@ impl<'m> State<'m> {
             star: Star::default(),
             face_map: FaceMap::default(),
             set: LocalSet::default(),
-            ball: Vec::with_capacity(128),
-            neighbours: Vec::with_capacity(64),
+            near: LocalSet::default(),
+            ball: Ball::default(),
+            other_ball: Ball::default(),
+            passing_ball: Ball::default(),
             union: Vec::with_capacity(128),
             fan: super::fan::Fan::default(),
             shell: super::shell::Shell::default(),
@@ -165,37 +172,6 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
         if self.store.is_vertex(v) { Ok(()) } else { Err(Refusal::Stale) }
     }
 
-    /// Collects the tetrahedra at a claimed vertex into `state.ball` and claims all their vertices.
-    pub fn gather_ball(&mut self, v: VertexId) -> Result<(), Refusal> {
-        self.collect_ball(v);
-        for i in 0..self.state.ball.len() {
-            self.claim_tet(self.state.ball[i])?;
-        }
-        Ok(())
-    }
-
-    /// Collects the tetrahedra at a claimed vertex into `state.ball`, claiming no other.
-    pub fn collect_ball(&mut self, v: VertexId) {
-        let State { ball, set, .. } = &mut *self.state;
-        ball.clear();
-        set.clear();
-        let first = self.store.tet_of(v);
-        ball.push(first);
-        set.insert(first.0);
-        let mut next = 0;
-        while next < ball.len() {
-            let t = ball[next];
-            next += 1;
-            let (vertices, neighbours) = (self.store.vertices(t), self.store.neighbours(t));
-            for i in 0..4 {
-                let n = neighbours[i];
-                if vertices[i] != v && n.is_some() && set.insert(n.0) {
-                    ball.push(n);
-                }
-            }
-        }
-    }
-
     /// A tetrahedron that holds both claimed vertices; stale when they are not joined by an edge.
     pub fn tet_with_edge(&mut self, a: VertexId, b: VertexId, guess: TetId) -> Result<TetId, Refusal> {
         let holds = |t: TetId| {
@@ -206,9 +182,21 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
         if holds(guess) {
             return Ok(guess);
         }
-        self.collect_ball(a);
         let store = self.store;
-        self.state.ball.iter().copied().find(|&t| store.vertices(t).contains(&b)).ok_or(Refusal::Stale)
+        self.with_passing_ball(a, |ball| {
+            let joined = ball.link.contains(&b);
+            let holder = ball.tets.iter().copied().find(|&t| joined && store.vertices(t).contains(&b));
+            holder.ok_or(Refusal::Stale)
+        })
+    }
+
+    /// Looks at the ball of a claimed vertex, of which no other is claimed.
+    pub fn with_passing_ball<T>(&mut self, v: VertexId, look: impl FnOnce(&Ball) -> T) -> T {
+        let mut ball = std::mem::take(&mut self.state.passing_ball);
+        self.collect_ball(v, &mut ball);
+        let seen = look(&ball);
+        self.state.passing_ball = ball;
+        seen
     }
 
     /// A new vertex, claimed.
