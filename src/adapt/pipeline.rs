@@ -8,7 +8,7 @@ use super::outcome::Counts;
 use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::shape::{is_longer, is_shorter};
 use super::store::Store;
-use super::worker::State;
+use super::worker::{ID_BLOCK, State};
 use crate::mesh::vector::sub;
 use crate::metric::quality::edge_length;
 use crate::tasks::Pool;
@@ -31,6 +31,9 @@ const PATIENCE: usize = 1;
 
 /// Tetrahedra below this mean ratio go through the end-game.
 const MEND_BELOW: f64 = 0.3;
+
+/// Tetrahedra that an insertion adds, with much to spare: six is usual.
+const TETS_A_VERTEX: usize = 12;
 
 /// Number of kinds of operations.
 pub const KINDS: usize = 6;
@@ -332,16 +335,25 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
     }
 
+    /// Makes room for so many new vertices, with the tetrahedra about them, and for what flips add.
+    fn make_room(&mut self, new: usize) {
+        let store = &mut self.context.store;
+        let slack = ID_BLOCK * self.states.len();
+        let vertices = new + slack;
+        let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
+        let room = store.room();
+        if room.0 < vertices || room.1 < tets {
+            // More than is needed, so that it is not needed again soon: untouched pages cost no memory.
+            store.reserve(vertices + store.vertex_bound(), tets + store.tet_bound());
+        }
+    }
+
     /// One sweep of an operation over its items.
     fn sweep<O: Operation>(&mut self, kind: Kind, operation: &O, items: &[O::Item]) -> Counts {
         if items.is_empty() {
             return Counts::default();
         }
-        let (vertices, tets) = (self.context.store.vertex_bound(), self.context.store.tet_bound());
-        let room = self.context.store.room();
-        if room.0 < vertices / 2 || room.1 < tets / 2 {
-            self.context.store.reserve(vertices, tets);
-        }
+        self.make_room(if kind == Kind::Split { items.len() } else { 0 });
         self.context.store.tick();
         let start = Instant::now();
         self.observer.begin(kind, self.pass, items.len());

@@ -11,7 +11,7 @@ use super::store::Store;
 use crate::geometry::{Evaluator, Geometry};
 
 /// Ids are taken from the store in blocks of this size.
-const BLOCK: usize = 64;
+pub const ID_BLOCK: usize = 64;
 
 /// Ids that a thread may use for new vertices and tetrahedra.
 #[derive(Default)]
@@ -24,7 +24,7 @@ impl Pool {
     /// A free vertex id.
     pub fn vertex(&mut self, store: &Store) -> Result<VertexId, Refusal> {
         if self.vertices.is_empty() {
-            let block = store.take_vertices(BLOCK).ok_or(Refusal::Full)?;
+            let block = store.take_vertices(ID_BLOCK).ok_or(Refusal::Full)?;
             self.vertices.extend(block.rev().map(VertexId));
         }
         self.vertices.pop().ok_or(Refusal::Full)
@@ -33,7 +33,7 @@ impl Pool {
     /// Makes sure that `count` tetrahedron ids are at hand.
     pub fn provide_tets(&mut self, store: &Store, count: usize) -> Result<(), Refusal> {
         while self.tets.len() < count {
-            let block = store.take_tets(BLOCK).ok_or(Refusal::Full)?;
+            let block = store.take_tets(ID_BLOCK).ok_or(Refusal::Full)?;
             // Fresh ids go to the bottom: freed ones are used again first.
             self.tets.splice(0..0, block.rev().map(TetId));
         }
