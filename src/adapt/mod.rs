@@ -26,6 +26,7 @@ mod pipeline;
 mod project;
 mod reconnect;
 mod required;
+mod ring;
 mod run;
 mod schedule;
 mod shape;

@@ -12,7 +12,6 @@ use super::worker::Worker;
 use crate::geometry::Entity;
 use crate::mesh::vector::Vec3;
 use crate::metric::Sym3;
-use crate::metric::batch::Batch;
 use crate::metric::lanes::LANES;
 
 /// What the star replaces; decides which surface triangles are consumed.
@@ -99,7 +98,6 @@ pub struct Star {
     seen: Vec<Seen>,
     open: Vec<(TetId, usize)>,
     wanted: Vec<Wanted>,
-    batch: Batch,
     /// Vertices that the apex will be joined to.
     pub link: Vec<VertexId>,
     /// Surface triangles that go (outward), with their tags.
@@ -188,14 +186,15 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Finds the mean ratios over up to four wanted faces: each is seen, or the cavity grows over it.
     fn judge_faces(&mut self, star: &mut Star, apex: &Apex, bounds: Bounds) -> Result<(), Refusal> {
         let count = star.wanted.len();
+        let (store, batch) = (self.store, &mut self.state.batch);
         for lane in 0..LANES {
             let face = star.wanted[lane.min(count - 1)].vertices;
             let face = [face[0], face[1], face[2]];
-            let logs = face.map(|x| self.store.log(x));
-            star.batch.set(lane, face.map(|x| self.store.position(x)), [&logs[0], &logs[1], &logs[2]]);
+            let logs = face.map(|x| store.log(x));
+            batch.set(lane, face.map(|x| store.position(x)), logs.each_ref());
         }
-        star.batch.prepare();
-        let qualities = star.batch.shapes(apex.point, &apex.log).mean_ratios();
+        batch.prepare();
+        let qualities = batch.shapes(apex.point, &apex.log).mean_ratios();
         for lane in (0..count).rev() {
             let quality = qualities[lane];
             let Some(Wanted { t, behind, tag, vertices }) = star.wanted.pop() else { break };

@@ -92,8 +92,10 @@ pub struct State<'m> {
     pub shell: super::shell::Shell,
     /// Boundary vertices that are not yet on the model.
     pub waiting: Vec<VertexId>,
-    /// Tables of the edge removal.
-    pub ring: super::edge_removal::RingTables,
+    /// The ring about an edge that may be removed.
+    pub ring: Option<Box<super::ring::Ring>>,
+    /// Four tetrahedra to be measured.
+    pub batch: crate::metric::batch::Batch,
 }
 
 impl<'m> State<'m> {
@@ -114,7 +116,8 @@ impl<'m> State<'m> {
             fan: super::fan::Fan::default(),
             shell: super::shell::Shell::default(),
             waiting: Vec::new(),
-            ring: super::edge_removal::RingTables::default(),
+            ring: None,
+            batch: crate::metric::batch::Batch::default(),
         }
     }
 }

@@ -97,6 +97,14 @@ impl Batch {
 
     /// The four tetrahedra, each with an apex of its own.
     #[inline]
+    pub fn shapes_of(&self, apex: &[Vec3; LANES], logs: &[Sym3; LANES]) -> Shapes {
+        let apex = std::array::from_fn(|i| Lanes(std::array::from_fn(|lane| apex[lane][i])));
+        let logs = std::array::from_fn(|i| Lanes(std::array::from_fn(|lane| logs[lane].0[i])));
+        self.shapes_each(&apex, &logs)
+    }
+
+    /// As [`Batch::shapes_of`], the lanes laid out.
+    #[inline]
     pub fn shapes_each(&self, apex: &LaneVec3, log: &LaneSym3) -> Shapes {
         let (cubes, certain) = cubes(self, apex, log);
         if certain { Shapes { cubes } } else { self.shapes_exactly(apex, log, cubes) }
