@@ -24,17 +24,21 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Collects the ball of a claimed vertex, claiming no other.
     pub fn collect_ball(&mut self, v: VertexId, ball: &mut Ball) {
-        let State { set, .. } = &mut *self.state;
+        let State { set, near, .. } = &mut *self.state;
         let Ball { tets, link, from } = ball;
         tets.clear();
         link.clear();
         from.clear();
         set.clear();
+        near.clear();
         let first = self.store.tet_of(v);
         tets.push(first);
         from.push(TetId::NONE);
         set.insert(first.0);
         link.extend(self.store.vertices(first).into_iter().filter(|&x| x != v));
+        link.iter().for_each(|x| {
+            near.insert(x.0);
+        });
         let mut next = 0;
         while next < tets.len() {
             let (t, before) = (tets[next], from[next]);
@@ -44,7 +48,7 @@ impl<A: Access> Worker<'_, '_, A> {
                 let n = neighbours[i];
                 if n == before && n.is_some() {
                     // Of the four vertices only the one beyond the face that led here can be new.
-                    if !link.contains(&vertices[i]) {
+                    if near.insert(vertices[i].0) {
                         link.push(vertices[i]);
                     }
                 } else if vertices[i] != v && n.is_some() && set.insert(n.0) {

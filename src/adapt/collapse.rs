@@ -132,7 +132,7 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// The link condition on the surface: who neighbours both v and w there must share a triangle with both.
     pub fn check_surface_link(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
-        let mut near_w = std::mem::take(&mut self.state.near);
+        let mut near_w = std::mem::take(&mut self.state.beside);
         near_w.clear();
         let store = self.store;
         self.with_passing_ball(w, |ball| {
@@ -159,7 +159,7 @@ impl<A: Access> Worker<'_, '_, A> {
         for x in around {
             pinched |= near_w.contains(x.0) && !beside(x);
         }
-        self.state.near = near_w;
+        self.state.beside = near_w;
         if pinched { Err(Refusal::Topology) } else { Ok(()) }
     }
 }

@@ -161,7 +161,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
         self.looked = [0; KINDS];
         self.reorder();
-        for pass in 0..SHAPE_PASSES {
+        for pass in 0..crate::adapt::context::env("SP", SHAPE_PASSES as f64) as usize {
             self.pass += 1;
             self.context.limits = shape_limits();
             let quiet = self.shape_pass();
@@ -199,6 +199,28 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// One pass of all operations; whether it changed little.
     fn shape_pass(&mut self) -> bool {
         let before = self.changes();
+        if let Ok(seq) = std::env::var("SEQ") {
+            self.looked[Kind::Split as usize] = 0;
+            for c in seq.chars() {
+                match c {
+                    'r' => {
+                        let b = self.context.limits.improve_below;
+                        self.context.limits.improve_below = crate::adapt::context::env("RR", 0.9);
+                        self.reconnect(Criterion::MeanRatio, 1);
+                        self.context.limits.improve_below = b;
+                    }
+                    's' => self.smooth(1),
+                    'c' => self.collapse(1),
+                    'i' => {
+                        let items = self.long_edges();
+                        self.sweep(Kind::Split, &Split, &items);
+                        self.project();
+                    }
+                    _ => panic!(),
+                }
+            }
+            return ((self.changes() - before) as f64) < crate::adapt::context::env("SETTLED", 0.01) * self.context.store.vertex_bound() as f64;
+        }
         self.reconnect(Criterion::MeanRatio, 2);
         self.smooth(1);
         self.collapse(2);
@@ -297,7 +319,12 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn smooth(&mut self, sweeps: usize) {
         for _ in 0..sweeps {
             let since = self.begin(Kind::Smooth);
-            let changed = self.changed(since, Store::moved);
+            let limit = self.context.limits.improve_below;
+            let store = &self.context.store;
+            let mut changed = vec![false; store.vertex_bound()];
+            for t in store.live_tets().filter(|&t| store.moved(t) >= since && store.quality(t) < limit) {
+                store.vertices(t).iter().for_each(|v| changed[v.index()] = true);
+            }
             let live = self.context.store.live_vertices();
             let items: Vec<VertexId> = live.filter(|v| changed[v.index()]).collect();
             if self.observer.stop() || self.sweep(Kind::Smooth, &Smooth, &items).done == 0 {

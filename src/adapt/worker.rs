@@ -76,8 +76,10 @@ pub struct State<'m> {
     pub face_map: FaceMap<super::cavity::FaceSlot>,
     /// A set for any use within one function.
     pub set: LocalSet,
-    /// Vertices on the surface near another.
+    /// A second one: the vertices near another.
     pub near: LocalSet,
+    /// Vertices on the surface beside another.
+    pub beside: LocalSet,
     /// The ball of a vertex.
     pub ball: Ball,
     /// The ball of a second vertex.
@@ -109,6 +111,7 @@ impl<'m> State<'m> {
             face_map: FaceMap::default(),
             set: LocalSet::default(),
             near: LocalSet::default(),
+            beside: LocalSet::default(),
             ball: Ball::default(),
             other_ball: Ball::default(),
             passing_ball: Ball::default(),
