@@ -7,13 +7,12 @@ Exit code: 0 when every figure is reached, else 1.
 
 import argparse
 import json
-import os
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "cases"))
-from judging import cycles, meshfile, metric  # noqa: E402
+from judging import cycles, meshfile  # noqa: E402
 
 OUT = ROOT / "out" / "cube-cylinder"
 
@@ -21,7 +20,7 @@ OUT = ROOT / "out" / "cube-cylinder"
 def inputs():
     """{name: (mesh, model)}: the own files, and the UGAWG ones if they are there."""
     found = {"own": (ROOT / "cases/cube-cylinder/start.meshb", ROOT / "geometry/cube-cylinder.step")}
-    shared = Path(os.environ.get("GEO_ADAPT_SHARED", ROOT.parent / "shared")) / "cases" / "cube-cylinder"
+    shared = cycles.SHARED / "cube-cylinder"
     if (shared / "cube-cylinder.meshb").is_file():
         found["ugawg"] = (shared / "cube-cylinder.meshb", shared / "cube-cylinder.step")
     else:
@@ -32,7 +31,7 @@ def inputs():
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, default=ROOT / "target/release/geo-adapt")
-    parser.add_argument("--fields", nargs="+", default=list(cycles.FLOORS), choices=metric.FIELDS)
+    parser.add_argument("--fields", nargs="+", default=list(cycles.FLOORS), choices=list(cycles.FLOORS))
     parser.add_argument("--inputs", nargs="+", choices=["own", "ugawg"], help="default: all that are there")
     parser.add_argument("--cycles", type=int, default=4)
     parser.add_argument("--threads", type=int, default=1)
@@ -50,10 +49,10 @@ def run(options, name, mesh, model, field):
         target.unlink(missing_ok=True)
         command = [options.program, "adapt", current, "-o", target, "--cad", model, "--analytic", field,
                    "--threads", options.threads, "--report", target.with_suffix(".json")]
-        code, seconds, _ = cycles.measured(command, log)
-        if code != 0:
-            return None, [f"cycle {cycle}: geo-adapt ended with {code} ({log}):\n{cycles.tail(log)}"]
-        total += seconds
+        ran = cycles.measured(command, log)
+        if ran.code != 0:
+            return None, [f"cycle {cycle}: geo-adapt ended with {ran.code} ({log}):\n{cycles.tail(log)}"]
+        total += ran.cpu_seconds
         result = cycles.judged(target, field, start)
         missed += [f"cycle {cycle}: {finding}" for finding in result["findings"]]
         current = target
@@ -61,20 +60,23 @@ def run(options, name, mesh, model, field):
 
 
 def baseline(mesh):
-    """{field: CPU seconds of mmg3d} for the same start mesh on this machine, if mmg.sh was run."""
-    path = OUT / "mmg.json"
-    if not path.is_file():
-        return {}
-    known = json.loads(path.read_text()).get(str(Path(mesh).resolve()), {})
-    return {field: result["cpu_seconds"] for field, result in known.items()}
+    """{field: CPU seconds of mmg3d} for the same start mesh and four cycles on this machine, where cases/compare was run."""
+    found = {}
+    for field in cycles.FLOORS:
+        path = ROOT / "out" / "compare" / field / "result.json"
+        known = json.loads(path.read_text()) if path.is_file() else {}
+        rival = known.get("codes", {}).get("mmg3d")
+        if rival and rival["cycles"] == 4 and known["start"] == str(Path(mesh).resolve()):
+            found[field] = rival["cpu_seconds"]
+    return found
 
 
 def draw(options, name, field):
     """Pictures of the last mesh, by picture.py."""
     mesh = OUT / f"{name}-{field}-{options.cycles}.meshb"
     command = [sys.executable, ROOT / "cases/picture.py", mesh, "--analytic", field, "-o", mesh.with_suffix(".png")]
-    code, _, _ = cycles.measured(command, OUT / "pictures.log")
-    cycles.say(f"  picture: {mesh.with_suffix('.png')}" if code == 0 else f"  no picture: see {OUT / 'pictures.log'}")
+    drawn = cycles.measured(command, OUT / "pictures.log").code == 0
+    cycles.say(f"  picture: {mesh.with_suffix('.png')}" if drawn else f"  no picture: see {OUT / 'pictures.log'}")
 
 
 def main():

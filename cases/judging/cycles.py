@@ -1,12 +1,18 @@
 """Runs an adapter several times in a row, each on the last one's output, and holds the results against a floor."""
 
+import json
 import os
 import subprocess
 import sys
 import time
 from dataclasses import dataclass
+from pathlib import Path
 
 from . import cube_cylinder, meshfile, metric, report
+
+ROOT = Path(__file__).resolve().parents[2]
+# Files that may be there beside the project, and are never part of it.
+SHARED = Path(os.environ.get("GEO_ADAPT_SHARED", ROOT.parent / "shared")) / "cases"
 
 
 @dataclass
@@ -36,16 +42,32 @@ FLOORS = {
 }
 
 
+@dataclass
+class Run:
+    """What a process took: exit code, CPU seconds of user and system, wall seconds, peak resident bytes."""
+
+    code: int
+    cpu_seconds: float
+    wall_seconds: float
+    peak_bytes: int
+
+
 def measured(command, log):
-    """Runs a command, its output into `log`; returns (exit code, CPU seconds of user and system, wall seconds)."""
+    """Runs a command, its output appended to `log`; returns its Run."""
     began = time.monotonic()
     with open(log, "ab") as sink:
         sink.write((" ".join(map(str, command)) + "\n").encode())
         sink.flush()
-        child = subprocess.Popen(list(map(str, command)), stdout=sink, stderr=subprocess.STDOUT)
-        _, status, usage = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    return child.returncode, usage.ru_utime + usage.ru_stime, time.monotonic() - began
+        read, write = os.pipe()
+        launch = [sys.executable, "-I", "-S", Path(__file__).with_name("launch.py"), write, *command]
+        with subprocess.Popen(list(map(str, launch)), stdout=sink, stderr=subprocess.STDOUT, pass_fds=[write]) as child:
+            os.close(write)
+            with open(read) as figures:
+                text = figures.read()
+    if not text:
+        raise OSError(f"{command[0]} could not be started ({log}):\n{tail(log)}")
+    code, cpu, peak = json.loads(text)
+    return Run(code, cpu, time.monotonic() - began, peak)
 
 
 def tail(log, lines=8):

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from .metric import volumes
+from .metric import row_keys, volumes
 
 
 def findings(mesh):
@@ -16,7 +16,12 @@ def findings(mesh):
     unused = len(mesh.points) - len(np.unique(mesh.tets))
     if unused:
         found.append(f"{unused} vertices belong to no tetrahedron")
-    return found + _faces(mesh) + _edges(mesh)
+    faces, owner, even = tet_faces(mesh.tets)
+    triangles = np.sort(mesh.triangles, axis=1)
+    keys = row_keys(np.concatenate([faces, triangles]), len(mesh.points))
+    unique, first, inverse, count = np.unique(keys[: len(faces)], return_index=True, return_inverse=True, return_counts=True)
+    found += _faces(mesh, unique, inverse, count, owner, even, keys[len(faces) :])
+    return found + _edges(mesh, faces[first[count == 1]], triangles)
 
 
 def _indices_twice(mesh):
@@ -26,7 +31,7 @@ def _indices_twice(mesh):
         collapsed = int((np.diff(ordered, axis=1) == 0).any(axis=1).sum())
         if collapsed:
             found.append(f"{collapsed} {name} name a vertex twice")
-        doubled = len(ordered) - len(np.unique(ordered, axis=0))
+        doubled = len(ordered) - len(np.unique(row_keys(ordered, len(mesh.points))))
         if doubled:
             found.append(f"{doubled} {name} are there twice")
     return found
@@ -60,10 +65,8 @@ def tet_faces(tets):
     return np.sort(faces, axis=1), owner, even
 
 
-def _faces(mesh):
-    faces, owner, even = tet_faces(mesh.tets)
-    unique, inverse, count = np.unique(faces, axis=0, return_inverse=True, return_counts=True)
-    inverse = inverse.ravel()
+def _faces(mesh, unique, inverse, count, owner, even, triangles):
+    """Faces between two tets on opposite sides; triangles where the boundary or a region's border is. Faces by their keys."""
     found = []
     if (count > 2).any():
         found.append(f"{int((count > 2).sum())} faces belong to more than two tetrahedra")
@@ -75,31 +78,31 @@ def _faces(mesh):
     np.minimum.at(regions[0], inverse, mesh.tet_refs[owner])
     np.maximum.at(regions[1], inverse, mesh.tet_refs[owner])
     needs_triangle = (count == 1) | (regions[0] != regions[1])
-    place = {tuple(face): i for i, face in enumerate(unique.tolist())}
-    at = np.array([place.get(tuple(face), -1) for face in np.sort(mesh.triangles, axis=1).tolist()], dtype=np.int64)
-    if (at < 0).any():
-        found.append(f"{int((at < 0).sum())} triangles are no face of a tetrahedron")
+    at = np.minimum(np.searchsorted(unique, triangles), len(unique) - 1)
+    there = unique[at] == triangles
+    if not there.all():
+        found.append(f"{int((~there).sum())} triangles are no face of a tetrahedron")
     covered = np.zeros(len(unique), bool)
-    covered[at[at >= 0]] = True
+    covered[at[there]] = True
     bare = int((needs_triangle & ~covered).sum())
     if bare:
         found.append(f"{bare} faces on the boundary or between regions have no triangle")
     return found
 
 
-def _edges(mesh):
+def _sides(triangles):
+    """The sides of triangles whose vertices are sorted, sorted too, shape (3n, 2)."""
+    return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [0, 2]]])
+
+
+def _edges(mesh, outer, triangles):
     """The outer boundary is closed and manifold; tagged edges are edges of triangles."""
-    faces, _, _ = tet_faces(mesh.tets)
-    unique, count = np.unique(faces, axis=0, return_counts=True)
-    outer = unique[count == 1]
-    sides = np.concatenate([outer[:, [0, 1]], outer[:, [1, 2]], outer[:, [0, 2]]])
-    _, shared = np.unique(sides, axis=0, return_counts=True)
-    found = []
+    limit, found = len(mesh.points), []
+    _, shared = np.unique(row_keys(_sides(outer), limit), return_counts=True)
     if (shared != 2).any():
         found.append(f"{int((shared != 2).sum())} edges of the boundary do not lie between exactly two triangles")
-    t = np.sort(mesh.triangles, axis=1)
-    there = set(map(tuple, np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [0, 2]]]).tolist()))
-    loose = sum(tuple(edge) not in there for edge in np.sort(mesh.edges, axis=1).tolist())
+    tagged = row_keys(np.sort(mesh.edges, axis=1), limit)
+    loose = int((~np.isin(tagged, row_keys(_sides(triangles), limit))).sum())
     if loose:
         found.append(f"{loose} tagged edges are no edge of a triangle")
     return found

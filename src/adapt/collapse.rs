@@ -1,5 +1,6 @@
 //! Edge collapse: a vertex goes, its ball becomes a star about a neighbour.
 use super::access::Access;
+use super::ball::Ball;
 use super::ids::{FACE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Refusal;
@@ -14,27 +15,32 @@ impl<A: Access> Worker<'_, '_, A> {
         self.claim_live(a)?;
         self.claim_live(b)?;
         self.tet_with_edge(a, b, tet)?;
-        if self.length(a, b) >= self.context.limits.short {
+        if !self.is_shorter(a, b, self.context.limits.short) {
             return Err(Refusal::Stale);
         }
-        let onto_a = self.try_collapse(b, a, 0.0);
-        match (onto_a, self.try_collapse(a, b, onto_a.unwrap_or(0.0))) {
+        let mut balls = [std::mem::take(&mut self.state.ball), std::mem::take(&mut self.state.other_ball)];
+        let gathered = self.gather_ball(a, &mut balls[0]).and_then(|()| self.gather_ball(b, &mut balls[1]));
+        let result = gathered.and_then(|()| self.collapse_between([a, b], [&balls[0], &balls[1]]));
+        [self.state.ball, self.state.other_ball] = balls;
+        result
+    }
+
+    fn collapse_between(&mut self, [a, b]: [VertexId; 2], [of_a, of_b]: [&Ball; 2]) -> Result<(), Refusal> {
+        let onto_a = self.try_collapse(b, a, of_b, 0.0);
+        match (onto_a, self.try_collapse(a, b, of_a, onto_a.unwrap_or(0.0))) {
             (_, Ok(_)) => self.finish_collapse(a, b),
-            (Ok(_), Err(_)) => self.try_collapse(b, a, 0.0).and_then(|_| self.finish_collapse(b, a)),
+            (Ok(_), Err(_)) => self.try_collapse(b, a, of_b, 0.0).and_then(|_| self.finish_collapse(b, a)),
             (Err(Refusal::Conflict), _) | (_, Err(Refusal::Conflict)) => Err(Refusal::Conflict),
-            (Err(_), Err(_)) => self.merge(a, b),
+            (Err(_), Err(_)) => self.merge(a, b, [of_a, of_b]),
         }
     }
 
     /// Prepares the removal of v onto its neighbour w; returns the worst mean ratio after it, which is at least `better`.
-    pub fn try_collapse(&mut self, v: VertexId, w: VertexId, better: f64) -> Result<f64, Refusal> {
+    pub fn try_collapse(&mut self, v: VertexId, w: VertexId, ball: &Ball, better: f64) -> Result<f64, Refusal> {
+        self.check_new_lengths(v, w, &ball.link)?;
         self.check_entities(v, w)?;
         self.check_bend(v, w)?;
-        self.gather_ball(v)?;
-        let ball = std::mem::take(&mut self.state.ball);
-        let result = self.check_new_lengths(v, w, &ball).and_then(|()| self.collapse_star(v, w, &ball, better));
-        self.state.ball = ball;
-        let worst = result?;
+        let worst = self.collapse_star(v, w, &ball.tets, better)?;
         if !self.state.star.surface.is_empty() {
             self.check_surface_link(v, w)?;
             self.check_normals(0.0)?;
@@ -43,18 +49,20 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// No new edge may be longer than the limit and than the longest one that goes.
-    fn check_new_lengths(&mut self, v: VertexId, w: VertexId, ball: &[TetId]) -> Result<(), Refusal> {
-        self.list_link(v, ball);
-        let link = &self.state.star.link;
+    fn check_new_lengths(&self, v: VertexId, w: VertexId, link: &[VertexId]) -> Result<(), Refusal> {
         let limit = self.context.limits.longest_new;
-        let longest = |x: VertexId| link.iter().map(|&y| self.length(x, y)).fold(0.0, f64::max);
-        let too_long = link.iter().any(|&x| x != w && self.length(w, x) > limit);
-        if too_long && longest(w) > longest(v) { Err(Refusal::Length) } else { Ok(()) }
+        if !link.iter().any(|&x| x != w && self.is_longer(w, x, limit)) {
+            return Ok(());
+        }
+        if !link.iter().any(|&x| self.is_longer(v, x, limit)) {
+            return Err(Refusal::Length);
+        }
+        let longest = |x: VertexId| link.iter().filter(|&&y| y != x).map(|&y| self.length(x, y)).fold(0.0, f64::max);
+        if longest(w) > longest(v) { Err(Refusal::Length) } else { Ok(()) }
     }
 
     fn collapse_star(&mut self, v: VertexId, w: VertexId, ball: &[TetId], better: f64) -> Result<f64, Refusal> {
-        let worst_old = ball.iter().map(|&t| self.store.quality(t)).fold(f64::INFINITY, f64::min);
-        let floor = self.context.limits.collapse_floor.min(worst_old).max(better);
+        let floor = self.context.limits.collapse_floor.min(self.worst_of(ball)).max(better);
         self.build_star(Seed::Vertex(v), w, ball, Bounds { wanted: 0.0, floor })
     }
 
@@ -124,20 +132,22 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// The link condition on the surface: who neighbours both v and w there must share a triangle with both.
     pub fn check_surface_link(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
-        self.collect_ball(w);
-        let mut near_w = std::mem::take(&mut self.state.set);
+        let mut near_w = std::mem::take(&mut self.state.beside);
         near_w.clear();
-        for &t in &self.state.ball {
-            let (vertices, tags) = (self.store.vertices(t), self.store.tags(t));
-            for i in (0..4).filter(|&i| tags[i] != 0) {
-                let face = FACE[i].map(|k| vertices[k]);
-                if face.contains(&w) && !face.contains(&v) {
-                    face.iter().for_each(|x| {
-                        near_w.insert(x.0);
-                    });
+        let store = self.store;
+        self.with_passing_ball(w, |ball| {
+            for &t in &ball.tets {
+                let (vertices, tags) = (store.vertices(t), store.tags(t));
+                for i in (0..4).filter(|&i| tags[i] != 0) {
+                    let face = FACE[i].map(|k| vertices[k]);
+                    if face.contains(&w) && !face.contains(&v) {
+                        face.iter().for_each(|x| {
+                            near_w.insert(x.0);
+                        });
+                    }
                 }
             }
-        }
+        });
         let surface = &self.state.star.surface;
         let beside = |x: VertexId| surface.iter().any(|(face, _)| [v, w, x].iter().all(|y| face.contains(y)));
         let around = surface
@@ -149,7 +159,7 @@ impl<A: Access> Worker<'_, '_, A> {
         for x in around {
             pinched |= near_w.contains(x.0) && !beside(x);
         }
-        self.state.set = near_w;
+        self.state.beside = near_w;
         if pinched { Err(Refusal::Topology) } else { Ok(()) }
     }
 }

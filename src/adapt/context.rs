@@ -40,6 +40,13 @@ pub struct Limits {
     pub spread: f64,
     /// Most tetrahedra in an enlarged cavity.
     pub cavity: usize,
+    pub x0: f64,
+    pub x1: f64,
+    pub x2: f64,
+    pub x3: f64,
+}
+pub fn env(name: &str, default: f64) -> f64 {
+    std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(default)
 }
 
 impl Default for Limits {
@@ -57,6 +64,10 @@ impl Default for Limits {
             tilt: 0.5,
             spread: 0.94,
             cavity: 96,
+            x0: env("X0", 0.0),
+            x1: env("X1", 0.005),
+            x2: env("X2", 0.5),
+            x3: env("X3", 0.0),
         }
     }
 }

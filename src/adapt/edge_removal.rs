@@ -7,19 +7,9 @@ use super::cavity::NewTet;
 use super::criteria::{Criterion, wanted_score};
 use super::ids::{TetId, VertexId};
 use super::outcome::Refusal;
+use super::ring::{LONGEST_RING, Ring};
 use super::shell::Shell;
 use super::worker::Worker;
-
-/// Longest ring that is looked at.
-pub const LONGEST_RING: usize = 7;
-
-/// Tables of the dynamic program: best score of the polygon i..j, and the triangle's third vertex.
-#[derive(Default)]
-pub struct RingTables {
-    score: [[f64; LONGEST_RING]; LONGEST_RING],
-    third: [[usize; LONGEST_RING]; LONGEST_RING],
-    cavity: Vec<VertexId>,
-}
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Removes the edge a–b of a tetrahedron that holds still, when the criterion gains by it.
@@ -42,19 +32,21 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Topology);
         }
         let surface = self.surface_flip(a, b, shell)?;
-        let mut tables = std::mem::take(&mut self.state.ring);
-        tables.cavity.clear();
-        tables.cavity.extend([a, b]);
-        tables.cavity.extend(&shell.ring);
-        let old = shell.tets.iter().map(|&t| self.present_score(criterion, t, &tables.cavity));
-        let old = old.fold(f64::INFINITY, f64::min);
-        let wanted = wanted_score(old);
-        self.triangulate(a, b, shell, criterion, wanted, &mut tables);
-        let gains = tables.score[0][n - 1] > wanted;
+        let mut ring = self.state.ring.take().unwrap_or_default();
+        ring.fill(self.store, [a, b], &shell.ring);
+        let old = shell.tets.iter().map(|&t| self.present_score(criterion, t, ring.cavity()));
+        let wanted = wanted_score(old.fold(f64::INFINITY, f64::min));
+        let gains = ring.is_feasible() && {
+            match criterion {
+                Criterion::MeanRatio => ring.score_mean_ratios(),
+                _ => ring.score_each(|tet, cavity| self.score(criterion, tet, cavity, wanted)),
+            }
+            ring.triangulate(wanted)
+        };
         if gains {
-            self.write_triangulation(a, b, shell, &tables);
+            self.write_triangulation([a, b], shell, &ring);
         }
-        self.state.ring = tables;
+        self.state.ring = Some(ring);
         if !gains {
             return Err(Refusal::Shape);
         }
@@ -91,73 +83,19 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Refuses when the two claimed vertices are joined by an edge already.
     fn refuse_joined(&mut self, x: VertexId, y: VertexId) -> Result<(), Refusal> {
-        self.collect_ball(x);
-        let joined = self.state.ball.iter().any(|&t| self.store.vertices(t).contains(&y));
+        let joined = self.with_passing_ball(x, |ball| ball.link.contains(&y));
         if joined { Err(Refusal::Topology) } else { Ok(()) }
     }
 
-    /// Fills the tables; triangulations at or below `wanted` are not followed.
-    fn triangulate(
-        &self,
-        a: VertexId,
-        b: VertexId,
-        shell: &Shell,
-        criterion: Criterion,
-        wanted: f64,
-        tables: &mut RingTables,
-    ) {
-        let (ring, n) = (&shell.ring, shell.ring.len());
-        for i in 0..n - 1 {
-            tables.score[i][i + 1] = f64::INFINITY;
-        }
-        for width in 2..n {
-            for i in 0..n - width {
-                let j = i + width;
-                let (mut best, mut third) = (f64::NEG_INFINITY, i + 1);
-                for k in i + 1..j {
-                    let bound = tables.score[i][k].min(tables.score[k][j]);
-                    if bound <= best.max(wanted) {
-                        continue;
-                    }
-                    let floor = best.max(wanted);
-                    let score = |tet| self.score(criterion, tet, &tables.cavity, floor).unwrap_or(f64::NEG_INFINITY);
-                    let upper = bound.min(score([ring[i], ring[k], ring[j], b]));
-                    if upper <= floor {
-                        continue;
-                    }
-                    let value = upper.min(score([ring[i], ring[j], ring[k], a]));
-                    if value > best {
-                        (best, third) = (value, k);
-                    }
-                }
-                tables.score[i][j] = best;
-                tables.third[i][j] = third;
-            }
-        }
-    }
-
-    fn write_triangulation(&mut self, a: VertexId, b: VertexId, shell: &Shell, tables: &RingTables) {
+    fn write_triangulation(&mut self, [a, b]: [VertexId; 2], shell: &Shell, ring: &Ring) {
         let region = self.store.region(shell.tets[0]);
         self.state.replacement.clear();
         self.state.replacement.old.extend(&shell.tets);
-        let mut open = [(0, 0); LONGEST_RING];
-        let mut depth = 1;
-        open[0] = (0, shell.ring.len() - 1);
-        while depth > 0 {
-            depth -= 1;
-            let (i, j) = open[depth];
-            if j - i < 2 {
-                continue;
-            }
-            let k = tables.third[i][j];
-            let (x, y, z) = (shell.ring[i], shell.ring[k], shell.ring[j]);
+        ring.each_triangle(|[x, y, z]| {
             for vertices in [[x, y, z, b], [x, z, y, a]] {
                 let quality = self.shape(vertices);
                 self.state.replacement.new.push(NewTet { vertices, region, quality });
             }
-            open[depth] = (i, k);
-            open[depth + 1] = (k, j);
-            depth += 2;
-        }
+        });
     }
 }

@@ -3,29 +3,27 @@ use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
 use super::store::Store;
 use crate::mesh::vector::sub;
-use crate::metric::quality::edge_length;
 
-/// An edge and its length in the metric.
-pub struct Measured {
+/// An edge and the class of its length in the metric.
+pub struct Classed {
     /// The edge, the lesser vertex first, with the least of its tetrahedra.
     pub item: EdgeItem,
-    /// Its length, in single precision: there are very many.
-    pub length: f32,
+    /// Less than [`CLASSES`]: the longer the greater.
+    pub class: u16,
 }
 
-/// Ranks of lengths: exponent and seven bits behind the point.
-pub const LENGTHS: u32 = 1 << 15;
+/// Number of classes of lengths.
+pub const CLASSES: u32 = 1 << 11;
 
-impl Measured {
-    /// Rank of the length, less than [`LENGTHS`]: the longer the greater, in steps of at most 1/128.
-    pub fn rank(&self) -> u32 {
-        self.length.max(0.0).to_bits() >> 16
-    }
+/// Class of an edge whose fourth power of the length is given: lengths in one class differ by less than a fifth.
+#[inline(always)]
+fn class(fourth_power: f64) -> u16 {
+    (fourth_power.max(0.0).to_bits() >> 52) as u16
 }
 
 /// The edges in the order of their ranks; those of one rank, whose lengths hardly differ, stay in the order of the mesh, so that what
 /// is done next is near in memory. A counting sort.
-pub fn in_order(edges: &[Measured], rank: impl Fn(&Measured) -> u32) -> Vec<EdgeItem> {
+pub fn in_order(edges: &[Classed], rank: impl Fn(&Classed) -> u32) -> Vec<EdgeItem> {
     let greatest = edges.iter().map(&rank).max().unwrap_or(0) as usize;
     let mut places = vec![0usize; greatest + 2];
     edges.iter().for_each(|edge| places[rank(edge) as usize + 1] += 1);
@@ -42,11 +40,11 @@ pub fn in_order(edges: &[Measured], rank: impl Fn(&Measured) -> u32) -> Vec<Edge
     items
 }
 
-/// The edges whose length passes the test, each once, in no particular order; of those that have an end where something
-/// changed (`changed`, by vertex). Between sweeps only.
+/// The edges that pass the test of their squared lengths in the metrics of both ends, each once, in no particular order; of those
+/// that have an end where something changed (`changed`, by vertex). Between sweeps only.
 ///
 /// Each vertex is asked for its edges to greater ones, so that no list of all edges of all tetrahedra is made and sorted.
-pub fn measured(store: &Store, changed: &[bool], wanted: impl Fn(f64) -> bool) -> Vec<Measured> {
+pub fn listed(store: &Store, changed: &[bool], wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
     let mut found = Vec::new();
     let mut ball = Ball::new(store);
     for a in store.live_vertices().filter(|a| changed[a.index()]) {
@@ -57,10 +55,9 @@ pub fn measured(store: &Store, changed: &[bool], wanted: impl Fn(f64) -> bool) -
                 continue;
             }
             let v = sub(store.position(b), store.position(a));
-            let length = edge_length(v, &store.metric(a), &store.metric(b));
-            if wanted(length) {
-                let item = EdgeItem { a: a.min(b), b: a.max(b), tet };
-                found.push(Measured { item, length: length as f32 });
+            let (at_a, at_b) = (store.metric(a).quadratic(v), store.metric(b).quadratic(v));
+            if wanted(at_a, at_b) {
+                found.push(Classed { item: EdgeItem { a: a.min(b), b: a.max(b), tet }, class: class(at_a * at_b) });
             }
         }
     }
@@ -145,17 +142,17 @@ mod tests {
             let (a, b) = (ids[a as usize], ids[b as usize]);
             [a.min(b), a.max(b)]
         };
-        let is_short = |length: f64| length < 0.4;
+        let is_short = |a: f64, b: f64| a < 0.16 && b < 0.16;
         let all: BTreeSet<_> = unique_edges(&mesh.tets.nodes).into_iter().map(ends).collect();
         let length = |[a, b]: [VertexId; 2]| crate::mesh::vector::distance(store.position(a), store.position(b));
         for changed in [vec![true; ids.len()], (0..ids.len()).map(|v| v % 5 == 0).collect()] {
             let touched = |edge: &&[VertexId; 2]| edge.iter().any(|v| changed[v.index()]);
-            let expected: BTreeSet<_> = all.iter().filter(touched).copied().filter(|&e| is_short(length(e))).collect();
-            let found = measured(&store, &changed, is_short);
+            let expected: BTreeSet<_> = all.iter().filter(touched).copied().filter(|&e| length(e) < 0.4).collect();
+            let found = listed(&store, &changed, is_short);
             assert_eq!(found.len(), expected.len());
             assert_eq!(found.iter().map(|edge| ends_of(&edge.item)).collect::<BTreeSet<_>>(), expected);
-            for Measured { item, length: measured } in &found {
-                assert!((f64::from(*measured) - length(ends_of(item))).abs() < 1e-6);
+            for Classed { item, class: of } in &found {
+                assert_eq!(*of, class(length(ends_of(item)).powi(4)));
                 let holds = |t: &TetId| ends_of(item).iter().all(|v| store.vertices(*t).contains(v));
                 assert_eq!(store.live_tets().find(holds), Some(item.tet));
             }
@@ -163,14 +160,18 @@ mod tests {
     }
 
     #[test]
-    fn ranks_follow_the_lengths() {
-        let lengths = [0.3, 2.0, 0.1, 0.3005, 7.5, 0.0, 0.1];
+    fn classes_follow_the_lengths() {
+        let lengths: [f64; 7] = [0.3, 2.0, 0.1, 0.301, 7.5, 0.0, 0.1];
         let vertex = |k: usize| VertexId(k as u32);
         let item = |k| EdgeItem { a: vertex(k), b: vertex(k + 1), tet: TetId(0) };
-        let edges: Vec<_> = lengths.iter().enumerate().map(|(k, &length)| Measured { item: item(k), length }).collect();
+        let classed = |(k, length): (usize, &f64)| Classed { item: item(k), class: class(length.powi(4)) };
+        let edges: Vec<_> = lengths.iter().enumerate().map(classed).collect();
         let order = |items: Vec<EdgeItem>| items.iter().map(|item| item.a.0).collect::<Vec<_>>();
-        assert_eq!(order(in_order(&edges, Measured::rank)), [5, 2, 6, 0, 3, 1, 4]);
-        assert_eq!(order(in_order(&edges, |edge| LENGTHS - 1 - edge.rank())), [4, 1, 0, 3, 2, 6, 5]);
-        assert!(edges.iter().all(|edge| edge.rank() < LENGTHS) && in_order(&[], Measured::rank).is_empty());
+        assert_eq!(order(in_order(&edges, |edge| u32::from(edge.class))), [5, 2, 6, 0, 3, 1, 4]);
+        assert_eq!(order(in_order(&edges, |edge| CLASSES - 1 - u32::from(edge.class))), [4, 1, 0, 3, 2, 6, 5]);
+        assert!(edges.iter().all(|edge| u32::from(edge.class) < CLASSES));
+        assert!(in_order(&[], |edge| u32::from(edge.class)).is_empty());
+        // A fifth more is another class.
+        assert_ne!(class(1.2f64.powi(4)), class(1.0));
     }
 }

@@ -2,9 +2,11 @@
 use super::access::Access;
 use super::cavity::NewTet;
 use super::criteria::{Criterion, wanted_score};
-use super::ids::{FACE, TetId};
+use super::ids::{FACE, TetId, VertexId};
 use super::outcome::Refusal;
 use super::worker::Worker;
+use crate::mesh::vector::volume6;
+use crate::metric::lanes::LANES;
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Removes the face opposite to local vertex i of a tetrahedron that is owned, when the criterion gains by it.
@@ -26,18 +28,40 @@ impl<A: Access> Worker<'_, '_, A> {
         let wanted = wanted_score(old);
         // (face, above) is positive, so each side of the face makes a positive tetrahedron with below and above.
         let new = [0, 1, 2].map(|k| [face[k], face[(k + 1) % 3], below, above]);
-        for tet in new {
-            if self.score(criterion, tet, &cavity, wanted).is_none_or(|score| score <= wanted) {
+        let qualities = self.qualities_of(&new).ok_or(Refusal::Shape)?;
+        for (tet, quality) in new.into_iter().zip(qualities) {
+            let score = match criterion {
+                Criterion::MeanRatio => Some(quality),
+                _ => self.score(criterion, tet, &cavity, wanted),
+            };
+            if score.is_none_or(|score| score <= wanted) {
                 return Err(Refusal::Shape);
             }
         }
         let region = self.store.region(t);
         self.state.replacement.clear();
         self.state.replacement.old.extend([t, other]);
-        for vertices in new {
-            let quality = self.shape(vertices);
+        for (vertices, quality) in new.into_iter().zip(qualities) {
             self.state.replacement.new.push(NewTet { vertices, region, quality });
         }
         self.commit()
+    }
+
+    /// Mean ratios of the three tetrahedra, at once; `None` when one is surely not positive.
+    fn qualities_of(&mut self, new: &[[VertexId; 4]; 3]) -> Option<[f64; 3]> {
+        let points = new.map(|tet| tet.map(|v| self.store.position(v)));
+        if points.iter().any(|&[a, b, c, d]| volume6(a, b, c, d) <= 0.0) {
+            return None;
+        }
+        let batch = &mut self.state.batch;
+        for lane in 0..LANES {
+            let which = lane.min(2);
+            let [a, b, c, _] = points[which];
+            let logs = [new[which][0], new[which][1], new[which][2]].map(|v| self.store.log(v));
+            batch.set(lane, [a, b, c], logs.each_ref());
+        }
+        batch.prepare();
+        let [x, y, z, _] = batch.shapes(points[0][3], &self.store.log(new[0][3])).mean_ratios();
+        Some([x, y, z])
     }
 }

@@ -4,13 +4,10 @@
 //! twice and for half of it.
 use super::ids::{FACE, TetId, VertexId};
 use super::store::Store;
-use crate::mesh::vector::{Vec3, add, lerp, scale};
+use crate::mesh::vector::{Vec3, add, lerp, scale, sub};
 use crate::metric::Sym3;
-use crate::metric::batch::{Batch, Shapes, Spokes};
+use crate::metric::batch::{Batch, Bowl, Shapes, Spokes};
 use crate::metric::lanes::{LANES, Lanes};
-
-/// Length in the metric of the step down the gradient.
-const STEP: f64 = 0.3;
 
 /// Q³ at least, where a tetrahedron that is nearly flat would make the energy blind for all others.
 const LEAST_CUBE: f64 = 1e-18;
@@ -58,20 +55,48 @@ impl Fan {
         }
     }
 
-    /// The energy with the vertex at p, of metric M there; and the place that the lengths ask for: the mean of the points that have
-    /// unit distance from the neighbours, in the direction of p (pliant).
-    pub fn present(&mut self, p: Vec3, log: &Sym3, metric: &Sym3) -> (f64, Vec3) {
-        self.falls_below(f64::INFINITY, p, log);
-        let mut sum = [0.0; 3];
-        let mut energy = self.energy;
+    /// The energy about p to second order, with the metric as it is at p; `None` where a tetrahedron is flat.
+    pub fn bowl(&self, p: Vec3, log: &Sym3, metric: &Sym3) -> Option<Bowl> {
+        let mut sum = Bowl { energy: 0.0, gradient: [0.0; 3], hessian: Sym3::ZERO };
+        for (first, batch) in (0..self.tets).step_by(LANES).zip(&self.batches) {
+            let bowl = batch.bowl(p, log, LANES.min(self.tets - first))?;
+            sum.energy += bowl.energy;
+            sum.gradient = add(sum.gradient, bowl.gradient);
+            sum.hessian = sum.hessian.plus(bowl.hessian);
+        }
         for (first, spokes) in (0..self.ends).step_by(LANES).zip(&self.spokes) {
             let lengths = spokes.lengths(p, metric);
             for lane in 0..LANES.min(self.ends - first) {
-                energy += misfit(lengths[lane]);
+                let length = lengths[lane].max(0.1);
+                sum.energy += misfit(length);
+                // φ = ((L − 1/L)/2)²; ∇L = M(p − x)/L. Of the Hessian the part that is never negative.
+                let inverse = 1.0 / length;
+                let slope = 0.5 * (length - inverse) * (1.0 + inverse * inverse);
+                let bend = 0.5 * (1.0 + 3.0 * inverse.powi(4));
+                let out = scale(metric.apply(sub(p, spokes.end(lane))), inverse);
+                sum.gradient = add(sum.gradient, scale(out, slope));
+                sum.hessian = sum.hessian.plus(Sym3::outer(out, bend));
+            }
+        }
+        Some(sum)
+    }
+
+    /// The mean of the points that have unit distance from the neighbours, in the direction of p (pliant).
+    pub fn pliant(&self, p: Vec3, metric: &Sym3) -> Vec3 {
+        let mut sum = [0.0; 3];
+        for (first, spokes) in (0..self.ends).step_by(LANES).zip(&self.spokes) {
+            let lengths = spokes.lengths(p, metric);
+            for lane in 0..LANES.min(self.ends - first) {
                 sum = add(sum, lerp(spokes.end(lane), p, 1.0 / lengths[lane].max(0.1)));
             }
         }
-        (energy, scale(sum, 1.0 / self.ends as f64))
+        scale(sum, 1.0 / self.ends as f64)
+    }
+
+    /// The energy with the vertex at p; flat tetrahedra count as all but flat.
+    pub fn energy(&mut self, p: Vec3, log: &Sym3, metric: &Sym3) -> f64 {
+        self.falls_below(f64::INFINITY, p, log);
+        self.with_lengths(p, metric)
     }
 
     /// Whether the shapes' part of the energy is below the limit with the vertex at p: no tetrahedron is inverted then (exact).
@@ -95,31 +120,18 @@ impl Fan {
         true
     }
 
-    /// Whether the energy is below the limit, after [`Fan::falls_below`] at the same place.
-    pub fn lengths_allow(&self, limit: f64, p: Vec3, metric: &Sym3) -> bool {
+    /// The whole energy, after [`Fan::falls_below`] at the same place.
+    pub fn with_lengths(&self, p: Vec3, metric: &Sym3) -> f64 {
         let mut energy = self.energy;
         for (first, spokes) in (0..self.ends).step_by(LANES).zip(&self.spokes) {
             let lengths = spokes.lengths(p, metric);
             energy += lengths.iter().take(self.ends - first).map(|&length| misfit(length)).sum::<f64>();
         }
-        energy < limit
+        energy
     }
 
     /// Mean ratios at the place that was tried last, in the order of the ball.
     pub fn mean_ratios(&self) -> impl Iterator<Item = f64> + '_ {
         self.cubes.iter().flat_map(|&cubes| Shapes { cubes }.mean_ratios()).take(self.tets)
-    }
-
-    /// A step down the gradient of the shapes' energy: M⁻¹∇E, after [`Fan::present`] at the same place.
-    pub fn downhill(&mut self, p: Vec3, log: &Sym3, metric: &Sym3) -> Vec3 {
-        self.falls_below(f64::INFINITY, p, log);
-        let mut gradient = [0.0; 3];
-        for ((first, batch), cubes) in (0..self.tets).step_by(LANES).zip(&self.batches).zip(&self.cubes) {
-            gradient = add(gradient, batch.pull(p, log, cubes, LANES.min(self.tets - first)));
-        }
-        // The pull is up the quality.
-        let step = metric.inverse().apply(gradient);
-        let length = metric.quadratic(step).sqrt();
-        add(p, scale(step, if length > 0.0 { STEP / length } else { 0.0 }))
     }
 }

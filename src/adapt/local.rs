@@ -2,8 +2,9 @@
 
 /// A set of 32-bit ids with open addressing.
 pub struct LocalSet {
-    slots: Vec<(u32, u32)>,
-    stamp: u32,
+    /// The stamp of the last clearing above the id: one comparison tells whether a slot holds an id now.
+    slots: Vec<u64>,
+    stamp: u64,
     len: usize,
 }
 
@@ -14,7 +15,7 @@ fn spread(key: u64) -> usize {
 
 impl Default for LocalSet {
     fn default() -> Self {
-        Self { slots: vec![(0, 0); 256], stamp: 1, len: 0 }
+        Self { slots: vec![0; 256], stamp: 1 << 32, len: 0 }
     }
 }
 
@@ -23,10 +24,10 @@ impl LocalSet {
     #[inline]
     pub fn clear(&mut self) {
         self.len = 0;
-        self.stamp = self.stamp.wrapping_add(1);
+        self.stamp = self.stamp.wrapping_add(1 << 32);
         if self.stamp == 0 {
-            self.slots.fill((0, 0));
-            self.stamp = 1;
+            self.slots.fill(0);
+            self.stamp = 1 << 32;
         }
     }
 
@@ -36,16 +37,17 @@ impl LocalSet {
         if self.len * 2 >= self.slots.len() {
             self.grow();
         }
+        let wanted = self.stamp | u64::from(id);
         let mask = self.slots.len() - 1;
         let mut at = spread(u64::from(id)) & mask;
         loop {
-            let (stamp, key) = self.slots[at];
-            if stamp != self.stamp {
-                self.slots[at] = (self.stamp, id);
+            let slot = self.slots[at];
+            if slot < self.stamp {
+                self.slots[at] = wanted;
                 self.len += 1;
                 return true;
             }
-            if key == id {
+            if slot == wanted {
                 return false;
             }
             at = (at + 1) & mask;
@@ -55,15 +57,13 @@ impl LocalSet {
     /// Whether the id is in the set.
     #[inline]
     pub fn contains(&self, id: u32) -> bool {
+        let wanted = self.stamp | u64::from(id);
         let mask = self.slots.len() - 1;
         let mut at = spread(u64::from(id)) & mask;
         loop {
-            let (stamp, key) = self.slots[at];
-            if stamp != self.stamp {
-                return false;
-            }
-            if key == id {
-                return true;
+            let slot = self.slots[at];
+            if slot < self.stamp || slot == wanted {
+                return slot == wanted;
             }
             at = (at + 1) & mask;
         }
@@ -71,13 +71,12 @@ impl LocalSet {
 
     #[cold]
     fn grow(&mut self) {
-        let larger = vec![(0, 0); self.slots.len() * 2];
+        let larger = vec![0; self.slots.len() * 2];
         let old = std::mem::replace(&mut self.slots, larger);
         self.len = 0;
-        for (stamp, key) in old {
-            if stamp == self.stamp {
-                self.insert(key);
-            }
+        let stamp = self.stamp;
+        for slot in old.into_iter().filter(|&slot| slot >= stamp) {
+            self.insert(slot as u32);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The end-game on the worst tetrahedra: what reconnection and smoothing left is tried with larger cavities.
 use super::access::Access;
+use super::ball::Ball;
 use super::ids::{TetId, VertexId};
 use super::outcome::Refusal;
 use super::star::{Bounds, Seed};
@@ -38,10 +39,10 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Makes the ball of a vertex a star over a cavity that grows where tetrahedra would be bad.
     fn rejoin(&mut self, v: VertexId, floor: f64) -> Result<(), Refusal> {
-        self.gather_ball(v)?;
-        let ball = std::mem::take(&mut self.state.ball);
+        let mut ball = std::mem::take(&mut self.state.ball);
         let bounds = Bounds { wanted: self.context.limits.improve_below, floor };
-        let result = self.build_star(Seed::Vertex(v), v, &ball, bounds);
+        let gathered = self.gather_ball(v, &mut ball);
+        let result = gathered.and_then(|()| self.build_star(Seed::Vertex(v), v, &ball.tets, bounds));
         self.state.ball = ball;
         let worst = result?;
         if worst < GAIN * self.worst_old() {
@@ -57,33 +58,24 @@ impl<A: Access> Worker<'_, '_, A> {
         if matches!(self.store.entity(v), Entity::Vertex(_)) {
             return Err(Refusal::Geometry);
         }
-        self.gather_ball(v)?;
-        let ball = std::mem::take(&mut self.state.ball);
-        self.list_link(v, &ball);
+        let mut ball = std::mem::take(&mut self.state.ball);
+        let result = self.gather_ball(v, &mut ball).and_then(|()| self.remove_ball(v, &ball, floor));
         self.state.ball = ball;
-        let link = std::mem::take(&mut self.state.neighbours);
-        let link = self.copy_link(link);
+        result
+    }
+
+    fn remove_ball(&mut self, v: VertexId, ball: &Ball, floor: f64) -> Result<(), Refusal> {
         let mut best: Result<(f64, VertexId), Refusal> = Err(Refusal::Shape);
-        for &w in &link {
+        for &w in &ball.link {
             let better = best.map_or(floor, |(quality, _)| quality);
-            match self.try_collapse(v, w, better) {
+            match self.try_collapse(v, w, ball, better) {
                 Ok(quality) => best = Ok((quality, w)),
-                Err(Refusal::Conflict) => {
-                    best = Err(Refusal::Conflict);
-                    break;
-                }
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
                 Err(_) => {}
             }
         }
-        self.state.neighbours = link;
         let (_, w) = best?;
-        self.try_collapse(v, w, floor)?;
+        self.try_collapse(v, w, ball, floor)?;
         self.finish_collapse(v, w)
-    }
-
-    fn copy_link(&self, mut copy: Vec<VertexId>) -> Vec<VertexId> {
-        copy.clear();
-        copy.extend(&self.state.star.link);
-        copy
     }
 }

@@ -1,5 +1,6 @@
 //! Collapse to the middle: where neither end of a short edge can go onto the other, both meet half-way.
 use super::access::Access;
+use super::ball::Ball;
 use super::ids::{TetId, VertexId};
 use super::outcome::Refusal;
 use super::star::{Bounds, Seed};
@@ -13,24 +14,22 @@ impl<A: Access> Worker<'_, '_, A> {
     ///
     /// # Errors
     /// As a collapse; the mesh is as it was then.
-    pub fn merge(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
+    pub fn merge(&mut self, v: VertexId, w: VertexId, balls: [&Ball; 2]) -> Result<(), Refusal> {
         if self.store.entity(v) != self.store.entity(w) || self.context.is_frozen(w) {
             return Err(Refusal::Geometry);
         }
         self.check_entities(v, w)?;
         let mut both = std::mem::take(&mut self.state.union);
-        let result = self.merge_in(v, w, &mut both);
+        both.clear();
+        let store = self.store;
+        both.extend(&balls[0].tets);
+        both.extend(balls[1].tets.iter().filter(|&&t| !store.vertices(t).contains(&v)));
+        let result = self.merge_in(v, w, balls, &both);
         self.state.union = both;
         result
     }
 
-    fn merge_in(&mut self, v: VertexId, w: VertexId, both: &mut Vec<TetId>) -> Result<(), Refusal> {
-        both.clear();
-        self.gather_ball(v)?;
-        both.extend(&self.state.ball);
-        self.gather_ball(w)?;
-        let store = self.store;
-        both.extend(self.state.ball.iter().filter(|&&t| !store.vertices(t).contains(&v)));
+    fn merge_in(&mut self, v: VertexId, w: VertexId, balls: [&Ball; 2], both: &[TetId]) -> Result<(), Refusal> {
         let facing = self.facing_of_both(v, w, both);
         let bend = self.spread_at(v).min(self.spread_at(w)).min(self.context.limits.spread);
         let held = self.hold(w);
@@ -38,7 +37,16 @@ impl<A: Access> Worker<'_, '_, A> {
         let placed = self.place(held.placed.entity, middle, &[v, w]);
         self.set_point(w, placed.point, held.hint);
         self.store.set_place(w, placed.entity, placed.parameters);
-        let result = self.check_merged_bend(v, w, bend).and_then(|()| self.merge_star(v, w, both, facing));
+        let limit = self.context.limits.longest_new;
+        let reach = |worker: &Self| {
+            let mut ends = balls.iter().flat_map(|ball| &ball.link);
+            match ends.any(|&x| x != v && x != w && worker.is_longer(w, x, limit)) {
+                true => Err(Refusal::Length),
+                false => Ok(()),
+            }
+        };
+        let result = reach(self).and_then(|()| self.check_merged_bend(v, w, bend));
+        let result = result.and_then(|()| self.merge_star(v, w, both, facing));
         result.inspect_err(|_| self.put_back(w, &held))
     }
 
@@ -63,13 +71,7 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     fn merge_star(&mut self, v: VertexId, w: VertexId, both: &[TetId], facing: Facing) -> Result<(), Refusal> {
-        self.list_link(w, both);
-        let limit = self.context.limits.longest_new;
-        if self.state.star.link.iter().any(|&x| x != v && self.length(w, x) > limit) {
-            return Err(Refusal::Length);
-        }
-        let worst_old = both.iter().map(|&t| self.store.quality(t)).fold(f64::INFINITY, f64::min);
-        let floor = self.context.limits.collapse_floor.min(worst_old);
+        let floor = self.context.limits.collapse_floor.min(self.worst_of(both));
         self.build_star(Seed::Pair(v, w), w, both, Bounds { wanted: 0.0, floor })?;
         if !self.state.star.surface.is_empty() {
             self.check_surface_link(v, w)?;

@@ -1,6 +1,7 @@
 //! The kernel: the mesh store, its operations, and the passes that make a unit mesh.
 mod access;
 mod build;
+mod ball;
 mod cavity;
 #[cfg(test)]
 mod check;
@@ -26,6 +27,7 @@ mod pipeline;
 mod project;
 mod reconnect;
 mod required;
+mod ring;
 mod run;
 mod schedule;
 mod shape;

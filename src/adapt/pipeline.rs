@@ -2,12 +2,16 @@
 use super::context::{Context, LONG, Limits};
 use super::create::{self, PointCreation};
 use super::criteria::Criterion;
-use super::edges::{self, Measured};
-use super::ids::{TetId, VertexId};
+use super::edges;
+use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
 use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
-use super::worker::State;
+use super::shape::{is_longer, is_shorter};
+use super::store::Store;
+use super::worker::{ID_BLOCK, State};
+use crate::mesh::vector::sub;
+use crate::metric::quality::edge_length;
 use crate::tasks::Pool;
 use std::time::{Duration, Instant};
 
@@ -28,6 +32,9 @@ const PATIENCE: usize = 1;
 
 /// Tetrahedra below this mean ratio go through the end-game.
 const MEND_BELOW: f64 = 0.3;
+
+/// Tetrahedra that an insertion adds, with much to spare: six is usual.
+const TETS_A_VERTEX: usize = 12;
 
 /// Number of kinds of operations.
 pub const KINDS: usize = 6;
@@ -93,7 +100,7 @@ pub trait Observer: Sync {
 
 /// Limits while shapes are improved: nothing may become bad that is not.
 fn shape_limits() -> Limits {
-    Limits { improve_below: 0.9, insert_floor: 0.2, insert_loss: 1.0, ..Limits::default() }
+    Limits { improve_below: crate::adapt::context::env("IB", 0.9), insert_floor: 0.2, insert_loss: 1.0, ..Limits::default() }
 }
 
 /// The passes on one mesh.
@@ -146,7 +153,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
         self.reorder();
-        self.context.limits = Limits { improve_below: 0.4, ..Limits::default() };
+        self.context.limits = Limits { improve_below: crate::adapt::context::env("RS", 0.4), shortest_new: crate::adapt::context::env("SN", 0.5), ..Limits::default() };
         for _ in 0..SIZE_PASSES {
             if self.size_pass() || self.observer.stop() {
                 break;
@@ -155,7 +162,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
         self.looked = [0; KINDS];
         self.reorder();
-        for pass in 0..SHAPE_PASSES {
+        for pass in 0..crate::adapt::context::env("SP", SHAPE_PASSES as f64) as usize {
             self.pass += 1;
             self.context.limits = shape_limits();
             let quiet = self.shape_pass();
@@ -183,13 +190,38 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.refine(1);
         self.collapse(1);
         self.reconnect(self.criterion, 1);
+        let b = self.context.limits.improve_below;
+        self.context.limits.improve_below = crate::adapt::context::env("SS", 0.4);
         self.smooth(1);
-        ((self.changes() - before) as f64) < LITTLE * self.context.store.vertex_bound() as f64
+        self.context.limits.improve_below = b;
+        ((self.changes() - before) as f64) < crate::adapt::context::env("LITTLE", 0.05) * self.context.store.vertex_bound() as f64
     }
 
     /// One pass of all operations; whether it changed little.
     fn shape_pass(&mut self) -> bool {
         let before = self.changes();
+        if let Ok(seq) = std::env::var("SEQ") {
+            self.looked[Kind::Split as usize] = 0;
+            for c in seq.chars() {
+                match c {
+                    'r' => {
+                        let b = self.context.limits.improve_below;
+                        self.context.limits.improve_below = crate::adapt::context::env("RR", 0.9);
+                        self.reconnect(Criterion::MeanRatio, 1);
+                        self.context.limits.improve_below = b;
+                    }
+                    's' => self.smooth(1),
+                    'c' => self.collapse(1),
+                    'i' => {
+                        let items = self.long_edges();
+                        self.sweep(Kind::Split, &Split, &items);
+                        self.project();
+                    }
+                    _ => panic!(),
+                }
+            }
+            return ((self.changes() - before) as f64) < crate::adapt::context::env("SETTLED", 0.01) * self.context.store.vertex_bound() as f64;
+        }
         self.reconnect(Criterion::MeanRatio, 2);
         self.smooth(1);
         self.collapse(2);
@@ -288,7 +320,12 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn smooth(&mut self, sweeps: usize) {
         for _ in 0..sweeps {
             let since = self.begin(Kind::Smooth);
-            let changed = self.changed(since);
+            let limit = self.context.limits.improve_below;
+            let store = &self.context.store;
+            let mut changed = vec![false; store.vertex_bound()];
+            for t in store.live_tets().filter(|&t| store.moved(t) >= since && store.quality(t) < limit) {
+                store.vertices(t).iter().for_each(|v| changed[v.index()] = true);
+            }
             let live = self.context.store.live_vertices();
             let items: Vec<VertexId> = live.filter(|v| changed[v.index()]).collect();
             if self.observer.stop() || self.sweep(Kind::Smooth, &Smooth, &items).done == 0 {
@@ -303,10 +340,10 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     }
 
     /// For each vertex whether one of its tetrahedra changed at or after the time.
-    fn changed(&self, since: u32) -> Vec<bool> {
+    fn changed(&self, since: u32, stamp: impl Fn(&Store, TetId) -> u32) -> Vec<bool> {
         let store = &self.context.store;
         let mut changed = vec![false; store.vertex_bound()];
-        for t in store.live_tets().filter(|&t| store.stamp(t) >= since) {
+        for t in store.live_tets().filter(|&t| stamp(store, t) >= since) {
             store.vertices(t).iter().for_each(|v| changed[v.index()] = true);
         }
         changed
@@ -326,22 +363,54 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
     }
 
+    /// Makes room for so many new vertices, with the tetrahedra about them, and for what flips add.
+    fn make_room(&mut self, new: usize) {
+        let store = &mut self.context.store;
+        let slack = ID_BLOCK * self.states.len();
+        let vertices = new + slack;
+        let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
+        let room = store.room();
+        if room.0 < vertices || room.1 < tets {
+            // More than is needed, so that it is not needed again soon: untouched pages cost no memory.
+            store.reserve(vertices + store.vertex_bound(), tets + store.tet_bound());
+        }
+    }
+
     /// One sweep of an operation over its items.
     fn sweep<O: Operation>(&mut self, kind: Kind, operation: &O, items: &[O::Item]) -> Counts {
         if items.is_empty() {
             return Counts::default();
         }
-        let (vertices, tets) = (self.context.store.vertex_bound(), self.context.store.tet_bound());
-        let room = self.context.store.room();
-        if room.0 < vertices / 2 || room.1 < tets / 2 {
-            self.context.store.reserve(vertices, tets);
-        }
+        self.make_room(if kind == Kind::Split { items.len() } else { 0 });
         self.context.store.tick();
         let start = Instant::now();
         self.observer.begin(kind, self.pass, items.len());
         let advance = |n: usize| self.observer.advance(n);
         let counts = schedule::run(operation, items, self.context, &mut self.states, self.pool, &advance);
         self.observer.end(&counts);
+        if std::env::var_os("GEO_ADAPT_TRACE").is_some() {
+            let store = &self.context.store;
+            let (mut n, mut sum, mut min) = (0.0, 0.0, 1.0f64);
+            for t in store.live_tets() {
+                let q = store.quality(t);
+                n += 1.0;
+                sum += q;
+                min = min.min(q);
+            }
+            let (mut edges, mut unit) = (0.0, 0.0);
+            for t in store.live_tets() {
+                let v = store.vertices(t);
+                for [i, j] in EDGE {
+                    let d = sub(store.position(v[j]), store.position(v[i]));
+                    let l = edge_length(d, &store.metric(v[i]), &store.metric(v[j]));
+                    edges += 1.0;
+                    if l > 0.7071 && l < 1.41421 {
+                        unit += 1.0;
+                    }
+                }
+            }
+            eprintln!("      tets {n} mean {:.4} least {min:.4} unit {:.2}", sum / n, 100.0 * unit / edges);
+        }
         let work = &mut self.work[kind as usize];
         work.counts.add(&counts);
         work.sweeps += 1;
@@ -353,16 +422,16 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
         let (store, limit) = (&self.context.store, self.context.limits.long);
-        let found = edges::measured(store, &self.changed(since), |length| length > limit);
+        let found = edges::listed(store, &self.changed(since, Store::stamp), |a, b| is_longer(a, b, limit));
         let dimension = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
-        edges::in_order(&found, |edge| (dimension(&edge.item) + 1) * edges::LENGTHS - 1 - edge.rank())
+        edges::in_order(&found, |edge| (dimension(&edge.item) + 1) * edges::CLASSES - 1 - u32::from(edge.class))
     }
 
     /// Edges to be collapsed, short ones first.
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
         let (store, limit) = (&self.context.store, self.context.limits.short);
-        let found = edges::measured(store, &self.changed(since), |length| length < limit);
-        edges::in_order(&found, Measured::rank)
+        let found = edges::listed(store, &self.changed(since, Store::stamp), |a, b| is_shorter(a, b, limit));
+        edges::in_order(&found, |edge| u32::from(edge.class))
     }
 }

@@ -19,21 +19,23 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Refused as `Inverted` while it has not arrived: to be tried again after reconnection.
     pub fn project(&mut self, v: VertexId) -> Result<(), Refusal> {
         self.claim_live(v)?;
-        self.gather_ball(v)?;
-        let ball = std::mem::take(&mut self.state.ball);
+        let mut ball = std::mem::take(&mut self.state.ball);
+        let result = self.gather_ball(v, &mut ball).and_then(|()| self.project_ball(v, &ball.tets));
+        self.state.ball = ball;
+        result
+    }
+
+    fn project_ball(&mut self, v: VertexId, ball: &[TetId]) -> Result<(), Refusal> {
         let (start, hint) = (self.store.position(v), self.store.hint(v));
         let goal = self.place(self.store.entity(v), start, &[v]);
         if has_arrived(start, goal) {
             // Smoothing was here before, or the id belongs to another vertex now.
-            self.state.ball = ball;
             return Ok(());
         }
-        let result = self.carry(v, &ball, goal).or_else(|refusal| {
+        self.carry(v, ball, goal).or_else(|refusal| {
             self.set_point(v, start, hint);
-            if refusal == Refusal::Conflict { Err(refusal) } else { self.approach(v, &ball, goal) }
-        });
-        self.state.ball = ball;
-        result
+            if refusal == Refusal::Conflict { Err(refusal) } else { self.approach(v, ball, goal) }
+        })
     }
 
     /// Puts the vertex on the goal and makes its ball a star about it there.

@@ -1,16 +1,19 @@
-//! Smoothing: a vertex moves, within its entity of the model, to where its tetrahedra are better.
+//! Smoothing: a vertex moves, within its entity of the model, to where its tetrahedra and edges are better.
 //!
-//! Two directions are tried: to the mean of the places that give its edges unit length (pliant), and down the gradient of
-//! the energy Σ 1/Q³ of its tetrahedra, measured in its metric. A step counts only if the energy falls, no
-//! tetrahedron is inverted (exact), and the surface does not turn from its model.
+//! The energy of [`super::fan`] is convex about a vertex as long as the metric is held, so Newton's step finds its minimum at
+//! once; how much a step can save is known before anything is tried. A step counts only if the energy falls
+//! with the metric of the new place, no tetrahedron is inverted (exact), and the surface does not turn from its model.
 use super::access::Access;
+use super::ball::Ball;
 use super::fan::Fan;
-use super::ids::{FACE, TetId, VertexId};
+use super::ids::VertexId;
 use super::outcome::Refusal;
 use super::surface::Placed;
 use super::worker::Worker;
-use crate::geometry::Entity;
-use crate::mesh::vector::{Vec3, lerp};
+use crate::geometry::{Entity, Evaluate};
+use crate::mesh::vector::{Vec3, add, dot, lerp, scale, unit};
+use crate::metric::batch::Bowl;
+use crate::metric::plane_basis;
 use crate::metric::Sym3;
 
 /// Where a vertex is, to be put back.
@@ -24,10 +27,13 @@ pub struct Held {
     pub hint: u32,
 }
 
-/// Part of the energy that a step must save.
-const GAIN: f64 = 0.01;
+/// Part of the energy that a step must promise to save, and of which it must keep half.
+const GAIN: f64 = 0.005;
 
-/// Parts of a direction that are tried.
+/// Longest step in the metric.
+const LONGEST: f64 = 0.5;
+
+/// Parts of the pliant direction that are tried.
 const STEPS: [f64; 2] = [0.8, 0.3];
 
 impl<A: Access> Worker<'_, '_, A> {
@@ -38,54 +44,96 @@ impl<A: Access> Worker<'_, '_, A> {
         if matches!(entity, Entity::Vertex(_)) || self.context.is_frozen(v) {
             return Err(Refusal::Geometry);
         }
-        self.gather_ball(v)?;
-        let ball = std::mem::take(&mut self.state.ball);
-        let result = self.smooth_in(v, &ball);
+        let mut ball = std::mem::take(&mut self.state.ball);
+        let result = self.gather_ball(v, &mut ball).and_then(|()| self.smooth_in(v, &ball));
         self.state.ball = ball;
         result
     }
 
-    fn smooth_in(&mut self, v: VertexId, ball: &[TetId]) -> Result<(), Refusal> {
-        let worst = ball.iter().map(|&t| self.store.quality(t)).fold(f64::INFINITY, f64::min);
-        if worst >= self.context.limits.improve_below {
+    fn smooth_in(&mut self, v: VertexId, ball: &Ball) -> Result<(), Refusal> {
+        if self.worst_of(&ball.tets) >= self.context.limits.improve_below {
             return Err(Refusal::Stale);
         }
-        self.list_link(v, ball);
         let mut triangles = std::mem::take(&mut self.state.star.surface);
         triangles.clear();
-        self.list_surface(v, ball, &mut triangles);
+        self.list_surface(v, &ball.tets, &mut triangles);
         let moved = self.descend(v, ball, &triangles);
         self.state.star.surface = triangles;
         if moved { Ok(()) } else { Err(Refusal::Shape) }
     }
 
     /// Tries the directions in turn, each with shorter and shorter steps, until the vertex moves; whether it did.
-    fn descend(&mut self, v: VertexId, ball: &[TetId], triangles: &[([VertexId; 3], u32)]) -> bool {
+    fn descend(&mut self, v: VertexId, ball: &Ball, triangles: &[([VertexId; 3], u32)]) -> bool {
         let mut fan = std::mem::take(&mut self.state.fan);
-        fan.fill(self.store, v, ball, &self.state.star.link);
+        fan.fill(self.store, v, &ball.tets, &ball.link);
         let moved = self.descend_in(v, ball, triangles, &mut fan);
         self.state.fan = fan;
         moved
     }
 
-    fn descend_in(&mut self, v: VertexId, ball: &[TetId], triangles: &[([VertexId; 3], u32)], fan: &mut Fan) -> bool {
+    fn descend_in(&mut self, v: VertexId, ball: &Ball, triangles: &[([VertexId; 3], u32)], fan: &mut Fan) -> bool {
         let held = self.hold(v);
         let from = held.placed.point;
-        let (present, pliant) = fan.present(from, &held.log, &held.metric);
-        let limit = present * (1.0 - GAIN);
-        for direction in 0..2 {
-            let to = if direction == 0 { pliant } else { fan.downhill(from, &held.log, &held.metric) };
-            for step in STEPS {
-                if self.try_move(v, &held, lerp(from, to, step), triangles, fan, limit) {
-                    for (&t, shape) in ball.iter().zip(fan.mean_ratios()) {
-                        self.store.set_quality(t, shape);
-                        self.store.touch(t);
-                    }
-                    return true;
-                }
-            }
+        let Some(bowl) = fan.bowl(from, &held.log, &held.metric) else {
+            let limit = fan.energy(from, &held.log, &held.metric) * (1.0 - GAIN);
+            let to = fan.pliant(from, &held.metric);
+            return STEPS.into_iter().any(|step| self.move_to(v, &held, lerp(from, to, step), ball, triangles, fan, limit));
+        };
+        let step = self.newton_step(&held.placed, &bowl);
+        let limit = bowl.energy * (1.0 - 0.5 * GAIN);
+        // What the whole step would save is known; if that is too little, nothing is tried.
+        if -0.5 * dot(bowl.gradient, step) < GAIN * bowl.energy {
+            return false;
         }
-        false
+        let length = held.metric.quadratic(step).sqrt();
+        let step = scale(step, (LONGEST / length).min(1.0));
+        [1.0, 0.4].into_iter().any(|part| self.move_to(v, &held, add(from, scale(step, part)), ball, triangles, fan, limit))
+    }
+
+    /// −H⁻¹g within the tangent space of the entity.
+    fn newton_step(&mut self, placed: &Placed, bowl: &Bowl) -> Vec3 {
+        let (g, h) = (bowl.gradient, &bowl.hessian);
+        match placed.entity {
+            Entity::Vertex(_) => [0.0; 3],
+            Entity::Edge(curve) => {
+                let t = unit(self.state.evaluator.edge_frame(curve, placed.parameters[0]).d1);
+                scale(t, -dot(g, t) / h.quadratic(t))
+            }
+            Entity::Face(face) => {
+                let normal = match self.context.planes[face as usize] {
+                    Some(normal) => normal,
+                    None => self.state.evaluator.face_normal(face, placed.parameters),
+                };
+                let (x, y) = plane_basis(normal);
+                let (a, b, c) = (h.quadratic(x), dot(x, h.apply(y)), h.quadratic(y));
+                let (gx, gy) = (dot(g, x), dot(g, y));
+                let det = a * c - b * b;
+                add(scale(x, (b * gy - c * gx) / det), scale(y, (b * gx - a * gy) / det))
+            }
+            Entity::Interior => scale(h.solve(g), -1.0),
+        }
+    }
+
+    /// [`Worker::try_move`], noted in the tetrahedra.
+    #[allow(clippy::too_many_arguments)]
+    fn move_to(
+        &mut self,
+        v: VertexId,
+        held: &Held,
+        target: Vec3,
+        ball: &Ball,
+        triangles: &[([VertexId; 3], u32)],
+        fan: &mut Fan,
+        limit: f64,
+    ) -> bool {
+        if !self.try_move(v, held, target, triangles, fan, limit) {
+            return false;
+        }
+        for (&t, shape) in ball.tets.iter().zip(fan.mean_ratios()) {
+            self.store.set_quality(t, shape);
+            self.store.touch(t);
+        }
+        true
     }
 
     /// Moves the vertex to the closest point of its entity when the energy falls below `limit` there and the surface stays.
@@ -105,7 +153,7 @@ impl<A: Access> Worker<'_, '_, A> {
             return false;
         }
         let metric = log.exp();
-        if !fan.lengths_allow(limit, placed.point, &metric) {
+        if fan.with_lengths(placed.point, &metric) >= limit {
             return false;
         }
         let facing = (!triangles.is_empty()).then(|| self.facing(triangles));
@@ -137,30 +185,5 @@ impl<A: Access> Worker<'_, '_, A> {
         self.store.set_metric(v, &held.log, &held.metric);
         self.store.set_place(v, held.placed.entity, held.placed.parameters);
         self.store.set_hint(v, held.hint);
-    }
-
-    /// Lists the vertices joined to v in `state.star.link`.
-    pub fn list_link(&mut self, v: VertexId, ball: &[TetId]) {
-        let (set, link) = (&mut self.state.set, &mut self.state.star.link);
-        set.clear();
-        link.clear();
-        set.insert(v.0);
-        for &t in ball {
-            link.extend(self.store.vertices(t).into_iter().filter(|x| set.insert(x.0)));
-        }
-    }
-
-    /// Adds the surface triangles at v to the list, outward, with their tags.
-    pub fn list_surface(&self, v: VertexId, ball: &[TetId], triangles: &mut Vec<([VertexId; 3], u32)>) {
-        if self.store.dimension(v) == 3 {
-            return;
-        }
-        for &t in ball {
-            let (w, tags, n) = (self.store.vertices(t), self.store.tags(t), self.store.neighbours(t));
-            for i in (0..4).filter(|&i| tags[i] != 0 && w[i] != v && w.contains(&v) && (!n[i].is_some() || t < n[i])) {
-                let [a, b, c] = FACE[i].map(|k| w[k]);
-                triangles.push(([a, c, b], tags[i]));
-            }
-        }
     }
 }

@@ -10,6 +10,9 @@ use super::local::LocalSet;
 use super::outcome::Refusal;
 use super::worker::Worker;
 use crate::geometry::Entity;
+use crate::mesh::vector::Vec3;
+use crate::metric::Sym3;
+use crate::metric::lanes::LANES;
 
 /// What the star replaces; decides which surface triangles are consumed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +73,22 @@ struct Seen {
     tet: NewTet,
 }
 
+/// A face that a tetrahedron may stand on.
+#[derive(Clone, Copy)]
+struct Wanted {
+    t: TetId,
+    behind: TetId,
+    tag: u32,
+    vertices: [VertexId; 4],
+}
+
+/// The vertex in the middle.
+struct Apex {
+    id: VertexId,
+    point: Vec3,
+    log: Sym3,
+}
+
 /// A star cavity in preparation.
 #[derive(Default)]
 pub struct Star {
@@ -78,6 +97,7 @@ pub struct Star {
     linked: LocalSet,
     seen: Vec<Seen>,
     open: Vec<(TetId, usize)>,
+    wanted: Vec<Wanted>,
     /// Vertices that the apex will be joined to.
     pub link: Vec<VertexId>,
     /// Surface triangles that go (outward), with their tags.
@@ -113,25 +133,33 @@ impl<A: Access> Worker<'_, '_, A> {
         star.seen.clear();
         star.open.clear();
         star.surface.clear();
+        star.wanted.clear();
         self.state.replacement.clear();
         for &t in seeds {
             star.inside.insert(t.0);
             self.state.replacement.old.push(t);
             star.open.extend((0..4).map(|i| (t, i)));
         }
-        while let Some((t, i)) = star.open.pop() {
-            self.look_at_face(star, seed, apex, (t, i), bounds)?;
+        let apex = Apex { id: apex, point: self.store.position(apex), log: self.store.log(apex) };
+        loop {
+            while star.wanted.len() < LANES {
+                let Some((t, i)) = star.open.pop() else { break };
+                self.look_at_face(star, seed, apex.id, (t, i))?;
+            }
+            if star.wanted.is_empty() {
+                return Ok(());
+            }
+            self.judge_faces(star, &apex, bounds)?;
         }
-        Ok(())
     }
 
+    /// Sorts a face of the cavity in: consumed, inside, or wanted as base of a tetrahedron.
     fn look_at_face(
         &mut self,
         star: &mut Star,
         seed: Seed,
         apex: VertexId,
         (t, i): (TetId, usize),
-        bounds: Bounds,
     ) -> Result<(), Refusal> {
         let (v, tag, behind) = (self.store.vertices(t), self.store.tags(t)[i], self.store.neighbour(t, i));
         let face = FACE[i].map(|k| v[k]);
@@ -149,24 +177,50 @@ impl<A: Access> Worker<'_, '_, A> {
         let vertices = [face[0], face[1], face[2], apex];
         if face.contains(&apex) {
             star.seen.push(Seen { behind, tag, tet: NewTet { vertices, region: u32::MAX, quality: 1.0 } });
-            return Ok(());
+        } else {
+            star.wanted.push(Wanted { t, behind, tag, vertices });
         }
-        let quality = self.shape(vertices);
-        let may_grow = behind.is_some() && tag == 0 && self.state.replacement.old.len() < self.context.limits.cavity;
-        if (quality <= 0.0 || quality < bounds.wanted) && may_grow {
-            self.claim_tet(behind)?;
-            star.inside.insert(behind.0);
-            self.state.replacement.old.push(behind);
-            star.open.extend((0..4).filter(|&j| self.store.neighbour(behind, j) != t).map(|j| (behind, j)));
-            return Ok(());
+        Ok(())
+    }
+
+    /// Finds the mean ratios over up to four wanted faces: each is seen, or the cavity grows over it.
+    fn judge_faces(&mut self, star: &mut Star, apex: &Apex, bounds: Bounds) -> Result<(), Refusal> {
+        let count = star.wanted.len();
+        let (store, batch) = (self.store, &mut self.state.batch);
+        for lane in 0..LANES {
+            let face = star.wanted[lane.min(count - 1)].vertices;
+            let face = [face[0], face[1], face[2]];
+            let logs = face.map(|x| store.log(x));
+            batch.set(lane, face.map(|x| store.position(x)), logs.each_ref());
         }
-        if quality <= 0.0 {
-            return Err(Refusal::Inverted);
+        batch.prepare();
+        let qualities = batch.shapes(apex.point, &apex.log).mean_ratios();
+        for lane in (0..count).rev() {
+            let quality = qualities[lane];
+            let Some(Wanted { t, behind, tag, vertices }) = star.wanted.pop() else { break };
+            if behind.is_some() && star.inside.contains(behind.0) {
+                // The cavity has grown over the face meanwhile.
+                if tag != 0 {
+                    return Err(Refusal::Topology);
+                }
+                continue;
+            }
+            let may_grow = behind.is_some() && tag == 0 && self.state.replacement.old.len() < self.context.limits.cavity;
+            if (quality <= 0.0 || quality < bounds.wanted) && may_grow {
+                self.claim_tet(behind)?;
+                star.inside.insert(behind.0);
+                self.state.replacement.old.push(behind);
+                star.open.extend((0..4).filter(|&j| self.store.neighbour(behind, j) != t).map(|j| (behind, j)));
+                continue;
+            }
+            if quality <= 0.0 {
+                return Err(Refusal::Inverted);
+            }
+            if quality < bounds.floor {
+                return Err(Refusal::Shape);
+            }
+            star.seen.push(Seen { behind, tag, tet: NewTet { vertices, region: self.store.region(t), quality } });
         }
-        if quality < bounds.floor {
-            return Err(Refusal::Shape);
-        }
-        star.seen.push(Seen { behind, tag, tet: NewTet { vertices, region: self.store.region(t), quality } });
         Ok(())
     }
 

@@ -48,6 +48,7 @@ struct TetRecord {
     region: AtomicU32,
     quality: AtomicU32,
     stamp: AtomicU32,
+    moved: AtomicU32,
 }
 
 /// A ridge edge that leaves a corner.
@@ -462,11 +463,25 @@ impl Store {
         self.tets[t.index()].stamp.load(Relaxed)
     }
 
+    /// When the tetrahedron last changed, or one of its vertices moved, be it ever so little.
+    #[inline(always)]
+    pub fn moved(&self, t: TetId) -> u32 {
+        self.must_hold_one_of(t);
+        self.tets[t.index()].moved.load(Relaxed)
+    }
+
     /// Stamps the tetrahedron with the present time.
     #[inline(always)]
     pub fn touch(&self, t: TetId) {
-        self.must_own_tet(t);
+        self.touch_moved(t);
         self.tets[t.index()].stamp.store(self.clock.load(Relaxed), Relaxed);
+    }
+
+    /// Notes that a vertex of the tetrahedron moved a little.
+    #[inline(always)]
+    pub fn touch_moved(&self, t: TetId) {
+        self.must_own_tet(t);
+        self.tets[t.index()].moved.store(self.clock.load(Relaxed), Relaxed);
     }
 
     /// Writes vertices, region and quality, without neighbours and tags.

@@ -1,5 +1,6 @@
 //! What one thread has in hand while it works: the store, its access, its pools, its scratch.
 use super::access::Access;
+use super::ball::Ball;
 use super::cavity::Replacement;
 use super::context::Context;
 use super::ids::{TetId, VertexId};
@@ -10,7 +11,7 @@ use super::store::Store;
 use crate::geometry::{Evaluator, Geometry};
 
 /// Ids are taken from the store in blocks of this size.
-const BLOCK: usize = 64;
+pub const ID_BLOCK: usize = 64;
 
 /// Ids that a thread may use for new vertices and tetrahedra.
 #[derive(Default)]
@@ -23,7 +24,7 @@ impl Pool {
     /// A free vertex id.
     pub fn vertex(&mut self, store: &Store) -> Result<VertexId, Refusal> {
         if self.vertices.is_empty() {
-            let block = store.take_vertices(BLOCK).ok_or(Refusal::Full)?;
+            let block = store.take_vertices(ID_BLOCK).ok_or(Refusal::Full)?;
             self.vertices.extend(block.rev().map(VertexId));
         }
         self.vertices.pop().ok_or(Refusal::Full)
@@ -32,7 +33,7 @@ impl Pool {
     /// Makes sure that `count` tetrahedron ids are at hand.
     pub fn provide_tets(&mut self, store: &Store, count: usize) -> Result<(), Refusal> {
         while self.tets.len() < count {
-            let block = store.take_tets(BLOCK).ok_or(Refusal::Full)?;
+            let block = store.take_tets(ID_BLOCK).ok_or(Refusal::Full)?;
             // Fresh ids go to the bottom: freed ones are used again first.
             self.tets.splice(0..0, block.rev().map(TetId));
         }
@@ -75,10 +76,16 @@ pub struct State<'m> {
     pub face_map: FaceMap<super::cavity::FaceSlot>,
     /// A set for any use within one function.
     pub set: LocalSet,
-    /// The tetrahedra at a vertex.
-    pub ball: Vec<TetId>,
-    /// The vertices about a vertex, while they are tried in turn.
-    pub neighbours: Vec<VertexId>,
+    /// A second one: the vertices near another.
+    pub near: LocalSet,
+    /// Vertices on the surface beside another.
+    pub beside: LocalSet,
+    /// The ball of a vertex.
+    pub ball: Ball,
+    /// The ball of a second vertex.
+    pub other_ball: Ball,
+    /// A ball for use within one function.
+    pub passing_ball: Ball,
     /// The tetrahedra at either of two vertices.
     pub union: Vec<TetId>,
     /// A ball whose middle is tried at other places.
@@ -87,8 +94,10 @@ pub struct State<'m> {
     pub shell: super::shell::Shell,
     /// Boundary vertices that are not yet on the model.
     pub waiting: Vec<VertexId>,
-    /// Tables of the edge removal.
-    pub ring: super::edge_removal::RingTables,
+    /// The ring about an edge that may be removed.
+    pub ring: Option<Box<super::ring::Ring>>,
+    /// Four tetrahedra to be measured.
+    pub batch: crate::metric::batch::Batch,
 }
 
 impl<'m> State<'m> {
@@ -101,13 +110,17 @@ impl<'m> State<'m> {
             star: Star::default(),
             face_map: FaceMap::default(),
             set: LocalSet::default(),
-            ball: Vec::with_capacity(128),
-            neighbours: Vec::with_capacity(64),
+            near: LocalSet::default(),
+            beside: LocalSet::default(),
+            ball: Ball::default(),
+            other_ball: Ball::default(),
+            passing_ball: Ball::default(),
             union: Vec::with_capacity(128),
             fan: super::fan::Fan::default(),
             shell: super::shell::Shell::default(),
             waiting: Vec::new(),
-            ring: super::edge_removal::RingTables::default(),
+            ring: None,
+            batch: crate::metric::batch::Batch::default(),
         }
     }
 }
@@ -165,37 +178,6 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
         if self.store.is_vertex(v) { Ok(()) } else { Err(Refusal::Stale) }
     }
 
-    /// Collects the tetrahedra at a claimed vertex into `state.ball` and claims all their vertices.
-    pub fn gather_ball(&mut self, v: VertexId) -> Result<(), Refusal> {
-        self.collect_ball(v);
-        for i in 0..self.state.ball.len() {
-            self.claim_tet(self.state.ball[i])?;
-        }
-        Ok(())
-    }
-
-    /// Collects the tetrahedra at a claimed vertex into `state.ball`, claiming no other.
-    pub fn collect_ball(&mut self, v: VertexId) {
-        let State { ball, set, .. } = &mut *self.state;
-        ball.clear();
-        set.clear();
-        let first = self.store.tet_of(v);
-        ball.push(first);
-        set.insert(first.0);
-        let mut next = 0;
-        while next < ball.len() {
-            let t = ball[next];
-            next += 1;
-            let (vertices, neighbours) = (self.store.vertices(t), self.store.neighbours(t));
-            for i in 0..4 {
-                let n = neighbours[i];
-                if vertices[i] != v && n.is_some() && set.insert(n.0) {
-                    ball.push(n);
-                }
-            }
-        }
-    }
-
     /// A tetrahedron that holds both claimed vertices; stale when they are not joined by an edge.
     pub fn tet_with_edge(&mut self, a: VertexId, b: VertexId, guess: TetId) -> Result<TetId, Refusal> {
         let holds = |t: TetId| {
@@ -206,9 +188,21 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
         if holds(guess) {
             return Ok(guess);
         }
-        self.collect_ball(a);
         let store = self.store;
-        self.state.ball.iter().copied().find(|&t| store.vertices(t).contains(&b)).ok_or(Refusal::Stale)
+        self.with_passing_ball(a, |ball| {
+            let joined = ball.link.contains(&b);
+            let holder = ball.tets.iter().copied().find(|&t| joined && store.vertices(t).contains(&b));
+            holder.ok_or(Refusal::Stale)
+        })
+    }
+
+    /// Looks at the ball of a claimed vertex, of which no other is claimed.
+    pub fn with_passing_ball<T>(&mut self, v: VertexId, look: impl FnOnce(&Ball) -> T) -> T {
+        let mut ball = std::mem::take(&mut self.state.passing_ball);
+        self.collect_ball(v, &mut ball);
+        let seen = look(&ball);
+        self.state.passing_ball = ball;
+        seen
     }
 
     /// A new vertex, claimed.

@@ -6,7 +6,8 @@
 use super::Sym3;
 use super::exponential::{SERIES, STRONG};
 use super::lanes::{
-    LANES, LaneSym3, LaneVec3, Lanes, add_dyad, apply, contract, cross, det, dot, everywhere, everywhere_tensor, squared, sub,
+    LANES, LaneSym3, LaneVec3, Lanes, add_dyad, apply, contract, cross, det, dot, everywhere, everywhere_tensor,
+    squared, sub,
 };
 use super::quality::mean_ratio;
 use crate::mesh::predicate::is_positive;
@@ -96,6 +97,14 @@ impl Batch {
 
     /// The four tetrahedra, each with an apex of its own.
     #[inline]
+    pub fn shapes_of(&self, apex: &[Vec3; LANES], logs: &[Sym3; LANES]) -> Shapes {
+        let apex = std::array::from_fn(|i| Lanes(std::array::from_fn(|lane| apex[lane][i])));
+        let logs = std::array::from_fn(|i| Lanes(std::array::from_fn(|lane| logs[lane].0[i])));
+        self.shapes_each(&apex, &logs)
+    }
+
+    /// As [`Batch::shapes_of`], the lanes laid out.
+    #[inline]
     pub fn shapes_each(&self, apex: &LaneVec3, log: &LaneSym3) -> Shapes {
         let (cubes, certain) = cubes(self, apex, log);
         if certain { Shapes { cubes } } else { self.shapes_exactly(apex, log, cubes) }
@@ -118,12 +127,40 @@ impl Batch {
         Shapes { cubes: exact }
     }
 
-    /// Σ w ∇Q/Q with the weights w = 1/Q³ over the first `count` tetrahedra, for a common apex with the given Q³.
+    /// Σ 1/Q³ over the first `count` tetrahedra with its gradient and Hessian in a common apex p, the mean metrics held; `None`
+    /// where one of them is not positive (in floating point).
     #[inline]
-    pub fn pull(&self, p: Vec3, log: &Sym3, cubes: &Lanes, count: usize) -> Vec3 {
-        let pulls = pulls(self, &everywhere(p), &everywhere_tensor(log), cubes);
-        pulls.map(|x| x.0.iter().take(count).sum())
+    pub fn bowl(&self, p: Vec3, log: &Sym3, count: usize) -> Option<Bowl> {
+        let lanes = bowl(self, &everywhere(p), &everywhere_tensor(log));
+        if lanes.volume.0.iter().take(count).any(|&volume| volume <= 0.0) {
+            return None;
+        }
+        let sum = |x: &Lanes| x.0.iter().take(count).sum::<f64>();
+        let [g, h] = [&lanes.gradient[..], &lanes.hessian[..]];
+        Some(Bowl {
+            energy: sum(&lanes.energy),
+            gradient: std::array::from_fn(|i| sum(&g[i])),
+            hessian: Sym3(std::array::from_fn(|i| sum(&h[i]))),
+        })
     }
+}
+
+/// A function of a point near p to second order: E(p) + g·d + dᵀHd/2.
+#[derive(Clone, Copy, Debug)]
+pub struct Bowl {
+    /// Value.
+    pub energy: f64,
+    /// Gradient.
+    pub gradient: Vec3,
+    /// Hessian, positive definite.
+    pub hessian: Sym3,
+}
+
+struct LaneBowl {
+    volume: Lanes,
+    energy: Lanes,
+    gradient: LaneVec3,
+    hessian: LaneSym3,
 }
 
 #[multiversion(targets("x86_64+avx2"))]
@@ -226,9 +263,10 @@ fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> (Lanes, bool) {
     (volume.above(0.0, cubes, Lanes::ZERO), mild && !doubt.any_above(0.0))
 }
 
-/// ∇Q/Q³·1/Q of the four tetrahedra, by the apex.
+/// 1/Q³ = S³/(432 V²), S the sum of the squared edges in the mean metric: with v = ∇V/V and s = ∇S/S its gradient is
+/// (3s − 2v)/Q³ and its Hessian (6 (v − s)(v − s)ᵀ + 18 M̄/S)/Q³, positive definite: each tetrahedron's part is convex.
 #[multiversion(targets("x86_64+avx2"))]
-fn pulls(batch: &Batch, apex: &LaneVec3, log: &LaneSym3, cubes: &Lanes) -> LaneVec3 {
+fn bowl(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneBowl {
     let [a, b, c] = &batch.corners;
     let (pa, pb, pc) = (sub(apex, a), sub(apex, b), sub(apex, c));
     let volume = dot(&batch.area, &pa);
@@ -239,15 +277,23 @@ fn pulls(batch: &Batch, apex: &LaneVec3, log: &LaneSym3, cubes: &Lanes) -> LaneV
     let s = deviator(batch, log);
     let s2 = squared(&s);
     let ([a0, a1, a2], _) = exponential(&s, &s2);
-    let sum = a0 * (dyads[0] + dyads[2] + dyads[5]) + a1 * contract(&dyads, &s) + a2 * contract(&dyads, &s2);
+    let mut mean: LaneSym3 = std::array::from_fn(|i| a1 * s[i] + a2 * s2[i]);
+    for i in [0, 2, 5] {
+        mean[i] = mean[i] + a0;
+    }
+    let sum = contract(&dyads, &mean);
+    let energy = sum * sum * sum / (volume * volume) * (1.0 / FACTOR);
+    let (of_volume, of_sum) = (Lanes::all(1.0) / volume, Lanes::all(1.0) / sum);
     let out: LaneVec3 = std::array::from_fn(|i| pa[i] + pb[i] + pc[i]);
-    let (first, second) = (apply(&s, &out), apply(&s2, &out));
-    // ∇Q/Q = ⅔ ∇V/V − ∇S/S, with S the sum of squared edges in the mean metric.
-    let (of_volume, of_sum) = (Lanes::all(2.0 / 3.0) / volume, Lanes::all(2.0) / sum);
-    let weight = Lanes::all(1.0) / cubes.max(Lanes::all(1e-9));
-    std::array::from_fn(|i| {
-        (batch.area[i] * of_volume - (a0 * out[i] + a1 * first[i] + a2 * second[i]) * of_sum) * weight
-    })
+    let turned = apply(&mean, &out);
+    let v: LaneVec3 = std::array::from_fn(|i| batch.area[i] * of_volume);
+    let s: LaneVec3 = std::array::from_fn(|i| turned[i] * of_sum * 2.0);
+    let gradient = std::array::from_fn(|i| (s[i] * 3.0 - v[i] * 2.0) * energy);
+    let mut hessian = [Lanes::ZERO; 6];
+    add_dyad(&mut hessian, &sub(&v, &s));
+    let stiffness = of_sum * 3.0;
+    let hessian = std::array::from_fn(|i| (hessian[i] + mean[i] * stiffness) * energy * 6.0);
+    LaneBowl { volume, energy, gradient, hessian }
 }
 
 /// Four edges from one vertex: the other ends.
@@ -301,7 +347,7 @@ fn lengths(spokes: &Spokes, p: &LaneVec3, metric: &LaneSym3) -> Lanes {
 
 #[cfg(test)]
 mod tests {
-    use super::super::quality::{edge_length, mean_log};
+    use super::super::quality::edge_length;
     use super::super::random::spd;
     use super::*;
     use proptest::prelude::*;
@@ -333,26 +379,29 @@ mod tests {
             }
         }
 
-        /// The pull is the gradient of ln Q weighted by 1/Q³, found here by differences along the axes.
+        /// Gradient and Hessian are those of Σ 1/Q³, found here by differences.
         #[test]
-        fn the_pull_is_the_gradient(x in points(), m in prop::array::uniform4(spd(2.0))) {
+        fn the_bowl_fits(x in points(), m in prop::array::uniform4(spd(2.0)), d in prop::array::uniform3(-1.0..1.0f64)) {
             let logs = m.map(|m| m.ln());
             let batch = batch(&x, &logs);
-            let shapes = batch.shapes(x[6], &logs[3]);
-            let q = shapes.mean_ratios();
-            prop_assume!(q[0] > 0.05);
-            let pull = batch.pull(x[6], &logs[3], &shapes.cubes, 1);
-            // The metric is held at its mean while the apex moves: so it is in the differences.
-            for i in 0..3 {
-                let at = |step: f64| {
-                    let mut p = x[6];
-                    p[i] += step;
-                    batch.shapes(p, &logs[3]).mean_ratios()[0].ln()
-                };
-                let difference = (at(1e-6) - at(-1e-6)) / 2e-6 / q[0].powi(3);
-                prop_assert!((pull[i] - difference).abs() < 1e-4 * (1.0 + pull.iter().fold(0.0f64, |s, x| s.max(x.abs()))), "{pull:?} {i} {difference}");
-            }
-            prop_assert!(mean_log(logs.each_ref()).0.iter().all(|x| x.is_finite()));
+            let q = batch.shapes(x[6], &logs[3]).mean_ratios();
+            prop_assume!(q[0] > 0.05 && q[1] > 0.05);
+            let at = |step: f64| {
+                let p: Vec3 = std::array::from_fn(|i| x[6][i] + step * d[i]);
+                batch.bowl(p, &logs[3], 2)
+            };
+            let bowl = at(0.0).unwrap();
+            let exact: f64 = q[..2].iter().map(|q| 1.0 / q.powi(3)).sum();
+            prop_assert!((bowl.energy / exact - 1.0).abs() < 1e-9);
+            let (Some(ahead), Some(behind)) = (at(1e-6), at(-1e-6)) else { return Ok(()) };
+            let slope = crate::mesh::vector::dot(bowl.gradient, d);
+            let found = (ahead.energy - behind.energy) / 2e-6;
+            let size = bowl.hessian.trace() * 1e-3 + bowl.energy;
+            prop_assert!((slope - found).abs() < 1e-3 * size, "{slope} {found}");
+            let bend = bowl.hessian.quadratic(d);
+            let slope = |bowl: Bowl| crate::mesh::vector::dot(bowl.gradient, d);
+            let found = (slope(ahead) - slope(behind)) / 2e-6;
+            prop_assert!((bend - found).abs() < 1e-3 * bowl.hessian.trace().max(1.0), "{bend} {found}");
         }
 
         /// Lengths as one by one.

@@ -167,7 +167,7 @@ fn null_vector(s: &Sym3) -> Vec3 {
 
 /// Two unit vectors that make an orthonormal frame with the unit vector n.
 #[inline]
-fn plane_basis(n: Vec3) -> (Vec3, Vec3) {
+pub fn plane_basis(n: Vec3) -> (Vec3, Vec3) {
     let u = if n[0].abs() > n[1].abs() {
         let s = 1.0 / (n[0] * n[0] + n[2] * n[2]).sqrt();
         [-n[2] * s, 0.0, n[0] * s]

@@ -157,7 +157,9 @@ impl Lanes {
         let middle = pair(4) + pair(6) * r2;
         let high = pair(8) + pair(10) * r2;
         let e = (low + (middle + high * r4) * r4) * r2 + r + 1.0;
-        Self(std::array::from_fn(|i| e.0[i] * f64::from_bits((shifted.0[i].to_bits() << 52).wrapping_add(1.0f64.to_bits()))))
+        Self(std::array::from_fn(|i| {
+            e.0[i] * f64::from_bits((shifted.0[i].to_bits() << 52).wrapping_add(1.0f64.to_bits()))
+        }))
     }
 
     /// ln x to 1e-15, for positive normal x.

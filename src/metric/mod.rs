@@ -19,7 +19,7 @@ mod tests;
 
 pub use analytic::Analytic;
 pub use background::Background;
-pub use eigen::Eigen;
+pub use eigen::{Eigen, plane_basis};
 pub use error::Error;
 pub use field::Field;
 pub use ratios::mean_ratios;

@@ -128,6 +128,22 @@ impl Sym3 {
         [a, p2, f - d / a * d - x / p2 * x]
     }
 
+    /// M⁻¹ b of a positive-definite tensor, by M = L D Lᵀ.
+    #[inline]
+    pub fn solve(&self, b: Vec3) -> Vec3 {
+        let m = &self.0;
+        let (l1, l2) = (m[1] / m[0], m[3] / m[0]);
+        let d1 = m[2] - l1 * m[1];
+        let x = m[4] - l1 * m[3];
+        let l3 = x / d1;
+        let d2 = m[5] - l2 * m[3] - l3 * x;
+        let y1 = b[1] - l1 * b[0];
+        let y2 = b[2] - l2 * b[0] - l3 * y1;
+        let z = y2 / d2;
+        let y = y1 / d1 - l3 * z;
+        [b[0] / m[0] - l1 * y - l2 * z, y, z]
+    }
+
     /// √det M of a positive-definite tensor, by its pivots: no differences of products of three terms.
     #[inline]
     pub fn sqrt_det(&self) -> f64 {

@@ -3,6 +3,7 @@ use crate::adapt::{Counts, KINDS, Kind, Observer};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
+use std::time::Instant;
 
 /// Set by the first interrupt.
 pub type Stop = Arc<AtomicBool>;
@@ -33,13 +34,20 @@ struct State {
     bar: ProgressBar,
     pass: Option<usize>,
     kind: Kind,
+    began: Instant,
     done: [u64; KINDS],
 }
 
 impl Progress {
     /// Draws if `wanted` and standard error is a terminal.
     pub fn new(wanted: bool, stop: Stop) -> Self {
-        let state = State { bar: ProgressBar::hidden(), pass: None, kind: Kind::Split, done: [0; KINDS] };
+        let state = State {
+            bar: ProgressBar::hidden(),
+            pass: None,
+            kind: Kind::Split,
+            began: Instant::now(),
+            done: [0; KINDS],
+        };
         let shown = wanted && std::io::IsTerminal::is_terminal(&std::io::stderr());
         Self { shown, stop, state: Mutex::new(state) }
     }
@@ -75,6 +83,7 @@ impl Observer for Progress {
     fn begin(&self, kind: Kind, pass: usize, items: usize) {
         let mut state = self.state.lock().expect("no panic while drawing");
         state.kind = kind;
+        state.began = Instant::now();
         if self.shown && state.pass != Some(pass) {
             state.leave();
             let style = ProgressStyle::with_template("pass {prefix:>2} [{bar:16}] {wide_msg}");
@@ -104,7 +113,15 @@ impl Observer for Progress {
         let text = state.describe();
         state.bar.set_message(text);
         if std::env::var_os("GEO_ADAPT_TRACE").is_some() {
-            eprintln!("{:?} {:?} {} {} {:?}", state.pass, state.kind, counts.attempts, counts.done, counts.refused);
+            let ms = state.began.elapsed().as_secs_f64() * 1e3;
+            eprintln!(
+                "{:2} {:8} {ms:7.1} ms {:8} {:7} {:?}",
+                state.pass.unwrap_or(0),
+                format!("{:?}", state.kind),
+                counts.attempts,
+                counts.done,
+                counts.refused
+            );
         }
     }
 

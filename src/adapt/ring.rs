@@ -1,0 +1,180 @@
+//! The ring about an edge, and the best way to fill it with triangles.
+//!
+//! Each triangle (i, k, j) of ring vertices stands for two tetrahedra, one on each end of the edge. Dynamic programming over the polygon
+//! (Klincsek 1980; Shewchuk 2002) finds the triangulation whose worst tetrahedron is best. Volumes come first: most rings have no
+//! triangulation of positive tetrahedra at all, and of the others only the triangles that can be part of one are measured.
+use super::ids::VertexId;
+use super::store::Store;
+use crate::mesh::vector::{Vec3, volume6};
+use crate::metric::Sym3;
+use crate::metric::batch::Batch;
+use crate::metric::lanes::LANES;
+
+/// Longest ring that is looked at.
+pub const LONGEST_RING: usize = 7;
+
+type Table<T> = [[T; LONGEST_RING]; LONGEST_RING];
+
+/// Triangles of a ring of the greatest length.
+const MOST_TRIANGLES: usize = LONGEST_RING * (LONGEST_RING - 1) * (LONGEST_RING - 2) / 6;
+
+/// A ring with its tables. Allocated once.
+#[derive(Default)]
+pub struct Ring {
+    /// The two ends of the edge, then the ring.
+    cavity: Vec<VertexId>,
+    points: Vec<Vec3>,
+    logs: Vec<Sym3>,
+    /// Whether a triangle's two tetrahedra are positive, as bits of k by (i, j).
+    positive: Table<u8>,
+    /// Whether the polygon i..j can be filled.
+    fillable: Table<bool>,
+    /// The lesser score of a triangle's two tetrahedra, by (i, j) and k.
+    worst: Table<[f64; LONGEST_RING]>,
+    /// Best score of the polygon i..j, and its triangle's third vertex.
+    score: Table<f64>,
+    third: Table<usize>,
+    /// Triangles to be measured.
+    wanted: Vec<[usize; 3]>,
+    batch: Batch,
+}
+
+impl Ring {
+    fn len(&self) -> usize {
+        self.cavity.len() - 2
+    }
+
+    /// All vertices of the cavity.
+    pub fn cavity(&self) -> &[VertexId] {
+        &self.cavity
+    }
+
+    /// Reads the ends of the edge and the ring.
+    pub fn fill(&mut self, store: &Store, ends: [VertexId; 2], ring: &[VertexId]) {
+        self.cavity.clear();
+        self.cavity.extend(ends);
+        self.cavity.extend(ring);
+        self.points.clear();
+        self.points.extend(self.cavity.iter().map(|&v| store.position(v)));
+        self.logs.clear();
+        self.logs.extend(self.cavity.iter().map(|&v| store.log(v)));
+    }
+
+    /// Whether a triangulation with positive tetrahedra (in floating point) may exist; lists the triangles that can be in one.
+    pub fn is_feasible(&mut self) -> bool {
+        let n = self.len();
+        let [a, b] = [self.points[0], self.points[1]];
+        for i in 0..n - 1 {
+            self.fillable[i][i + 1] = true;
+        }
+        for width in 2..n {
+            for i in 0..n - width {
+                let j = i + width;
+                self.positive[i][j] = 0;
+                for k in (i + 1..j).filter(|&k| self.fillable[i][k] && self.fillable[k][j]) {
+                    let [x, y, z] = [i, k, j].map(|l| self.points[l + 2]);
+                    if volume6(x, y, z, b) > 0.0 && volume6(x, z, y, a) > 0.0 {
+                        self.positive[i][j] |= 1 << k;
+                    }
+                }
+                self.fillable[i][j] = self.positive[i][j] != 0;
+            }
+        }
+        self.fillable[0][n - 1] && {
+            self.list_wanted();
+            true
+        }
+    }
+
+    /// Lists the triangles that some triangulation of the whole ring has.
+    fn list_wanted(&mut self) {
+        self.wanted.clear();
+        let n = self.len();
+        let mut reached = [[false; LONGEST_RING]; LONGEST_RING];
+        reached[0][n - 1] = true;
+        for width in (2..n).rev() {
+            for i in 0..n - width {
+                let j = i + width;
+                if !reached[i][j] {
+                    continue;
+                }
+                for k in (i + 1..j).filter(|k| self.positive[i][j] >> k & 1 == 1) {
+                    reached[i][k] = true;
+                    reached[k][j] = true;
+                    self.wanted.push([i, k, j]);
+                }
+            }
+        }
+        debug_assert!(self.wanted.len() <= MOST_TRIANGLES);
+    }
+
+    /// Scores the listed triangles by the mean ratio, two at a time.
+    pub fn score_mean_ratios(&mut self) {
+        for two in self.wanted.chunks(LANES / 2) {
+            let mut apex = [[0.0; 3]; LANES];
+            let mut log = [Sym3::ZERO; LANES];
+            for lane in 0..LANES {
+                let [i, k, j] = two[(lane / 2).min(two.len() - 1)].map(|l| l + 2);
+                let (face, end) = if lane % 2 == 0 { ([i, k, j], 1) } else { ([i, j, k], 0) };
+                let logs = face.map(|l| &self.logs[l]);
+                self.batch.set(lane, face.map(|l| self.points[l]), logs);
+                (apex[lane], log[lane]) = (self.points[end], self.logs[end]);
+            }
+            self.batch.prepare();
+            let q = self.batch.shapes_of(&apex, &log).mean_ratios();
+            for (which, &[i, k, j]) in two.iter().enumerate() {
+                self.worst[i][j][k] = q[2 * which].min(q[2 * which + 1]);
+            }
+        }
+    }
+
+    /// Scores the listed triangles one by one.
+    pub fn score_each(&mut self, score: impl Fn([VertexId; 4], &[VertexId]) -> Option<f64>) {
+        let cavity = &self.cavity;
+        for &[i, k, j] in &self.wanted {
+            let [x, y, z] = [i, k, j].map(|l| cavity[l + 2]);
+            let of = |tet| score(tet, cavity).unwrap_or(f64::NEG_INFINITY);
+            self.worst[i][j][k] = of([x, y, z, cavity[1]]).min(of([x, z, y, cavity[0]]));
+        }
+    }
+
+    /// Finds the best triangulation of scored triangles; whether its worst tetrahedron scores more than `wanted`.
+    pub fn triangulate(&mut self, wanted: f64) -> bool {
+        let n = self.len();
+        for i in 0..n - 1 {
+            self.score[i][i + 1] = f64::INFINITY;
+        }
+        // Wide polygons were listed first.
+        for width in 2..n {
+            for i in 0..n - width {
+                self.score[i][i + width] = f64::NEG_INFINITY;
+            }
+        }
+        for &[i, k, j] in self.wanted.iter().rev() {
+            let value = self.score[i][k].min(self.score[k][j]).min(self.worst[i][j][k]);
+            if value > self.score[i][j] {
+                (self.score[i][j], self.third[i][j]) = (value, k);
+            }
+        }
+        self.score[0][n - 1] > wanted
+    }
+
+    /// The triangles of the triangulation found, in the order of the ring.
+    pub fn each_triangle(&self, mut take: impl FnMut([VertexId; 3])) {
+        let mut open = [(0, 0); LONGEST_RING];
+        let mut depth = 1;
+        open[0] = (0, self.len() - 1);
+        while depth > 0 {
+            depth -= 1;
+            let (i, j) = open[depth];
+            if j - i < 2 {
+                continue;
+            }
+            let k = self.third[i][j];
+            take([i, k, j].map(|l| self.cavity[l + 2]));
+            open[depth] = (i, k);
+            open[depth + 1] = (k, j);
+            depth += 2;
+        }
+    }
+}
