@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use geo_adapt::mesh::vector::{Vec3, cross, unit};
 use geo_adapt::metric::batch::Batch;
-use geo_adapt::metric::quality::{edge_length, may_exceed, mean_ratio, mean_ratio_in};
+use geo_adapt::metric::quality::{edge_length, mean_ratio, mean_ratio_in};
 use geo_adapt::metric::{Background, Sym3};
 use std::hint::black_box;
 
@@ -89,7 +89,6 @@ fn quality(c: &mut Criterion) {
         .collect();
     over(c, "mean_ratio, four at once", &batches, |(batch, p, log)| batch.shapes(*p, log).mean_ratios());
     over(c, "mean_ratio, four at once, cubed", &batches, |(batch, p, log)| batch.shapes(*p, log));
-    over(c, "may_exceed (refusal)", &tets, |(p, logs)| may_exceed(*p, logs.each_ref(), 0.999));
     over(c, "mean_ratio_in", &tets, |(p, logs)| mean_ratio_in(*p, &logs[0], 1.0));
 }
 

@@ -28,8 +28,12 @@ pub struct Limits {
     pub insert_loss: f64,
     /// As the floor of insertion, for a collapse; nothing may be lost below it.
     pub collapse_floor: f64,
-    /// Reconnection and smoothing look at tetrahedra below this mean ratio.
+    /// Smoothing and mending look at tetrahedra below this mean ratio.
     pub improve_below: f64,
+    /// Reconnection looks at tetrahedra below this mean ratio.
+    pub flip_below: f64,
+    /// And at edges whose tetrahedra have on average at least this 1/Q − 1.
+    pub flip_cost: f64,
     /// Reconnection looks at tetrahedra that changed at or after this time.
     pub since: u32,
     /// Surface triangles may tilt to this cosine against the model, but no further unless they do already: long thin ones across a
@@ -40,13 +44,6 @@ pub struct Limits {
     pub spread: f64,
     /// Most tetrahedra in an enlarged cavity.
     pub cavity: usize,
-    pub x0: f64,
-    pub x1: f64,
-    pub x2: f64,
-    pub x3: f64,
-}
-pub fn env(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(default)
 }
 
 impl Default for Limits {
@@ -60,14 +57,12 @@ impl Default for Limits {
             insert_loss: 0.5,
             collapse_floor: 0.2,
             improve_below: 1.0,
+            flip_below: 1.0,
+            flip_cost: 0.0,
             since: 0,
             tilt: 0.5,
             spread: 0.94,
             cavity: 96,
-            x0: env("X0", 0.0),
-            x1: env("X1", 0.005),
-            x2: env("X2", 0.5),
-            x3: env("X3", 0.0),
         }
     }
 }

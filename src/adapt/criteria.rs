@@ -2,6 +2,7 @@
 use super::access::Access;
 use super::ids::{TetId, VertexId};
 use super::worker::Worker;
+use crate::mesh::predicate::is_positive;
 use crate::mesh::vector::{Vec3, add, cross, dot, scale, sub, volume6};
 use crate::metric::Sym3;
 use clap::ValueEnum;
@@ -15,8 +16,28 @@ pub enum Criterion {
     Delaunay,
     /// Least greatest Laplacian edge weight (max-min).
     EdgeWeight,
-    /// Greatest worst mean ratio.
+    /// Least Σ (1/Q − 1) of the mean ratios Q: the worst tetrahedra count most, and the others count.
     MeanRatio,
+}
+
+impl Criterion {
+    /// The score of a triangulation of two parts, each with its own.
+    #[inline(always)]
+    pub fn join(self, x: f64, y: f64) -> f64 {
+        if self == Self::MeanRatio { x + y } else { x.min(y) }
+    }
+
+    /// The score of nothing.
+    #[inline(always)]
+    pub fn nothing(self) -> f64 {
+        if self == Self::MeanRatio { 0.0 } else { f64::INFINITY }
+    }
+}
+
+/// Score of a tetrahedron by [`Criterion::MeanRatio`]: 1 − 1/Q, −∞ when it is not positive.
+#[inline(always)]
+pub fn mean_ratio_score(quality: f64) -> f64 {
+    if quality > 0.0 { 1.0 - 1.0 / quality } else { f64::NEG_INFINITY }
 }
 
 /// How much better, in part, a triangulation must be to be taken: no flipping back and forth by rounding.
@@ -28,24 +49,23 @@ pub fn wanted_score(old: f64) -> f64 {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Score of one tetrahedron in a cavity with these vertices: the score of a triangulation is the least of its
-    /// tetrahedra's, and the greater is the better. `None` when the tetrahedron is not positive. A score that does not exceed
-    /// `floor` may come out lower than it is.
-    pub fn score(&self, criterion: Criterion, tet: [VertexId; 4], cavity: &[VertexId], floor: f64) -> Option<f64> {
+    /// Score of one tetrahedron in a cavity with these vertices, to be joined with the others' by [`Criterion::join`]; the
+    /// greater is the better. −∞ when the tetrahedron is not positive.
+    pub fn score(&self, criterion: Criterion, tet: [VertexId; 4], cavity: &[VertexId]) -> f64 {
         let points = tet.map(|v| self.store.position(v));
         match criterion {
-            Criterion::MeanRatio => Some(self.shape_above(tet, floor)).filter(|&q| q > 0.0),
-            _ if !crate::mesh::predicate::is_positive(points) => None,
+            Criterion::MeanRatio => mean_ratio_score(self.shape(tet)),
+            _ if !is_positive(points) => f64::NEG_INFINITY,
             // Positive, but so flat that its volume rounds to nothing: no score can be trusted.
-            _ if volume6(points[0], points[1], points[2], points[3]) <= 0.0 => None,
+            _ if volume6(points[0], points[1], points[2], points[3]) <= 0.0 => f64::NEG_INFINITY,
             Criterion::EdgeWeight => {
                 let logs = tet.map(|v| self.store.log(v));
                 let mean = Sym3(std::array::from_fn(|i| 0.25 * logs.iter().map(|l| l.0[i]).sum::<f64>())).exp();
-                Some(-edge_weight(points, &mean))
+                -edge_weight(points, &mean)
             }
             Criterion::Delaunay => {
                 let others = cavity.iter().filter(|v| !tet.contains(v));
-                Some(-others.map(|&p| self.encroachment(tet, points, p)).fold(0.0, f64::max))
+                -others.map(|&p| self.encroachment(tet, points, p)).fold(0.0, f64::max)
             }
         }
     }
@@ -53,8 +73,8 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Score of a tetrahedron that is there: its mean ratio is kept with it.
     pub fn present_score(&self, criterion: Criterion, t: TetId, cavity: &[VertexId]) -> f64 {
         match criterion {
-            Criterion::MeanRatio => self.store.quality(t),
-            _ => self.score(criterion, self.store.vertices(t), cavity, 0.0).unwrap_or(f64::NEG_INFINITY),
+            Criterion::MeanRatio => mean_ratio_score(self.store.quality(t)),
+            _ => self.score(criterion, self.store.vertices(t), cavity),
         }
     }
 
@@ -122,7 +142,6 @@ mod tests {
         let mut flat = REGULAR;
         flat[0] = [0.0, 0.0, 0.0];
         let positive = |x: [Vec3; 4]| if is_positive(x) { x } else { [x[1], x[0], x[2], x[3]] };
-        use crate::mesh::predicate::is_positive;
         assert!(edge_weight(positive(flat), &Sym3::IDENTITY) > edge_weight(positive(REGULAR), &Sym3::IDENTITY));
     }
 }

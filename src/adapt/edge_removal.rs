@@ -4,7 +4,7 @@
 //! is found by dynamic programming over the polygon (Klincsek 1980; Shewchuk 2002).
 use super::access::Access;
 use super::cavity::NewTet;
-use super::criteria::{Criterion, wanted_score};
+use super::criteria::{Criterion, mean_ratio_score, wanted_score};
 use super::ids::{TetId, VertexId};
 use super::outcome::Refusal;
 use super::ring::{LONGEST_RING, Ring};
@@ -31,17 +31,22 @@ impl<A: Access> Worker<'_, '_, A> {
         if !(3..=LONGEST_RING).contains(&n) {
             return Err(Refusal::Topology);
         }
+        let cost: f64 = shell.tets.iter().map(|&t| -mean_ratio_score(self.store.quality(t))).sum();
+        if cost < self.context.limits.flip_cost * n as f64 {
+            return Err(Refusal::Shape);
+        }
         let surface = self.surface_flip(a, b, shell)?;
         let mut ring = self.state.ring.take().unwrap_or_default();
         ring.fill(self.store, [a, b], &shell.ring);
         let old = shell.tets.iter().map(|&t| self.present_score(criterion, t, ring.cavity()));
-        let wanted = wanted_score(old.fold(f64::INFINITY, f64::min));
+        let old = old.fold(criterion.nothing(), |x, y| criterion.join(x, y));
+        let wanted = wanted_score(old);
         let gains = ring.is_feasible() && {
             match criterion {
                 Criterion::MeanRatio => ring.score_mean_ratios(),
-                _ => ring.score_each(|tet, cavity| self.score(criterion, tet, cavity, wanted)),
+                _ => ring.score_each(criterion, |tet, cavity| self.score(criterion, tet, cavity)),
             }
-            ring.triangulate(wanted)
+            ring.triangulate(criterion, wanted)
         };
         if gains {
             self.write_triangulation([a, b], shell, &ring);

@@ -1,10 +1,11 @@
 //! The edges of the mesh that are too long or too short: what is to be split and collapsed.
-use super::ids::{TetId, VertexId};
+use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::store::Store;
 use crate::mesh::vector::sub;
 
 /// An edge and the class of its length in the metric.
+#[derive(Clone, Copy)]
 pub struct Classed {
     /// The edge, the lesser vertex first, with the least of its tetrahedra.
     pub item: EdgeItem,
@@ -40,80 +41,52 @@ pub fn in_order(edges: &[Classed], rank: impl Fn(&Classed) -> u32) -> Vec<EdgeIt
     items
 }
 
-/// The edges that pass the test of their squared lengths in the metrics of both ends, each once, in no particular order; of those
-/// that have an end where something changed (`changed`, by vertex). Between sweeps only.
-///
-/// Each vertex is asked for its edges to greater ones, so that no list of all edges of all tetrahedra is made and sorted.
+/// Edges listed before those that were listed twice are taken out: with each of its tetrahedra an edge comes again, and what is near in
+/// memory is near in space.
+const AT_ONCE: usize = 1 << 16;
+
+/// The edges that pass the test of their squared lengths in the metrics of both ends, of those that have an end where something
+/// changed (`changed`, by vertex); a few of them twice. In the order of their vertices within blocks. Between sweeps only.
 pub fn listed(store: &Store, changed: &[bool], wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
-    let mut found = Vec::new();
-    let mut ball = Ball::new(store);
-    for a in store.live_vertices().filter(|a| changed[a.index()]) {
-        ball.gather(a);
-        for &(b, tet) in &ball.edges {
-            // Both ends changed: the edge is found at the lesser one.
-            if b < a && changed[b.index()] {
-                continue;
-            }
-            let v = sub(store.position(b), store.position(a));
-            let (at_a, at_b) = (store.metric(a).quadratic(v), store.metric(b).quadratic(v));
-            if wanted(at_a, at_b) {
-                found.push(Classed { item: EdgeItem { a: a.min(b), b: a.max(b), tet }, class: class(at_a * at_b) });
+    let mut found: Vec<Classed> = Vec::new();
+    let mut sorted = 0;
+    for t in store.live_tets() {
+        let v = store.vertices(t);
+        let new = v.map(|x| changed[x.index()]);
+        if new == [false; 4] {
+            continue;
+        }
+        let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
+        for [i, j] in EDGE {
+            let e = sub(p[j], p[i]);
+            let (at_i, at_j) = (m[i].quadratic(e), m[j].quadratic(e));
+            if (new[i] || new[j]) && wanted(at_i, at_j) {
+                let item = EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t };
+                found.push(Classed { item, class: class(at_i * at_j) });
             }
         }
+        if found.len() >= sorted + AT_ONCE {
+            sorted = without_doubles(&mut found, sorted);
+        }
     }
+    without_doubles(&mut found, sorted);
     found
 }
 
-/// The edges at one vertex.
-struct Ball<'s> {
-    store: &'s Store,
-    /// The vertex for which a tetrahedron was last seen, by tetrahedron.
-    seen: Vec<VertexId>,
-    /// The vertex whose edge to it is known, by vertex, and that edge's place in `edges`.
-    known: Vec<(VertexId, u32)>,
-    tets: Vec<TetId>,
-    /// The other ends, each with the least tetrahedron.
-    edges: Vec<(VertexId, TetId)>,
-}
-
-impl<'s> Ball<'s> {
-    fn new(store: &'s Store) -> Self {
-        Self {
-            store,
-            seen: vec![VertexId::NONE; store.tet_bound()],
-            known: vec![(VertexId::NONE, 0); store.vertex_bound()],
-            tets: Vec::new(),
-            edges: Vec::new(),
+/// Sorts what comes after `sorted` and takes doubles out of it; returns the length.
+fn without_doubles(edges: &mut Vec<Classed>, sorted: usize) -> usize {
+    let key = |edge: &Classed| (edge.item.a, edge.item.b, edge.item.tet);
+    edges[sorted..].sort_unstable_by_key(key);
+    let mut length = sorted;
+    for i in sorted..edges.len() {
+        let (edge, last) = (edges[i], length.checked_sub(1).map(|last| edges[last].item));
+        if length == sorted || last.is_none_or(|last| (last.a, last.b) != (edge.item.a, edge.item.b)) {
+            edges[length] = edge;
+            length += 1;
         }
     }
-
-    /// Collects the edges at a.
-    fn gather(&mut self, a: VertexId) {
-        self.edges.clear();
-        self.tets.clear();
-        let first = self.store.tet_of(a);
-        self.tets.push(first);
-        self.seen[first.index()] = a;
-        let mut next = 0;
-        while let Some(&t) = self.tets.get(next) {
-            next += 1;
-            let (vertices, neighbours) = (self.store.vertices(t), self.store.neighbours(t));
-            for (b, n) in vertices.into_iter().zip(neighbours).filter(|&(b, _)| b != a) {
-                if n.is_some() && self.seen[n.index()] != a {
-                    self.seen[n.index()] = a;
-                    self.tets.push(n);
-                }
-                let (of, place) = &mut self.known[b.index()];
-                if *of == a {
-                    let tet = &mut self.edges[*place as usize].1;
-                    *tet = t.min(*tet);
-                } else {
-                    (*of, *place) = (a, self.edges.len() as u32);
-                    self.edges.push((b, t));
-                }
-            }
-        }
-    }
+    edges.truncate(length);
+    length
 }
 
 #[cfg(test)]
@@ -132,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn every_wanted_edge_once_with_its_least_tetrahedron() {
+    fn every_wanted_edge_with_its_least_tetrahedron() {
         let mesh = cube(3);
         let (_, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).unwrap();
         let logs = vec![Sym3::ZERO; mesh.vertices.len()];

@@ -1,7 +1,7 @@
 //! The 2-3 flip: a face goes, the edge between the two vertices opposite to it comes.
 use super::access::Access;
 use super::cavity::NewTet;
-use super::criteria::{Criterion, wanted_score};
+use super::criteria::{Criterion, mean_ratio_score, wanted_score};
 use super::ids::{FACE, TetId, VertexId};
 use super::outcome::Refusal;
 use super::worker::Worker;
@@ -24,19 +24,17 @@ impl<A: Access> Worker<'_, '_, A> {
         let face = FACE[i].map(|k| v[k]);
         let above = v[i];
         let cavity = [face[0], face[1], face[2], above, below];
-        let old = self.present_score(criterion, t, &cavity).min(self.present_score(criterion, other, &cavity));
-        let wanted = wanted_score(old);
+        let old = [t, other].map(|t| self.present_score(criterion, t, &cavity));
+        let wanted = wanted_score(criterion.join(old[0], old[1]));
         // (face, above) is positive, so each side of the face makes a positive tetrahedron with below and above.
         let new = [0, 1, 2].map(|k| [face[k], face[(k + 1) % 3], below, above]);
         let qualities = self.qualities_of(&new).ok_or(Refusal::Shape)?;
-        for (tet, quality) in new.into_iter().zip(qualities) {
-            let score = match criterion {
-                Criterion::MeanRatio => Some(quality),
-                _ => self.score(criterion, tet, &cavity, wanted),
-            };
-            if score.is_none_or(|score| score <= wanted) {
-                return Err(Refusal::Shape);
-            }
+        let scores = new.into_iter().zip(qualities).map(|(tet, quality)| match criterion {
+            Criterion::MeanRatio => mean_ratio_score(quality),
+            _ => self.score(criterion, tet, &cavity),
+        });
+        if scores.fold(criterion.nothing(), |x, y| criterion.join(x, y)) <= wanted {
+            return Err(Refusal::Shape);
         }
         let region = self.store.region(t);
         self.state.replacement.clear();

@@ -1,7 +1,7 @@
 //! The kernel: the mesh store, its operations, and the passes that make a unit mesh.
 mod access;
-mod build;
 mod ball;
+mod build;
 mod cavity;
 #[cfg(test)]
 mod check;
@@ -38,6 +38,7 @@ mod store;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod work;
 mod worker;
 
 // The atomics of the lock words; tests/lock_protocol.rs has loom's in their place.
@@ -48,5 +49,5 @@ pub use create::PointCreation;
 pub use criteria::Criterion;
 pub use extract::Extracted;
 pub use outcome::{Counts, Refusal};
-pub use pipeline::{KINDS, Kind, Observer, Work};
 pub use run::{Adapted, Options, adapt};
+pub use work::{KINDS, Kind, Observer, Work};

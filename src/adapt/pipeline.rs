@@ -3,17 +3,16 @@ use super::context::{Context, LONG, Limits};
 use super::create::{self, PointCreation};
 use super::criteria::Criterion;
 use super::edges;
-use super::ids::{EDGE, TetId, VertexId};
+use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
 use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::shape::{is_longer, is_shorter};
 use super::store::Store;
+use super::work::{KINDS, Kind, Observer, Work};
 use super::worker::{ID_BLOCK, State};
-use crate::mesh::vector::sub;
-use crate::metric::quality::edge_length;
 use crate::tasks::Pool;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Passes at most that bring the edges to their length.
 const SIZE_PASSES: usize = 20;
@@ -21,8 +20,8 @@ const SIZE_PASSES: usize = 20;
 /// A size pass that changes less than this part of the vertices is the last.
 const LITTLE: f64 = 0.05;
 
-/// The shapes are done when a pass changes fewer than this part of the vertices.
-const SETTLED: f64 = 0.01;
+/// The shapes are done when a pass saves less than this part of the mean of 1/Q − 1.
+const SETTLED: f64 = 0.05;
 
 /// Passes at most that improve the shapes.
 const SHAPE_PASSES: usize = 6;
@@ -36,71 +35,22 @@ const MEND_BELOW: f64 = 0.3;
 /// Tetrahedra that an insertion adds, with much to spare: six is usual.
 const TETS_A_VERTEX: usize = 12;
 
-/// Number of kinds of operations.
-pub const KINDS: usize = 6;
-
-/// A kind of operation, for progress and report.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Kind {
-    /// Insertion.
-    Split,
-    /// Collapse.
-    Collapse,
-    /// Reconnection.
-    Reconnect,
-    /// Smoothing.
-    Smooth,
-    /// Projection on the model.
-    Project,
-    /// The end-game on the worst tetrahedra.
-    Mend,
-}
-
-impl Kind {
-    /// All kinds, in the order of their counters.
-    pub const ALL: [Kind; KINDS] =
-        [Kind::Split, Kind::Collapse, Kind::Reconnect, Kind::Smooth, Kind::Project, Kind::Mend];
-
-    /// The name in progress and reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::Split => "insertion",
-            Kind::Collapse => "collapse",
-            Kind::Reconnect => "reconnection",
-            Kind::Smooth => "smoothing",
-            Kind::Project => "projection",
-            Kind::Mend => "mending",
-        }
-    }
-}
-
-/// Time and counts of one kind of operation.
-#[derive(Clone, Copy, Debug, Default, serde::Serialize)]
-pub struct Work {
-    /// Counts over all sweeps.
-    pub counts: Counts,
-    /// Sweeps.
-    pub sweeps: u32,
-    /// Wall time.
-    pub time: Duration,
-}
-
-/// Is told what happens; called from several threads.
-pub trait Observer: Sync {
-    /// A sweep begins.
-    fn begin(&self, kind: Kind, pass: usize, items: usize);
-    /// So many more items are done.
-    fn advance(&self, items: usize);
-    /// The sweep is over.
-    fn end(&self, counts: &Counts);
-    /// Whether to stop after this sweep.
-    fn stop(&self) -> bool;
+/// Limits while the sizes are brought about: what is bad is flipped and smoothed, what is fair may wait.
+fn size_limits() -> Limits {
+    Limits { improve_below: 0.4, flip_below: 0.6, shortest_new: 0.7, ..Limits::default() }
 }
 
 /// Limits while shapes are improved: nothing may become bad that is not.
 fn shape_limits() -> Limits {
-    Limits { improve_below: crate::adapt::context::env("IB", 0.9), insert_floor: 0.2, insert_loss: 1.0, ..Limits::default() }
+    Limits {
+        improve_below: 0.9,
+        flip_below: 0.85,
+        flip_cost: 0.15,
+        short: 0.75,
+        insert_floor: 0.2,
+        insert_loss: 1.0,
+        ..Limits::default()
+    }
 }
 
 /// The passes on one mesh.
@@ -152,8 +102,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
-        self.reorder();
-        self.context.limits = Limits { improve_below: crate::adapt::context::env("RS", 0.4), shortest_new: crate::adapt::context::env("SN", 0.5), ..Limits::default() };
+        self.context.limits = size_limits();
         for _ in 0..SIZE_PASSES {
             if self.size_pass() || self.observer.stop() {
                 break;
@@ -162,16 +111,28 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
         self.looked = [0; KINDS];
         self.reorder();
-        for pass in 0..crate::adapt::context::env("SP", SHAPE_PASSES as f64) as usize {
+        let mut before = self.cost();
+        for pass in 0..SHAPE_PASSES {
             self.pass += 1;
             self.context.limits = shape_limits();
-            let quiet = self.shape_pass();
+            self.shape_pass();
             self.mend();
             self.settle(pass);
-            if (quiet && self.waiting.is_empty()) || self.observer.stop() {
+            let after = self.cost();
+            let settled = before - after < SETTLED * before;
+            if (settled && self.waiting.is_empty()) || self.observer.stop() {
                 break;
             }
+            before = after;
         }
+    }
+
+    /// Mean of 1/Q − 1 over the tetrahedra: what is left to improve.
+    fn cost(&self) -> f64 {
+        let store = &self.context.store;
+        let costs = store.live_tets().map(|t| 1.0 / store.quality(t).max(1e-3) - 1.0);
+        let (sum, count) = costs.fold((0.0, 0.0), |(sum, count), cost| (sum + cost, count + 1.0));
+        sum / count
     }
 
     /// Puts near in memory what is near in space.
@@ -187,50 +148,23 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn size_pass(&mut self) -> bool {
         let before = self.changes();
         self.looked[Kind::Split as usize] = 0;
-        self.refine(1);
-        self.collapse(1);
+        self.refine();
+        self.collapse();
         self.reconnect(self.criterion, 1);
-        let b = self.context.limits.improve_below;
-        self.context.limits.improve_below = crate::adapt::context::env("SS", 0.4);
-        self.smooth(1);
-        self.context.limits.improve_below = b;
-        ((self.changes() - before) as f64) < crate::adapt::context::env("LITTLE", 0.05) * self.context.store.vertex_bound() as f64
+        self.smooth();
+        ((self.changes() - before) as f64) < LITTLE * self.context.store.vertex_bound() as f64
     }
 
-    /// One pass of all operations; whether it changed little.
-    fn shape_pass(&mut self) -> bool {
-        let before = self.changes();
-        if let Ok(seq) = std::env::var("SEQ") {
-            self.looked[Kind::Split as usize] = 0;
-            for c in seq.chars() {
-                match c {
-                    'r' => {
-                        let b = self.context.limits.improve_below;
-                        self.context.limits.improve_below = crate::adapt::context::env("RR", 0.9);
-                        self.reconnect(Criterion::MeanRatio, 1);
-                        self.context.limits.improve_below = b;
-                    }
-                    's' => self.smooth(1),
-                    'c' => self.collapse(1),
-                    'i' => {
-                        let items = self.long_edges();
-                        self.sweep(Kind::Split, &Split, &items);
-                        self.project();
-                    }
-                    _ => panic!(),
-                }
-            }
-            return ((self.changes() - before) as f64) < crate::adapt::context::env("SETTLED", 0.01) * self.context.store.vertex_bound() as f64;
-        }
-        self.reconnect(Criterion::MeanRatio, 2);
-        self.smooth(1);
-        self.collapse(2);
+    /// One pass of all operations. Flips come twice, where they find most: before the first smoothing, and after the edges' turn.
+    fn shape_pass(&mut self) {
+        self.reconnect(Criterion::MeanRatio, 1);
+        self.smooth();
+        self.collapse();
         // Long edges that were refused are tried again: room may have come from farther away.
         self.looked[Kind::Split as usize] = 0;
-        self.refine(2);
+        self.split();
         self.reconnect(Criterion::MeanRatio, 1);
-        self.smooth(1);
-        ((self.changes() - before) as f64) < SETTLED * self.context.store.vertex_bound() as f64
+        self.smooth();
     }
 
     /// The end-game on the tetrahedra below the limit, with edges a little longer than elsewhere allowed.
@@ -264,18 +198,20 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.work[Kind::Split as usize].counts.done + self.work[Kind::Collapse as usize].counts.done
     }
 
-    /// Splits long edges in so many sweeps, or until few are split.
-    fn refine(&mut self, sweeps: usize) {
+    /// Splits long edges, or refines at centroids, and reconnects.
+    fn refine(&mut self) {
         if self.points == PointCreation::Centroid && self.create() {
             return;
         }
-        for _ in 0..sweeps {
-            let items = self.long_edges();
-            if self.observer.stop() || self.sweep(Kind::Split, &Split, &items).done * 50 <= items.len() as u64 {
-                break;
-            }
+        self.split();
+        self.reconnect(self.criterion, 1);
+    }
+
+    /// Splits long edges and brings what lies on the model there.
+    fn split(&mut self) {
+        let items = self.long_edges();
+        if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
             self.project();
-            self.reconnect(self.criterion, 1);
         }
     }
 
@@ -291,13 +227,11 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         done as f64 >= LITTLE * self.context.store.vertex_bound() as f64
     }
 
-    /// Collapses short edges in so many sweeps, or until none is collapsed.
-    fn collapse(&mut self, sweeps: usize) {
-        for _ in 0..sweeps {
-            let items = self.short_edges();
-            if self.observer.stop() || self.sweep(Kind::Collapse, &Collapse, &items).done == 0 {
-                break;
-            }
+    /// Collapses short edges.
+    fn collapse(&mut self) {
+        let items = self.short_edges();
+        if !self.observer.stop() {
+            self.sweep(Kind::Collapse, &Collapse, &items);
         }
     }
 
@@ -307,7 +241,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             let since = self.begin(Kind::Reconnect);
             self.context.limits.since = since;
             let store = &self.context.store;
-            let limit = self.context.limits.improve_below;
+            let limit = self.context.limits.flip_below;
             let items: Vec<TetId> =
                 store.live_tets().filter(|&t| store.stamp(t) >= since && store.quality(t) < limit).collect();
             if self.observer.stop() || self.sweep(Kind::Reconnect, &Reconnect(criterion), &items).done == 0 {
@@ -316,21 +250,14 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
     }
 
-    /// Smooths the vertices whose tetrahedra changed since the last time.
-    fn smooth(&mut self, sweeps: usize) {
-        for _ in 0..sweeps {
-            let since = self.begin(Kind::Smooth);
-            let limit = self.context.limits.improve_below;
-            let store = &self.context.store;
-            let mut changed = vec![false; store.vertex_bound()];
-            for t in store.live_tets().filter(|&t| store.moved(t) >= since && store.quality(t) < limit) {
-                store.vertices(t).iter().for_each(|v| changed[v.index()] = true);
-            }
-            let live = self.context.store.live_vertices();
-            let items: Vec<VertexId> = live.filter(|v| changed[v.index()]).collect();
-            if self.observer.stop() || self.sweep(Kind::Smooth, &Smooth, &items).done == 0 {
-                break;
-            }
+    /// Smooths the vertices of tetrahedra that are to be improved and changed since the last time.
+    fn smooth(&mut self) {
+        let since = self.begin(Kind::Smooth);
+        let limit = self.context.limits.improve_below;
+        let changed = self.at_tets(|store, t| store.moved(t) >= since && store.quality(t) < limit);
+        let items: Vec<VertexId> = self.context.store.live_vertices().filter(|v| changed[v.index()]).collect();
+        if !self.observer.stop() {
+            self.sweep(Kind::Smooth, &Smooth, &items);
         }
     }
 
@@ -339,14 +266,14 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         std::mem::replace(&mut self.looked[kind as usize], self.context.store.clock() + 1)
     }
 
-    /// For each vertex whether one of its tetrahedra changed at or after the time.
-    fn changed(&self, since: u32, stamp: impl Fn(&Store, TetId) -> u32) -> Vec<bool> {
+    /// For each vertex whether one of its tetrahedra is wanted.
+    fn at_tets(&self, wanted: impl Fn(&Store, TetId) -> bool) -> Vec<bool> {
         let store = &self.context.store;
-        let mut changed = vec![false; store.vertex_bound()];
-        for t in store.live_tets().filter(|&t| stamp(store, t) >= since) {
-            store.vertices(t).iter().for_each(|v| changed[v.index()] = true);
+        let mut at = vec![false; store.vertex_bound()];
+        for t in store.live_tets().filter(|&t| wanted(store, t)) {
+            store.vertices(t).iter().for_each(|v| at[v.index()] = true);
         }
-        changed
+        at
     }
 
     /// Tries to bring the waiting vertices to the model.
@@ -388,29 +315,6 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let advance = |n: usize| self.observer.advance(n);
         let counts = schedule::run(operation, items, self.context, &mut self.states, self.pool, &advance);
         self.observer.end(&counts);
-        if std::env::var_os("GEO_ADAPT_TRACE").is_some() {
-            let store = &self.context.store;
-            let (mut n, mut sum, mut min) = (0.0, 0.0, 1.0f64);
-            for t in store.live_tets() {
-                let q = store.quality(t);
-                n += 1.0;
-                sum += q;
-                min = min.min(q);
-            }
-            let (mut edges, mut unit) = (0.0, 0.0);
-            for t in store.live_tets() {
-                let v = store.vertices(t);
-                for [i, j] in EDGE {
-                    let d = sub(store.position(v[j]), store.position(v[i]));
-                    let l = edge_length(d, &store.metric(v[i]), &store.metric(v[j]));
-                    edges += 1.0;
-                    if l > 0.7071 && l < 1.41421 {
-                        unit += 1.0;
-                    }
-                }
-            }
-            eprintln!("      tets {n} mean {:.4} least {min:.4} unit {:.2}", sum / n, 100.0 * unit / edges);
-        }
         let work = &mut self.work[kind as usize];
         work.counts.add(&counts);
         work.sweeps += 1;
@@ -422,7 +326,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
         let (store, limit) = (&self.context.store, self.context.limits.long);
-        let found = edges::listed(store, &self.changed(since, Store::stamp), |a, b| is_longer(a, b, limit));
+        let found =
+            edges::listed(store, &self.at_tets(|store, t| store.stamp(t) >= since), |a, b| is_longer(a, b, limit));
         let dimension = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
         edges::in_order(&found, |edge| (dimension(&edge.item) + 1) * edges::CLASSES - 1 - u32::from(edge.class))
     }
@@ -431,7 +336,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
         let (store, limit) = (&self.context.store, self.context.limits.short);
-        let found = edges::listed(store, &self.changed(since, Store::stamp), |a, b| is_shorter(a, b, limit));
+        let found =
+            edges::listed(store, &self.at_tets(|store, t| store.stamp(t) >= since), |a, b| is_shorter(a, b, limit));
         edges::in_order(&found, |edge| u32::from(edge.class))
     }
 }

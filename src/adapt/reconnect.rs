@@ -18,7 +18,7 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Flips what the criterion gains by at one tetrahedron: the first edge, else face, whose removal gains.
     pub fn reconnect(&mut self, t: TetId, criterion: Criterion) -> Result<(), Refusal> {
         let v = self.claim_moving_tet(t)?;
-        if self.store.quality(t) >= self.context.limits.improve_below {
+        if self.store.quality(t) >= self.context.limits.flip_below {
             return Err(Refusal::Stale);
         }
         let mut refusal = Refusal::Shape;

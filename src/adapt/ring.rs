@@ -1,8 +1,9 @@
 //! The ring about an edge, and the best way to fill it with triangles.
 //!
 //! Each triangle (i, k, j) of ring vertices stands for two tetrahedra, one on each end of the edge. Dynamic programming over the polygon
-//! (Klincsek 1980; Shewchuk 2002) finds the triangulation whose worst tetrahedron is best. Volumes come first: most rings have no
+//! (Klincsek 1980; Shewchuk 2002) finds the best triangulation. Volumes come first: most rings have no
 //! triangulation of positive tetrahedra at all, and of the others only the triangles that can be part of one are measured.
+use super::criteria::{Criterion, mean_ratio_score};
 use super::ids::VertexId;
 use super::store::Store;
 use crate::mesh::vector::{Vec3, volume6};
@@ -29,8 +30,8 @@ pub struct Ring {
     positive: Table<u8>,
     /// Whether the polygon i..j can be filled.
     fillable: Table<bool>,
-    /// The lesser score of a triangle's two tetrahedra, by (i, j) and k.
-    worst: Table<[f64; LONGEST_RING]>,
+    /// The score of a triangle's two tetrahedra, by (i, j) and k.
+    value: Table<[f64; LONGEST_RING]>,
     /// Best score of the polygon i..j, and its triangle's third vertex.
     score: Table<f64>,
     third: Table<usize>,
@@ -123,26 +124,26 @@ impl Ring {
             self.batch.prepare();
             let q = self.batch.shapes_of(&apex, &log).mean_ratios();
             for (which, &[i, k, j]) in two.iter().enumerate() {
-                self.worst[i][j][k] = q[2 * which].min(q[2 * which + 1]);
+                self.value[i][j][k] = mean_ratio_score(q[2 * which]) + mean_ratio_score(q[2 * which + 1]);
             }
         }
     }
 
     /// Scores the listed triangles one by one.
-    pub fn score_each(&mut self, score: impl Fn([VertexId; 4], &[VertexId]) -> Option<f64>) {
+    pub fn score_each(&mut self, criterion: Criterion, score: impl Fn([VertexId; 4], &[VertexId]) -> f64) {
         let cavity = &self.cavity;
         for &[i, k, j] in &self.wanted {
             let [x, y, z] = [i, k, j].map(|l| cavity[l + 2]);
-            let of = |tet| score(tet, cavity).unwrap_or(f64::NEG_INFINITY);
-            self.worst[i][j][k] = of([x, y, z, cavity[1]]).min(of([x, z, y, cavity[0]]));
+            let ends = [score([x, y, z, cavity[1]], cavity), score([x, z, y, cavity[0]], cavity)];
+            self.value[i][j][k] = criterion.join(ends[0], ends[1]);
         }
     }
 
-    /// Finds the best triangulation of scored triangles; whether its worst tetrahedron scores more than `wanted`.
-    pub fn triangulate(&mut self, wanted: f64) -> bool {
+    /// Finds the best triangulation of scored triangles; whether it scores more than `wanted`.
+    pub fn triangulate(&mut self, criterion: Criterion, wanted: f64) -> bool {
         let n = self.len();
         for i in 0..n - 1 {
-            self.score[i][i + 1] = f64::INFINITY;
+            self.score[i][i + 1] = criterion.nothing();
         }
         // Wide polygons were listed first.
         for width in 2..n {
@@ -151,7 +152,8 @@ impl Ring {
             }
         }
         for &[i, k, j] in self.wanted.iter().rev() {
-            let value = self.score[i][k].min(self.score[k][j]).min(self.worst[i][j][k]);
+            let sides = criterion.join(self.score[i][k], self.score[k][j]);
+            let value = criterion.join(sides, self.value[i][j][k]);
             if value > self.score[i][j] {
                 (self.score[i][j], self.third[i][j]) = (value, k);
             }

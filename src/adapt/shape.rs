@@ -4,7 +4,7 @@ use super::ids::VertexId;
 use super::worker::Worker;
 use crate::mesh::predicate::is_positive;
 use crate::mesh::vector::sub;
-use crate::metric::quality::{edge_length, may_exceed, mean_length, mean_ratio};
+use crate::metric::quality::{edge_length, mean_length, mean_ratio};
 
 /// Whether an edge whose squared lengths in the metrics of its ends are given is longer than the limit.
 #[inline(always)]
@@ -66,17 +66,5 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let logs = vertices.map(|v| self.store.log(v));
         mean_ratio(points, [&logs[0], &logs[1], &logs[2], &logs[3]])
-    }
-
-    /// As [`Worker::shape`], but 0 at once when a cheap bound shows that it does not exceed `floor`.
-    #[inline]
-    pub fn shape_above(&self, vertices: [VertexId; 4], floor: f64) -> f64 {
-        let points = vertices.map(|v| self.store.position(v));
-        if !is_positive(points) {
-            return 0.0;
-        }
-        let logs = vertices.map(|v| self.store.log(v));
-        let logs = [&logs[0], &logs[1], &logs[2], &logs[3]];
-        if may_exceed(points, logs, floor) { mean_ratio(points, logs) } else { 0.0 }
     }
 }

@@ -11,10 +11,10 @@ use super::outcome::Refusal;
 use super::surface::Placed;
 use super::worker::Worker;
 use crate::geometry::{Entity, Evaluate};
-use crate::mesh::vector::{Vec3, add, dot, lerp, scale, unit};
+use crate::mesh::vector::{Vec3, add, dot, lerp, scale, sub, unit};
+use crate::metric::Sym3;
 use crate::metric::batch::Bowl;
 use crate::metric::plane_basis;
-use crate::metric::Sym3;
 
 /// Where a vertex is, to be put back.
 #[derive(Clone, Copy)]
@@ -28,7 +28,10 @@ pub struct Held {
 }
 
 /// Part of the energy that a step must promise to save, and of which it must keep half.
-const GAIN: f64 = 0.005;
+const GAIN: f64 = 0.002;
+
+/// A move that is longer in the metric may change what flips and collapses gain.
+const FAR: f64 = 0.05;
 
 /// Longest step in the metric.
 const LONGEST: f64 = 0.5;
@@ -77,7 +80,9 @@ impl<A: Access> Worker<'_, '_, A> {
         let Some(bowl) = fan.bowl(from, &held.log, &held.metric) else {
             let limit = fan.energy(from, &held.log, &held.metric) * (1.0 - GAIN);
             let to = fan.pliant(from, &held.metric);
-            return STEPS.into_iter().any(|step| self.move_to(v, &held, lerp(from, to, step), ball, triangles, fan, limit));
+            return STEPS
+                .into_iter()
+                .any(|step| self.move_to(v, &held, lerp(from, to, step), ball, triangles, fan, limit));
         };
         let step = self.newton_step(&held.placed, &bowl);
         let limit = bowl.energy * (1.0 - 0.5 * GAIN);
@@ -87,7 +92,9 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let length = held.metric.quadratic(step).sqrt();
         let step = scale(step, (LONGEST / length).min(1.0));
-        [1.0, 0.4].into_iter().any(|part| self.move_to(v, &held, add(from, scale(step, part)), ball, triangles, fan, limit))
+        [1.0, 0.4]
+            .into_iter()
+            .any(|part| self.move_to(v, &held, add(from, scale(step, part)), ball, triangles, fan, limit))
     }
 
     /// −H⁻¹g within the tangent space of the entity.
@@ -129,9 +136,12 @@ impl<A: Access> Worker<'_, '_, A> {
         if !self.try_move(v, held, target, triangles, fan, limit) {
             return false;
         }
+        let way = sub(self.store.position(v), held.placed.point);
+        let far = held.metric.quadratic(way) > FAR * FAR;
         for (&t, shape) in ball.tets.iter().zip(fan.mean_ratios()) {
             self.store.set_quality(t, shape);
-            self.store.touch(t);
+            // After a small move only smoothing looks here again.
+            if far { self.store.touch(t) } else { self.store.touch_moved(t) }
         }
         true
     }

@@ -205,7 +205,8 @@ impl<A: Access> Worker<'_, '_, A> {
                 }
                 continue;
             }
-            let may_grow = behind.is_some() && tag == 0 && self.state.replacement.old.len() < self.context.limits.cavity;
+            let may_grow =
+                behind.is_some() && tag == 0 && self.state.replacement.old.len() < self.context.limits.cavity;
             if (quality <= 0.0 || quality < bounds.wanted) && may_grow {
                 self.claim_tet(behind)?;
                 star.inside.insert(behind.0);
