@@ -24,6 +24,8 @@ pub struct Limits {
     pub longest_new: f64,
     /// An insertion may lower the worst mean ratio of its cavity to this, but no further unless it was worse already.
     pub insert_floor: f64,
+    /// Whether a much too long edge is worth a bad tetrahedron or a short edge: what comes after finds better places for those.
+    pub long_first: bool,
     /// Part of the worst mean ratio that must be left where it is below the floor already.
     pub insert_loss: f64,
     /// As the floor of insertion, for a collapse; nothing may be lost below it.
@@ -54,6 +56,7 @@ impl Default for Limits {
             shortest_new: 0.5,
             longest_new: LONG,
             insert_floor: 0.1,
+            long_first: false,
             insert_loss: 0.5,
             collapse_floor: 0.2,
             improve_below: 1.0,

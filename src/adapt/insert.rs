@@ -91,7 +91,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let limits = self.context.limits;
         // A much too long edge is worth a bad tetrahedron or a short edge: what comes after it finds better places for those.
         let excess = match seed {
-            Seed::Edge(a, b) => (limits.long / self.length(a, b)).min(1.0),
+            Seed::Edge(a, b) if limits.long_first => (limits.long / self.length(a, b)).min(1.0),
             _ => 1.0,
         };
         let allowed = |worker: &Self| excess.powi(3) * limits.insert_floor.min(limits.insert_loss * worker.worst_old());

@@ -37,7 +37,7 @@ const TETS_A_VERTEX: usize = 12;
 
 /// Limits while the sizes are brought about: what is bad is flipped and smoothed, what is fair may wait.
 fn size_limits() -> Limits {
-    Limits { improve_below: 0.4, flip_below: 0.6, shortest_new: 0.7, ..Limits::default() }
+    Limits { improve_below: 0.4, flip_below: 0.6, shortest_new: 0.7, long_first: true, ..Limits::default() }
 }
 
 /// Limits while shapes are improved: nothing may become bad that is not.
