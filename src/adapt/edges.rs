@@ -67,10 +67,10 @@ pub fn listed(store: &Store, changed: &[bool], wanted: impl Fn(f64, f64) -> bool
 /// The edges at one vertex.
 struct Ball<'s> {
     store: &'s Store,
-    /// The vertex for which a tetrahedron was last seen, by tetrahedron.
-    seen: Vec<VertexId>,
-    /// The vertex whose edge to it is known, by vertex, and that edge's place in `edges`.
-    known: Vec<(VertexId, u32)>,
+    /// By tetrahedron, a bit in words of 64, whether it is in `tets`: small enough to stay near the processor.
+    seen: Vec<u64>,
+    /// By vertex its place in `edges`, counted from 1; 0 when it is not there.
+    places: Vec<u32>,
     tets: Vec<TetId>,
     /// The other ends, each with the least tetrahedron.
     edges: Vec<(VertexId, TetId)>,
@@ -80,39 +80,45 @@ impl<'s> Ball<'s> {
     fn new(store: &'s Store) -> Self {
         Self {
             store,
-            seen: vec![VertexId::NONE; store.tet_bound()],
-            known: vec![(VertexId::NONE, 0); store.vertex_bound()],
+            seen: vec![0; store.tet_bound().div_ceil(64)],
+            places: vec![0; store.vertex_bound()],
             tets: Vec::new(),
             edges: Vec::new(),
         }
     }
 
+    /// Takes a tetrahedron in, if it is not there yet.
+    fn take(&mut self, t: TetId) {
+        let (word, bit) = (&mut self.seen[t.index() / 64], 1 << (t.index() % 64));
+        if *word & bit == 0 {
+            *word |= bit;
+            self.tets.push(t);
+        }
+    }
+
     /// Collects the edges at a.
     fn gather(&mut self, a: VertexId) {
-        self.edges.clear();
-        self.tets.clear();
-        let first = self.store.tet_of(a);
-        self.tets.push(first);
-        self.seen[first.index()] = a;
+        self.edges.drain(..).for_each(|(b, _)| self.places[b.index()] = 0);
+        self.take(self.store.tet_of(a));
         let mut next = 0;
         while let Some(&t) = self.tets.get(next) {
             next += 1;
             let (vertices, neighbours) = (self.store.vertices(t), self.store.neighbours(t));
             for (b, n) in vertices.into_iter().zip(neighbours).filter(|&(b, _)| b != a) {
-                if n.is_some() && self.seen[n.index()] != a {
-                    self.seen[n.index()] = a;
-                    self.tets.push(n);
+                if n.is_some() {
+                    self.take(n);
                 }
-                let (of, place) = &mut self.known[b.index()];
-                if *of == a {
-                    let tet = &mut self.edges[*place as usize].1;
-                    *tet = t.min(*tet);
-                } else {
-                    (*of, *place) = (a, self.edges.len() as u32);
+                let place = &mut self.places[b.index()];
+                if *place == 0 {
                     self.edges.push((b, t));
+                    *place = self.edges.len() as u32;
+                } else {
+                    let tet = &mut self.edges[*place as usize - 1].1;
+                    *tet = t.min(*tet);
                 }
             }
         }
+        self.tets.drain(..).for_each(|t| self.seen[t.index() / 64] = 0);
     }
 }
 
