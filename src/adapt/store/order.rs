@@ -17,6 +17,7 @@ impl Store {
         let bounds = [self.vertex_bound(), self.tet_bound()];
         let mut number = self.compact_vertices();
         let mut tet_number = self.compact_tets();
+        self.shrink(bounds);
         let (order, place) = self.vertices_along_curve();
         number.iter_mut().filter(|v| v.is_some()).for_each(|v| *v = place[v.index()]);
         drop(place);
@@ -32,7 +33,6 @@ impl Store {
         permute(tets, |i, j| self.tets.swap(i, j));
         self.renumber_vertices(&number);
         self.renumber_tets(&number, &tet_number);
-        self.shrink(bounds);
         self.note_order();
         number
     }
