@@ -94,6 +94,13 @@ impl<A: Access> Worker<'_, '_, A> {
             Seed::Edge(a, b) if limits.long_first => (limits.long / self.length(a, b)).min(1.0),
             _ => 1.0,
         };
+        let shortest_new = limits.shortest_new * excess * excess;
+        if let Seed::Edge(..) = seed
+            && self.state.shell.ring.iter().any(|&x| self.is_shorter(v, x, shortest_new))
+        {
+            // It will be joined to the ring in any case.
+            return Err(Refusal::Length);
+        }
         let allowed = |worker: &Self| excess.powi(3) * limits.insert_floor.min(limits.insert_loss * worker.worst_old());
         let worst = self.build_star(seed, v, seeds, Bounds::default())?;
         if worst < allowed(self) {
@@ -103,7 +110,6 @@ impl<A: Access> Worker<'_, '_, A> {
             }
         }
         let (shortest, _) = self.star_lengths(v);
-        let shortest_new = limits.shortest_new * excess * excess;
         if shortest < shortest_new { Err(Refusal::Length) } else { self.check_normals(0.3) }
     }
 

@@ -32,6 +32,9 @@ const PATIENCE: usize = 1;
 /// Tetrahedra below this mean ratio go through the end-game.
 const MEND_BELOW: f64 = 0.3;
 
+/// The store is renumbered when it has grown by this factor.
+const OUT_OF_ORDER: usize = 2;
+
 /// Tetrahedra that an insertion adds, with much to spare: six is usual.
 const TETS_A_VERTEX: usize = 12;
 
@@ -74,6 +77,8 @@ pub struct Pipeline<'c, 'm> {
     /// When each kind of operation last looked at everything, on the store's clock.
     looked: [u32; KINDS],
     pass: usize,
+    /// Tetrahedra when the store was last renumbered.
+    ordered: usize,
 }
 
 impl<'c, 'm> Pipeline<'c, 'm> {
@@ -85,6 +90,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         criterion: Criterion,
         waiting: Vec<VertexId>,
     ) -> Self {
+        let ordered = context.store.tet_bound();
         let states = (0..pool.threads()).map(|_| State::new(context)).collect();
         Self {
             context,
@@ -97,6 +103,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             waiting,
             looked: [0; KINDS],
             pass: 0,
+            ordered,
         }
     }
 
@@ -135,6 +142,13 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         sum / count
     }
 
+    /// Puts near in memory what is near in space, if much has come since that was done.
+    fn keep_order(&mut self) {
+        if self.context.store.tet_bound() > OUT_OF_ORDER * self.ordered {
+            self.reorder();
+        }
+    }
+
     /// Puts near in memory what is near in space.
     fn reorder(&mut self) {
         self.gather_waiting();
@@ -142,12 +156,12 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.waiting.iter_mut().for_each(|v| *v = number[v.index()]);
         self.waiting.retain(|v| v.is_some());
         self.states.iter_mut().for_each(|state| state.pool.clear());
+        self.ordered = self.context.store.tet_bound();
     }
 
     /// One pass of insertion and collapse, with as much reconnection as they need; whether it changed little.
     fn size_pass(&mut self) -> bool {
         let before = self.changes();
-        self.looked[Kind::Split as usize] = 0;
         self.refine();
         self.collapse();
         self.reconnect(self.criterion, 1);
@@ -209,6 +223,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Splits long edges and brings what lies on the model there.
     fn split(&mut self) {
+        self.keep_order();
         let items = self.long_edges();
         if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
             self.project();

@@ -1,8 +1,8 @@
 //! Encroachment, nearness, and whole meshes refined at centroids.
 use super::super::access::Exclusive;
 use super::super::build::{self, Filled};
-use super::super::pipeline::{Kind, Observer};
 use super::super::schedule::{self, Create};
+use super::super::work::{Kind, Observer};
 use super::super::worker::State;
 use super::super::{Counts, Options, adapt, extract};
 use super::*;
