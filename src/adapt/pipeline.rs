@@ -21,9 +21,11 @@ const SIZE_PASSES: usize = 20;
 const LITTLE: f64 = 0.05;
 
 /// The shapes are done when a pass saves less than this part of the mean of 1/Q − 1.
-const SETTLED: f64 = 0.1;
+const SETTLED: f64 = 0.15;
 
-/// Passes at most that improve the shapes.
+/// Passes at least, and at most, that improve the shapes.
+const LEAST_SHAPE_PASSES: usize = 2;
+/// See [`LEAST_SHAPE_PASSES`].
 const SHAPE_PASSES: usize = 6;
 
 /// Passes of the shapes after which vertices that wait for room on the model are taken out.
@@ -42,7 +44,7 @@ const TETS_A_VERTEX: usize = 12;
 fn size_limits() -> Limits {
     Limits {
         improve_below: 0.4,
-        flip_below: 0.6,
+        flip_below: 0.65,
         short: 0.65,
         shortest_new: 0.7,
         long_first: true,
@@ -53,8 +55,8 @@ fn size_limits() -> Limits {
 /// Limits while shapes are improved: nothing may become bad that is not.
 fn shape_limits() -> Limits {
     Limits {
-        improve_below: 0.9,
-        flip_below: 0.85,
+        improve_below: 0.85,
+        flip_below: 0.82,
         flip_cost: 0.15,
         short: 0.75,
         insert_floor: 0.2,
@@ -136,7 +138,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.mend();
             self.settle(pass);
             let after = self.cost();
-            let settled = before - after < SETTLED * before;
+            let settled = pass + 1 >= LEAST_SHAPE_PASSES && before - after < SETTLED * before;
             if (settled && self.waiting.is_empty()) || self.observer.stop() {
                 break;
             }
