@@ -32,7 +32,7 @@ const SHAPE_PASSES: usize = 6;
 const PATIENCE: usize = 1;
 
 /// Tetrahedra below this mean ratio go through the end-game.
-const MEND_BELOW: f64 = 0.3;
+const MEND_BELOW: f64 = 0.5;
 
 /// The store is renumbered when it has grown by this factor.
 const OUT_OF_ORDER: usize = 2;
@@ -193,7 +193,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// The end-game on the tetrahedra below the limit, with edges a little longer than elsewhere allowed.
     fn mend(&mut self) {
-        self.context.limits = Limits { improve_below: MEND_BELOW, longest_new: 1.3 * LONG, ..shape_limits() };
+        let looked = self.looked;
+        self.context.limits =
+            Limits { improve_below: MEND_BELOW, flip_below: MEND_BELOW, longest_new: 1.3 * LONG, ..shape_limits() };
         for _ in 0..3 {
             let store = &self.context.store;
             let mut items: Vec<TetId> = store.live_tets().filter(|&t| store.quality(t) < MEND_BELOW).collect();
@@ -203,6 +205,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             }
             self.reconnect(Criterion::MeanRatio, 2);
         }
+        // Flips have looked at the worst only.
+        self.looked = looked;
     }
 
     /// Brings waiting vertices to the model; after some passes they are taken out instead.
