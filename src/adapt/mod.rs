@@ -31,6 +31,7 @@ mod ring;
 mod run;
 mod schedule;
 mod shape;
+mod shed;
 mod shell;
 mod smooth;
 mod star;
