@@ -148,8 +148,8 @@ fn evaluation(c: &mut Criterion) {
     let mut bench = filled(&domain, &mesh);
     let [vertices, tets] = bench.counts();
     group(c, "kernel", vertices).bench_function("ball of a vertex", |b| b.iter(|| bench.balls()));
-    let [standing, fallen] = bench.removals();
-    for (name, removals) in [("star over a ball", standing), ("star over a ball, inverted", fallen)] {
+    let [taken, refused] = bench.removals();
+    for (name, removals) in [("star over a ball", taken), ("star over a ball, refused", refused)] {
         let stars = removals.len();
         println!(
             "\n{name}: {vertices} vertices, {tets} tetrahedra; {stars} stars of {} new ones",

@@ -113,6 +113,8 @@ pub struct Removal {
     vertex: VertexId,
     onto: VertexId,
     ball: Vec<TetId>,
+    /// Mean ratio that its star must have.
+    floor: f64,
 }
 
 /// A mesh in a store, and one thread at work on it.
@@ -229,8 +231,8 @@ impl<'m> Workbench<'m> {
         tets
     }
 
-    /// Removals of interior vertices onto all of their neighbours: those that leave a star of positive tetrahedra, and those that
-    /// do not.
+    /// Removals of interior vertices onto all of their neighbours: those whose star a collapse would take, and those that it would
+    /// refuse for its shape or because it stays inverted.
     pub fn removals(&mut self) -> [Vec<Removal>; 2] {
         let mut worker = Worker::new(&self.context, &mut self.states[0], Exclusive);
         let mut ball = Ball::default();
@@ -238,9 +240,10 @@ impl<'m> Workbench<'m> {
         for vertex in worker.store.live_vertices().filter(|&v| worker.store.dimension(v) == 3) {
             worker.collect_ball(vertex, &mut ball);
             for &onto in &ball.link {
-                let removal = Removal { vertex, onto, ball: ball.tets.clone() };
-                let stands = star(&mut worker, &removal).is_ok();
-                found[usize::from(!stands)].push(removal);
+                let floor = worker.context.limits.collapse_floor.min(worker.worst_of(&ball.tets));
+                let removal = Removal { vertex, onto, ball: ball.tets.clone(), floor };
+                let taken = star(&mut worker, &removal).is_ok();
+                found[usize::from(!taken)].push(removal);
             }
         }
         found
@@ -260,7 +263,8 @@ impl<'m> Workbench<'m> {
 }
 
 fn star(worker: &mut Worker<'_, '_, Exclusive>, removal: &Removal) -> Result<f64, Refusal> {
-    worker.build_star(Seed::Vertex(removal.vertex), removal.onto, &removal.ball, Bounds::default())
+    let bounds = Bounds { wanted: 0.0, floor: removal.floor };
+    worker.build_star(Seed::Vertex(removal.vertex), removal.onto, &removal.ball, bounds)
 }
 
 #[cfg(test)]
@@ -305,9 +309,9 @@ mod tests {
         let mut bench = Workbench::fill(&domain, &snapshot).unwrap();
         let counts = bench.counts();
         assert_eq!(bench.balls(), 4 * counts[1]);
-        let [standing, fallen] = bench.removals();
-        assert!(bench.stars(&standing) >= standing.len() && !standing.is_empty());
-        assert!(bench.stars(&fallen) == 0 && !fallen.is_empty());
+        let [taken, refused] = bench.removals();
+        assert!(bench.stars(&taken) >= taken.len() && !taken.is_empty());
+        assert!(bench.stars(&refused) == 0 && !refused.is_empty());
         assert_eq!(bench.counts(), counts);
         check(&bench.context).unwrap();
     }
