@@ -38,6 +38,7 @@ mod store;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod thin;
 mod work;
 mod worker;
 
