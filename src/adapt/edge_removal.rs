@@ -11,6 +11,12 @@ use super::ring::{LONGEST_RING, Ring};
 use super::shell::Shell;
 use super::worker::Worker;
 
+/// Tetrahedra below this mean ratio are worth the longest rings, which cost most and seldom gain.
+const LONG_RINGS_BELOW: f64 = 0.5;
+
+/// Longest ring about an edge of a tetrahedron that is fair.
+const FAIR_RING: usize = 5;
+
 impl<A: Access> Worker<'_, '_, A> {
     /// Removes the edge a–b of a tetrahedron that holds still, when the criterion gains by it.
     pub fn remove_edge(&mut self, a: VertexId, b: VertexId, t: TetId, criterion: Criterion) -> Result<(), Refusal> {
@@ -19,7 +25,8 @@ impl<A: Access> Worker<'_, '_, A> {
         if self.store.ridge_curve(a, b).is_some() {
             return Err(Refusal::Geometry);
         }
-        self.gather_shell_while(a, b, t, LONGEST_RING, |worker, other| worker.goes_first(t, other))?;
+        let longest = if self.store.quality(t) < LONG_RINGS_BELOW { LONGEST_RING } else { FAIR_RING };
+        self.gather_shell_while(a, b, t, longest, |worker, other| worker.goes_first(t, other))?;
         let shell = std::mem::take(&mut self.state.shell);
         let result = self.remove_shell(a, b, &shell, criterion);
         self.state.shell = shell;

@@ -22,9 +22,11 @@ const SIZE_PASSES: usize = 20;
 const LITTLE: f64 = 0.05;
 
 /// The shapes are done when a pass saves less than this part of the mean of 1/Q − 1.
-const SETTLED: f64 = 0.05;
+const SETTLED: f64 = 0.15;
 
-/// Passes at most that improve the shapes.
+/// Passes at least, and at most, that improve the shapes.
+const LEAST_SHAPE_PASSES: usize = 2;
+/// See [`LEAST_SHAPE_PASSES`].
 const SHAPE_PASSES: usize = 6;
 
 /// Passes of the shapes after which vertices that wait for room on the model are taken out.
@@ -44,14 +46,21 @@ const TETS_A_VERTEX: usize = 12;
 
 /// Limits while the sizes are brought about: what is bad is flipped and smoothed, what is fair may wait.
 fn size_limits() -> Limits {
-    Limits { improve_below: 0.4, flip_below: 0.6, shortest_new: 0.7, long_first: true, ..Limits::default() }
+    Limits {
+        improve_below: 0.4,
+        flip_below: 0.65,
+        short: 0.65,
+        shortest_new: 0.7,
+        long_first: true,
+        ..Limits::default()
+    }
 }
 
 /// Limits while shapes are improved: nothing may become bad that is not.
 fn shape_limits() -> Limits {
     Limits {
-        improve_below: 0.9,
-        flip_below: 0.85,
+        improve_below: 0.85,
+        flip_below: 0.82,
         flip_cost: 0.15,
         short: 0.75,
         insert_floor: 0.2,
@@ -125,6 +134,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
         self.looked = [0; KINDS];
         self.reorder();
+        self.context.limits = shape_limits();
+        self.reconnect(Criterion::MeanRatio, 1);
+        self.smooth();
         let mut before = self.cost();
         for pass in 0..SHAPE_PASSES {
             self.pass += 1;
@@ -133,7 +145,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.mend();
             self.settle(pass);
             let after = self.cost();
-            let settled = before - after < SETTLED * before;
+            let settled = pass + 1 >= LEAST_SHAPE_PASSES && before - after < SETTLED * before;
             if (settled && self.waiting.is_empty()) || self.observer.stop() {
                 break;
             }
@@ -206,10 +218,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         ((self.changes() - before) as f64) < LITTLE * self.context.store.vertex_bound() as f64
     }
 
-    /// One pass of all operations. Flips come twice, where they find most: before the first smoothing, and after the edges' turn.
+    /// One pass of all operations. Flips come after the edges' turn, where they find most: after smoothing they find next to nothing.
     fn shape_pass(&mut self) {
-        self.reconnect(Criterion::MeanRatio, 1);
-        self.smooth();
         self.collapse();
         // Long edges that were refused are tried again: room may have come from farther away.
         self.looked[Kind::Split as usize] = 0;
