@@ -49,7 +49,7 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// No new edge may be longer than the limit and than the longest one that goes.
-    fn check_new_lengths(&self, v: VertexId, w: VertexId, link: &[VertexId]) -> Result<(), Refusal> {
+    pub fn check_new_lengths(&self, v: VertexId, w: VertexId, link: &[VertexId]) -> Result<(), Refusal> {
         let limit = self.context.limits.longest_new;
         if !link.iter().any(|&x| x != w && self.is_longer(w, x, limit)) {
             return Ok(());

@@ -41,6 +41,7 @@ mod store;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod thin;
 mod work;
 mod worker;
 

@@ -500,6 +500,14 @@ impl Store {
         self.touch(t);
     }
 
+    /// Replaces local vertex i by another.
+    #[inline]
+    pub fn set_vertex(&self, t: TetId, i: usize, v: VertexId) {
+        self.must_own_tet(t);
+        self.tets[t.index()].vertices[i].store(v.0, Relaxed);
+        self.must_own_tet(t);
+    }
+
     /// Marks a tetrahedron dead.
     #[inline]
     pub fn kill_tet(&self, t: TetId) {

@@ -88,6 +88,8 @@ pub struct State<'m> {
     pub passing_ball: Ball,
     /// The tetrahedra at either of two vertices.
     pub union: Vec<TetId>,
+    /// What becomes of the ball of a vertex that goes.
+    pub thinning: super::thin::Thinning,
     /// A ball whose middle is tried at other places.
     pub fan: super::fan::Fan,
     /// The ring about an edge.
@@ -116,6 +118,7 @@ impl<'m> State<'m> {
             other_ball: Ball::default(),
             passing_ball: Ball::default(),
             union: Vec::with_capacity(128),
+            thinning: super::thin::Thinning::default(),
             fan: super::fan::Fan::default(),
             shell: super::shell::Shell::default(),
             waiting: Vec::new(),

@@ -71,6 +71,17 @@ impl Operation for Collapse {
     }
 }
 
+/// Removes vertices with short edges.
+pub struct Thin;
+
+impl Operation for Thin {
+    type Item = VertexId;
+
+    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
+        worker.thin(item)
+    }
+}
+
 /// Reconnects bad tetrahedra.
 pub struct Reconnect(pub Criterion);
 
