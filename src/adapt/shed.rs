@@ -58,3 +58,66 @@ impl<A: Access> Worker<'_, '_, A> {
         self.state.pool.free_tet(t);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::access::Exclusive;
+    use super::super::build::{self, Filled};
+    use super::super::check::check;
+    use super::super::context::Context;
+    use super::super::worker::State;
+    use super::*;
+    use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
+    use crate::geometry::{Discrete, Model};
+    use crate::mesh::TetMesh;
+    use crate::mesh::adjacency::FACES;
+    use crate::metric::{Background, Source, Sym3};
+    use std::collections::BTreeMap;
+
+    /// A shallow roof with the ridge a–b over the edge c–d, about which two more tetrahedra reach down to a fifth point; what shedding
+    /// the tetrahedron under the roof comes to, and the tetrahedra that are left.
+    fn shed_roof(height: f64) -> (Result<(), Refusal>, usize, Result<(), String>) {
+        let mut mesh = TetMesh::default();
+        mesh.vertices =
+            vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, height], [0.0, 1.0, height], [0.0, 0.0, -2.0]];
+        for tet in [[0, 2, 1, 3], [0, 3, 1, 4], [0, 4, 1, 2]] {
+            mesh.tets.push(tet, 1);
+        }
+        mesh.vertex_refs = vec![0; 5];
+        let mut sides: BTreeMap<[u32; 3], Vec<[u32; 3]>> = BTreeMap::new();
+        for tet in &mesh.tets.nodes {
+            for face in FACES {
+                let face = face.map(|k| tet[k]);
+                let mut key = face;
+                key.sort_unstable();
+                sides.entry(key).or_default().push(face);
+            }
+        }
+        for faces in sides.into_values().filter(|faces| faces.len() == 1) {
+            mesh.triangles.push(faces[0], 1);
+        }
+        let (model, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).expect("it has a surface");
+        let background = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), vec![Sym3::ZERO; 5]);
+        let (model, source) = (Model::Discrete(model), Source::Background(background));
+        let Filled { store, ids, .. } = build::fill(&mesh, &place, &source).expect("it is valid");
+        let context = Context::new(store, &source, &model);
+        let store = &context.store;
+        let [a, b] = [ids[2], ids[3]];
+        let roof = store.live_tets().find(|&t| store.vertices(t).contains(&a) && store.vertices(t).contains(&b));
+        let roof = roof.expect("it is there");
+        let mut state = State::new(&context);
+        let result = Worker::new(&context, &mut state, Exclusive).shed(roof, a, b);
+        (result, store.live_tets().count(), check(&context))
+    }
+
+    #[test]
+    fn a_flat_tetrahedron_under_the_surface_goes() {
+        assert_eq!(shed_roof(0.05), (Ok(()), 2, Ok(())));
+    }
+
+    #[test]
+    fn an_edge_of_the_model_stays() {
+        // The roof's slopes meet at more than the ridge angle: they are two faces.
+        assert_eq!(shed_roof(2.0), (Err(Refusal::Topology), 3, Ok(())));
+    }
+}
