@@ -151,19 +151,15 @@ impl<'m> Workbench<'m> {
     /// The edges that are too long, long ones first.
     pub fn long_edges(&self) -> Vec<EdgeItem> {
         let limit = self.context.limits.long;
-        let found = edges::listed(&self.context.store, &self.everywhere(), |a, b| is_longer(a, b, limit));
+        let found = edges::listed(&self.context.store, 0, |a, b| is_longer(a, b, limit));
         edges::in_order(&found, |edge| edges::CLASSES - 1 - u32::from(edge.class))
     }
 
     /// The edges that are too short, short ones first.
     pub fn short_edges(&self) -> Vec<EdgeItem> {
         let limit = self.context.limits.short;
-        let found = edges::listed(&self.context.store, &self.everywhere(), |a, b| is_shorter(a, b, limit));
+        let found = edges::listed(&self.context.store, 0, |a, b| is_shorter(a, b, limit));
         edges::in_order(&found, |edge| u32::from(edge.class))
-    }
-
-    fn everywhere(&self) -> Vec<bool> {
-        vec![true; self.context.store.vertex_bound()]
     }
 
     /// Carries out a sweep over items that were listed for it.

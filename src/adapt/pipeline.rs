@@ -392,8 +392,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
         let (store, limit) = (&self.context.store, self.context.limits.long);
-        let found =
-            edges::listed(store, &self.at_tets(|store, t| store.stamp(t) >= since), |a, b| is_longer(a, b, limit));
+        let found = edges::listed(store, since, |a, b| is_longer(a, b, limit));
         let dimension = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
         edges::in_order(&found, |edge| (dimension(&edge.item) + 1) * edges::CLASSES - 1 - u32::from(edge.class))
     }
@@ -402,8 +401,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
         let (store, limit) = (&self.context.store, self.context.limits.short);
-        let found =
-            edges::listed(store, &self.at_tets(|store, t| store.stamp(t) >= since), |a, b| is_shorter(a, b, limit));
+        let found = edges::listed(store, since, |a, b| is_shorter(a, b, limit));
         edges::in_order(&found, |edge| u32::from(edge.class))
     }
 }
