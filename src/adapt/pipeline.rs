@@ -1,4 +1,6 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
+mod thinning;
+
 use super::context::{Context, LONG, Limits};
 use super::create::{self, PointCreation};
 use super::criteria::Criterion;
@@ -6,12 +8,11 @@ use super::edges;
 use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
-use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split, Thin};
+use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::shape::{is_longer, is_shorter};
 use super::store::Store;
 use super::work::{KINDS, Kind, Observer, Work};
 use super::worker::{ID_BLOCK, State};
-use crate::mesh::vector::volume6;
 use crate::tasks::Pool;
 use std::time::Instant;
 
@@ -35,10 +36,7 @@ const PATIENCE: usize = 1;
 /// Tetrahedra below this mean ratio go through the end-game.
 const MEND_BELOW: f64 = 0.5;
 
-/// A mesh of so many times the tetrahedra that the metric asks for is thinned first.
-const CROWDED: f64 = 4.0;
-
-/// The store is renumbered when it has grown by this factor.
+/// The store is renumbered when it has grown, or was thinned, by this factor.
 const OUT_OF_ORDER: usize = 2;
 
 /// Tetrahedra that an insertion adds, with much to spare: six is usual.
@@ -123,7 +121,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
         self.context.limits = size_limits();
-        if self.is_crowded() {
+        if thinning::is_crowded(&self.context.store) {
             self.thin();
         }
         for _ in 0..SIZE_PASSES {
@@ -176,36 +174,6 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.waiting.retain(|v| v.is_some());
         self.states.iter_mut().for_each(|state| state.pool.clear());
         self.ordered = self.context.store.tet_bound();
-    }
-
-    /// Whether the tetrahedra are several times those that the metric asks for.
-    fn is_crowded(&self) -> bool {
-        let store = &self.context.store;
-        let volume = |t: TetId| {
-            let [v, w, x, y] = store.vertices(t);
-            let trace: f64 = [v, w, x, y].map(|x| store.log(x)).iter().map(|log| log.0[0] + log.0[2] + log.0[5]).sum();
-            let [a, b, c, d] = [v, w, x, y].map(|x| store.position(x));
-            volume6(a, b, c, d) * (0.125 * trace).exp()
-        };
-        let (sum, count) = store.live_tets().fold((0.0, 0.0), |(sum, count), t| (sum + volume(t), count + 1.0));
-        // Six times the volume of a regular tetrahedron of unit edges is 1/√2.
-        count > CROWDED * std::f64::consts::SQRT_2 * sum
-    }
-
-    /// Removes vertices that are too near to others, in sweeps over all whose neighbourhood changed.
-    fn thin(&mut self) {
-        let mut since = 0;
-        loop {
-            let store = &self.context.store;
-            let changed = |v: &VertexId| store.stamp(store.tet_of(*v)) >= since;
-            let items: Vec<VertexId> = store.live_vertices().filter(changed).collect();
-            since = store.clock() + 1;
-            let done = if self.observer.stop() { 0 } else { self.sweep(Kind::Collapse, &Thin, &items).done };
-            if (done as f64) < LITTLE * items.len() as f64 {
-                break;
-            }
-        }
-        self.reorder();
     }
 
     /// One pass of insertion and collapse, with as much reconnection as they need; whether it changed little.

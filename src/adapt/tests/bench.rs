@@ -6,7 +6,7 @@ use crate::adapt::criteria::Criterion;
 use crate::adapt::ids::{EDGE, TetId, VertexId};
 use crate::adapt::insert::EdgeItem;
 use crate::adapt::outcome::Counts;
-use crate::adapt::schedule::{self, Collapse, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
+use crate::adapt::schedule::{self, Collapse, Mend, Operation, Project, Reconnect, Retire, Smooth, Split, Thin};
 use crate::adapt::worker::State;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary, samples};
@@ -97,6 +97,7 @@ pub fn sample(shape: Shape, n: u32, size: f64) -> Sample {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Task {
     Split,
+    Thin,
     Collapse,
     Reconnect(Criterion),
     Smooth,
@@ -106,8 +107,9 @@ pub enum Task {
 }
 
 impl Task {
-    pub const ALL: [Task; 9] = [
+    pub const ALL: [Task; 10] = [
         Task::Split,
+        Task::Thin,
         Task::Collapse,
         Task::Reconnect(Criterion::Delaunay),
         Task::Reconnect(Criterion::EdgeWeight),
@@ -170,6 +172,7 @@ impl<'m> Bench<'m> {
         self.context.store.tick();
         let counts = match task {
             Task::Split => self.on_edges(&Split),
+            Task::Thin => self.on_vertices(&Thin, false),
             Task::Collapse => self.on_edges(&Collapse),
             Task::Reconnect(criterion) => self.on_tets(&Reconnect(criterion)),
             Task::Smooth => self.on_vertices(&Smooth, false),

@@ -4,7 +4,7 @@ use crate::adapt::access::{Access, Speculative};
 use crate::adapt::criteria::Criterion;
 use crate::adapt::ids::{TetId, VertexId};
 use crate::adapt::outcome::Refusal;
-use crate::adapt::schedule::{Collapse, Mend, Operation, Reconnect, Retire, Smooth, Split};
+use crate::adapt::schedule::{Collapse, Mend, Operation, Reconnect, Retire, Smooth, Split, Thin};
 use crate::adapt::store::Store;
 use crate::adapt::worker::Worker;
 use crate::geometry::Entity;
@@ -36,6 +36,11 @@ fn attempt(bench: &mut Bench<'_>, kind: u8, pick: usize) -> Result<(), Refusal> 
         4 => Reconnect(Criterion::MeanRatio).attempt(&mut worker, edge.tet),
         5 => Smooth.attempt(&mut worker, vertex),
         6 => Mend.attempt(&mut worker, edge.tet),
+        7 => {
+            // What went before was in another sweep.
+            worker.store.tick();
+            Thin.attempt(&mut worker, vertex)
+        }
         _ => Retire.attempt(&mut worker, vertex),
     };
     worker.access.release(worker.store);
@@ -60,7 +65,7 @@ fn run(shape: Shape, long: f64, operations: Vec<(u8, usize)>) {
 }
 
 fn operations() -> impl Strategy<Value = Vec<(u8, usize)>> {
-    proptest::collection::vec((0..8u8, any::<usize>()), 1..60)
+    proptest::collection::vec((0..9u8, any::<usize>()), 1..60)
 }
 
 proptest! {
