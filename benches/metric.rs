@@ -1,8 +1,14 @@
 //! The hot kernels of the metric: tensor maps, edge length, mean ratio, location. One call an iteration, over inputs that
-//! vary as they do in a mesh.
+//! vary as they do in a mesh; those "four at once" are one call for four edges or tetrahedra.
+//!
+//!     cargo bench --bench metric -- --quick             # all; without --quick finer, and compared with the last time
+//!     cargo bench --bench metric -- --quick mean_ratio  # those whose name holds the word
 use criterion::{Criterion, criterion_group, criterion_main};
+use geo_adapt::mesh::TetMesh;
+use geo_adapt::mesh::samples::cube;
 use geo_adapt::mesh::vector::{Vec3, cross, unit};
-use geo_adapt::metric::batch::Batch;
+use geo_adapt::metric::batch::{Batch, Spokes};
+use geo_adapt::metric::lanes::LANES;
 use geo_adapt::metric::quality::{edge_length, mean_ratio, mean_ratio_in};
 use geo_adapt::metric::{Background, Sym3};
 use std::hint::black_box;
@@ -64,6 +70,19 @@ fn quality(c: &mut Criterion) {
     let edges: Vec<(Vec3, Sym3, Sym3)> =
         (0..INPUTS).map(|_| (numbers.point(), numbers.metric(100.0), numbers.metric(100.0))).collect();
     over(c, "edge_length", &edges, |(v, a, b)| edge_length(*v, a, b));
+    // Numbers of their own: the inputs below stay what they were.
+    let mut others = Numbers(4);
+    let spokes: Vec<(Spokes, Vec3, Sym3)> = edges
+        .chunks_exact(LANES)
+        .map(|four| {
+            let mut spokes = Spokes::default();
+            for (lane, (point, metric, _)) in four.iter().enumerate() {
+                spokes.set(lane, *point, metric);
+            }
+            (spokes, others.point(), others.metric(100.0))
+        })
+        .collect();
+    over(c, "edge_length, four at once", &spokes, |(spokes, p, metric)| spokes.lengths(*p, metric));
     // Corners near those of a right tetrahedron: positive. Metrics of neighbours differ little.
     let tets: Vec<([Vec3; 4], [Sym3; 4])> = (0..INPUTS)
         .map(|_| {
@@ -77,7 +96,7 @@ fn quality(c: &mut Criterion) {
         .collect();
     over(c, "mean_ratio", &tets, |(p, logs)| mean_ratio(*p, logs.each_ref()));
     let batches: Vec<(Batch, Vec3, Sym3)> = tets
-        .chunks_exact(4)
+        .chunks_exact(LANES)
         .map(|four| {
             let mut batch = Batch::default();
             for (lane, (p, logs)) in four.iter().enumerate() {
@@ -89,45 +108,20 @@ fn quality(c: &mut Criterion) {
         .collect();
     over(c, "mean_ratio, four at once", &batches, |(batch, p, log)| batch.shapes(*p, log).mean_ratios());
     over(c, "mean_ratio, four at once, cubed", &batches, |(batch, p, log)| batch.shapes(*p, log));
+    over(c, "bowl, four at once", &batches, |(batch, p, log)| batch.bowl(*p, log, LANES));
+    over(c, "batch prepared", &batches, |(batch, ..)| {
+        let mut batch = batch.clone();
+        batch.prepare();
+        batch
+    });
     over(c, "mean_ratio_in", &tets, |(p, logs)| mean_ratio_in(*p, &logs[0], 1.0));
 }
 
-/// The unit cube as n³ cells of six tetrahedra around a diagonal.
-fn cube(n: u32) -> (Vec<Vec3>, Vec<[u32; 4]>) {
-    let index = |at: [u32; 3]| (at[0] * (n + 1) + at[1]) * (n + 1) + at[2];
-    let line = 0..(n + 1).pow(3);
-    let of = |i: u32, m: u32| [i / (m * m), i / m % m, i % m];
-    let vertices = line.map(|i| of(i, n + 1).map(|x| f64::from(x) / f64::from(n))).collect();
-    let mut tets = Vec::new();
-    for cell in 0..n * n * n {
-        for (order, odd) in [
-            ([0, 1, 2], false),
-            ([1, 2, 0], false),
-            ([2, 0, 1], false),
-            ([1, 0, 2], true),
-            ([0, 2, 1], true),
-            ([2, 1, 0], true),
-        ] {
-            let mut at = of(cell, n);
-            let mut nodes = [index(at); 4];
-            for (node, axis) in nodes[1..].iter_mut().zip(order) {
-                at[axis] += 1;
-                *node = index(at);
-            }
-            if odd {
-                nodes.swap(0, 1);
-            }
-            tets.push(nodes);
-        }
-    }
-    (vertices, tets)
-}
-
 fn location(c: &mut Criterion) {
-    let (vertices, tets) = cube(24);
+    let TetMesh { vertices, tets, .. } = cube(24);
     let mut numbers = Numbers(3);
     let logs = vertices.iter().map(|_| numbers.metric(100.0).ln()).collect();
-    let background = Background::new(vertices, tets, logs);
+    let background = Background::new(vertices, tets.nodes, logs);
     let mut p = [0.5; 3];
     let mut hint = 0;
     // A step of half a cell from the last point, as the kernel's hints are.

@@ -11,15 +11,17 @@ use crate::geometry::Entity;
 impl<A: Access> Worker<'_, '_, A> {
     /// Collapses an edge that is too short: of its two ends the one whose removal leaves the better elements.
     pub fn collapse_edge(&mut self, item: EdgeItem) -> Result<(), Refusal> {
-        let EdgeItem { a, b, tet } = item;
+        let EdgeItem { a, b, .. } = item;
         self.claim_live(a)?;
         self.claim_live(b)?;
-        self.tet_with_edge(a, b, tet)?;
         if !self.is_shorter(a, b, self.context.limits.short) {
             return Err(Refusal::Stale);
         }
         let mut balls = [std::mem::take(&mut self.state.ball), std::mem::take(&mut self.state.other_ball)];
-        let gathered = self.gather_ball(a, &mut balls[0]).and_then(|()| self.gather_ball(b, &mut balls[1]));
+        let gathered = self.gather_ball(a, &mut balls[0]).and_then(|()| match balls[0].link.contains(&b) {
+            true => self.gather_ball(b, &mut balls[1]),
+            false => Err(Refusal::Stale),
+        });
         let result = gathered.and_then(|()| self.collapse_between([a, b], [&balls[0], &balls[1]]));
         [self.state.ball, self.state.other_ball] = balls;
         result

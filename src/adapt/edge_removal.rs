@@ -27,6 +27,9 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let longest = if self.store.quality(t) < LONG_RINGS_BELOW { LONGEST_RING } else { FAIR_RING };
         self.gather_shell_while(a, b, t, longest, |worker, other| worker.goes_first(t, other))?;
+        if let [only] = self.state.shell.tets[..] {
+            return self.shed(only, a, b);
+        }
         let shell = std::mem::take(&mut self.state.shell);
         let result = self.remove_shell(a, b, &shell, criterion);
         self.state.shell = shell;

@@ -45,22 +45,18 @@ pub fn in_order(edges: &[Classed], rank: impl Fn(&Classed) -> u32) -> Vec<EdgeIt
 /// memory is near in space.
 const AT_ONCE: usize = 1 << 16;
 
-/// The edges that pass the test of their squared lengths in the metrics of both ends, of those that have an end where something
-/// changed (`changed`, by vertex); a few of them twice. In the order of their vertices within blocks. Between sweeps only.
-pub fn listed(store: &Store, changed: &[bool], wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
+/// The edges of tetrahedra that changed at or after a time, as far as they pass the test of their squared lengths in the metrics of both
+/// ends; a few of them twice. In the order of their vertices within blocks. Between sweeps only.
+pub fn listed(store: &Store, since: u32, wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
     let mut found: Vec<Classed> = Vec::new();
     let mut sorted = 0;
-    for t in store.live_tets() {
+    for t in store.live_tets().filter(|&t| store.stamp(t) >= since) {
         let v = store.vertices(t);
-        let new = v.map(|x| changed[x.index()]);
-        if new == [false; 4] {
-            continue;
-        }
         let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
         for [i, j] in EDGE {
             let e = sub(p[j], p[i]);
             let (at_i, at_j) = (m[i].quadratic(e), m[j].quadratic(e));
-            if (new[i] || new[j]) && wanted(at_i, at_j) {
+            if wanted(at_i, at_j) {
                 let item = EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t };
                 found.push(Classed { item, class: class(at_i * at_j) });
             }
@@ -118,16 +114,23 @@ mod tests {
         let is_short = |a: f64, b: f64| a < 0.16 && b < 0.16;
         let all: BTreeSet<_> = unique_edges(&mesh.tets.nodes).into_iter().map(ends).collect();
         let length = |[a, b]: [VertexId; 2]| crate::mesh::vector::distance(store.position(a), store.position(b));
-        for changed in [vec![true; ids.len()], (0..ids.len()).map(|v| v % 5 == 0).collect()] {
-            let touched = |edge: &&[VertexId; 2]| edge.iter().any(|v| changed[v.index()]);
+        let before = store.clock() + 1;
+        store.tick();
+        store.live_tets().filter(|t| t.0 % 5 == 0).for_each(|t| store.touch(t));
+        for since in [0, before] {
+            let touched = |edge: &&[VertexId; 2]| {
+                let holds = |t: &TetId| edge.iter().all(|v| store.vertices(*t).contains(v));
+                store.live_tets().filter(|&t| store.stamp(t) >= since).any(|t| holds(&t))
+            };
             let expected: BTreeSet<_> = all.iter().filter(touched).copied().filter(|&e| length(e) < 0.4).collect();
-            let found = listed(&store, &changed, is_short);
+            let found = listed(&store, since, is_short);
             assert_eq!(found.len(), expected.len());
             assert_eq!(found.iter().map(|edge| ends_of(&edge.item)).collect::<BTreeSet<_>>(), expected);
             for Classed { item, class: of } in &found {
                 assert_eq!(*of, class(length(ends_of(item)).powi(4)));
                 let holds = |t: &TetId| ends_of(item).iter().all(|v| store.vertices(*t).contains(v));
-                assert_eq!(store.live_tets().find(holds), Some(item.tet));
+                let mut fresh = store.live_tets().filter(|&t| store.stamp(t) >= since);
+                assert_eq!(fresh.find(holds), Some(item.tet));
             }
         }
     }

@@ -8,7 +8,7 @@ use super::worker::Worker;
 use crate::geometry::Entity;
 
 /// How much better, in part, the worst tetrahedron of a larger cavity must become.
-const GAIN: f64 = 1.2;
+const GAIN: f64 = 1.05;
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Mends one bad tetrahedron: one of its vertices is joined anew to a larger cavity, or removed onto any neighbour, if the

@@ -1,6 +1,8 @@
 //! The kernel: the mesh store, its operations, and the passes that make a unit mesh.
 mod access;
 mod ball;
+#[doc(hidden)]
+pub mod bench_support;
 mod build;
 mod cavity;
 #[cfg(test)]
@@ -31,6 +33,7 @@ mod ring;
 mod run;
 mod schedule;
 mod shape;
+mod shed;
 mod shell;
 mod smooth;
 mod star;

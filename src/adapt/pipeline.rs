@@ -34,7 +34,7 @@ const SHAPE_PASSES: usize = 6;
 const PATIENCE: usize = 1;
 
 /// Tetrahedra below this mean ratio go through the end-game.
-const MEND_BELOW: f64 = 0.3;
+const MEND_BELOW: f64 = 0.5;
 
 /// The store is renumbered when it has grown by this factor.
 const OUT_OF_ORDER: usize = 2;
@@ -198,7 +198,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// The end-game on the tetrahedra below the limit, with edges a little longer than elsewhere allowed.
     fn mend(&mut self) {
-        self.context.limits = Limits { improve_below: MEND_BELOW, longest_new: 1.3 * LONG, ..shape_limits() };
+        let looked = self.looked;
+        self.context.limits =
+            Limits { improve_below: MEND_BELOW, flip_below: MEND_BELOW, longest_new: 1.3 * LONG, ..shape_limits() };
         for _ in 0..3 {
             let store = &self.context.store;
             let mut items: Vec<TetId> = store.live_tets().filter(|&t| store.quality(t) < MEND_BELOW).collect();
@@ -208,6 +210,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             }
             self.reconnect(Criterion::MeanRatio, 2);
         }
+        // Flips have looked at the worst only.
+        self.looked = looked;
     }
 
     /// Brings waiting vertices to the model; after some passes they are taken out instead.
@@ -356,8 +360,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
         let (store, limit) = (&self.context.store, self.context.limits.long);
-        let found =
-            edges::listed(store, &self.at_tets(|store, t| store.stamp(t) >= since), |a, b| is_longer(a, b, limit));
+        let found = edges::listed(store, since, |a, b| is_longer(a, b, limit));
         let dimension = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
         edges::in_order(&found, |edge| (dimension(&edge.item) + 1) * edges::CLASSES - 1 - u32::from(edge.class))
     }
@@ -366,8 +369,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
         let (store, limit) = (&self.context.store, self.context.limits.short);
-        let found =
-            edges::listed(store, &self.at_tets(|store, t| store.stamp(t) >= since), |a, b| is_shorter(a, b, limit));
+        let found = edges::listed(store, since, |a, b| is_shorter(a, b, limit));
         edges::in_order(&found, |edge| u32::from(edge.class))
     }
 }

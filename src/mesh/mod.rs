@@ -7,8 +7,8 @@ pub mod io;
 pub mod locate;
 mod matched_faces;
 pub mod predicate;
-#[cfg(test)]
-pub(crate) mod samples;
+#[doc(hidden)]
+pub mod samples;
 mod tet_mesh;
 pub mod validity;
 pub mod vector;

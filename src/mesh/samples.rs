@@ -1,4 +1,4 @@
-//! Small meshes for tests.
+//! Small meshes for tests and benches; no part of the interface.
 use super::adjacency::{FACES, NONE, neighbours};
 use super::vector::Vec3;
 use super::{Elements, TetMesh};
