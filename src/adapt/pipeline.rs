@@ -36,7 +36,7 @@ const PATIENCE: usize = 1;
 /// Tetrahedra below this mean ratio go through the end-game.
 const MEND_BELOW: f64 = 0.5;
 
-/// The store is renumbered when it has grown, or was thinned, by this factor.
+/// The store is renumbered when it has grown by this factor.
 const OUT_OF_ORDER: usize = 2;
 
 /// Tetrahedra that an insertion adds, with much to spare: six is usual.

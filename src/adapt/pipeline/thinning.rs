@@ -1,5 +1,5 @@
 //! A crowded mesh is thinned before the passes: they would list and judge each of its edges again and again.
-use super::{LITTLE, OUT_OF_ORDER, Pipeline, size_limits};
+use super::{LITTLE, Pipeline, size_limits};
 use crate::adapt::context::Limits;
 use crate::adapt::ids::{TetId, VertexId};
 use crate::adapt::schedule::Thin;
@@ -9,6 +9,9 @@ use crate::mesh::vector::volume6;
 
 /// A mesh of so many times the tetrahedra that the metric asks for is thinned.
 const CROWDED: f64 = 4.0;
+
+/// The store is renumbered when it has shrunk by this factor: by 2 costs as much as it saves.
+const SHRUNK: usize = 4;
 
 /// Rounds of thinning, with flips between them.
 const THINNINGS: usize = 3;
@@ -59,7 +62,7 @@ impl Pipeline<'_, '_> {
             if (done as f64) < LITTLE * items.len() as f64 {
                 break;
             }
-            if OUT_OF_ORDER * (live - done) < self.context.store.vertex_bound() {
+            if SHRUNK * (live - done) < self.context.store.vertex_bound() {
                 self.reorder();
                 // A vertex no longer knows the tetrahedron that changed last.
                 since = 0;
