@@ -77,13 +77,12 @@ mod tests {
     /// A shallow roof with the ridge a–b over the edge c–d, about which two more tetrahedra reach down to a fifth point; what shedding
     /// the tetrahedron under the roof comes to, and the tetrahedra that are left.
     fn shed_roof(height: f64) -> (Result<(), Refusal>, usize, Result<(), String>) {
-        let mut mesh = TetMesh::default();
-        mesh.vertices =
+        let vertices =
             vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, height], [0.0, 1.0, height], [0.0, 0.0, -2.0]];
+        let mut mesh = TetMesh { vertices, vertex_refs: vec![0; 5], ..TetMesh::default() };
         for tet in [[0, 2, 1, 3], [0, 3, 1, 4], [0, 4, 1, 2]] {
             mesh.tets.push(tet, 1);
         }
-        mesh.vertex_refs = vec![0; 5];
         let mut sides: BTreeMap<[u32; 3], Vec<[u32; 3]>> = BTreeMap::new();
         for tet in &mesh.tets.nodes {
             for face in FACES {
