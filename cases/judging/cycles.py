@@ -36,9 +36,9 @@ class Floor:
 
 # Issue 2: the floor that CDT3D reached, four cycles from the UGAWG mesh of 286 vertices.
 FLOORS = {
-    "linear": Floor(0.95, 0.20, 0.80, 2.5),
-    "polar-2": Floor(0.93, 0.15, 0.78, 2.6),
-    "polar-1": Floor(0.80, 0.05, 0.62, 3.5),
+    "linear": Floor(0.985, 0.45, 0.885, 2.15),
+    "polar-2": Floor(0.98, 0.40, 0.88, 2.25),
+    "polar-1": Floor(0.92, 0.20, 0.77, 3.0),
 }
 
 
