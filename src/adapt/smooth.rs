@@ -65,7 +65,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if moved { Ok(()) } else { Err(Refusal::Shape) }
     }
 
-    /// Tries the directions in turn, each with shorter and shorter steps, until the vertex moves; whether it did.
+    /// Lays the ball out and steps down its energy; whether the vertex moved.
     fn descend(&mut self, v: VertexId, ball: &Ball, triangles: &[([VertexId; 3], u32)]) -> bool {
         let mut fan = std::mem::take(&mut self.state.fan);
         fan.fill(self.store, v, &ball.tets, &ball.link);
@@ -74,6 +74,7 @@ impl<A: Access> Worker<'_, '_, A> {
         moved
     }
 
+    /// Newton's step, whole and shortened; where a tetrahedron is flat, the pliant direction instead.
     fn descend_in(&mut self, v: VertexId, ball: &Ball, triangles: &[([VertexId; 3], u32)], fan: &mut Fan) -> bool {
         let held = self.hold(v);
         let from = held.placed.point;
@@ -87,7 +88,9 @@ impl<A: Access> Worker<'_, '_, A> {
         let step = self.newton_step(&held.placed, &bowl);
         let limit = bowl.energy * (1.0 - 0.5 * GAIN);
         // What the whole step would save is known; if that is too little, nothing is tried.
-        if -0.5 * dot(bowl.gradient, step) < GAIN * bowl.energy {
+        // No number comes where the surface has no normal, as at a pole: the vertex stays.
+        let saved = -0.5 * dot(bowl.gradient, step);
+        if saved.is_nan() || saved < GAIN * bowl.energy {
             return false;
         }
         let length = held.metric.quadratic(step).sqrt();
