@@ -6,6 +6,7 @@
 pub mod adapt;
 pub mod cli;
 pub mod geometry;
+pub mod memory;
 pub mod mesh;
 pub mod metric;
 pub mod tasks;
