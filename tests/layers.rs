@@ -11,6 +11,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("geometry", &["mesh"]),
     ("tasks", &[]),
     ("mesh", &[]),
+    ("memory", &[]),
 ];
 
 fn is_layer(name: &str) -> bool {
