@@ -22,9 +22,6 @@ impl<A: Access> Worker<'_, '_, A> {
     pub fn remove_edge(&mut self, a: VertexId, b: VertexId, t: TetId, criterion: Criterion) -> Result<(), Refusal> {
         self.claim(a)?;
         self.claim(b)?;
-        if self.store.ridge_curve(a, b).is_some() {
-            return Err(Refusal::Geometry);
-        }
         let longest = if self.store.quality(t) < LONG_RINGS_BELOW { LONGEST_RING } else { FAIR_RING };
         self.gather_shell_while(a, b, t, longest, |worker, other| worker.goes_first(t, other))?;
         if let [only] = self.state.shell.tets[..] {
@@ -46,6 +43,10 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Shape);
         }
         let surface = self.surface_flip(a, b, shell)?;
+        // Model edges have surface triangles.
+        if surface.is_some() && self.store.ridge_curve(a, b).is_some() {
+            return Err(Refusal::Geometry);
+        }
         let mut ring = self.state.ring.take().unwrap_or_default();
         ring.fill(self.store, [a, b], &shell.ring);
         let old = shell.tets.iter().map(|&t| self.present_score(criterion, t, ring.cavity()));

@@ -59,7 +59,7 @@ impl<A: Access> Worker<'_, '_, A> {
             batch.set(lane, [a, b, c], logs.each_ref());
         }
         batch.prepare();
-        let [x, y, z, _] = batch.shapes(points[0][3], &self.store.log(new[0][3])).mean_ratios();
+        let [x, y, z, ..] = batch.shapes(points[0][3], &self.store.log(new[0][3])).mean_ratios();
         Some([x, y, z])
     }
 }

@@ -9,7 +9,7 @@ use super::lanes::{
     LANES, LaneSym3, LaneVec3, Lanes, add_dyad, apply, contract, cross, det, dot, everywhere, everywhere_tensor,
     squared, sub,
 };
-use super::quality::mean_ratio;
+use super::quality::mean_ratio_log;
 use crate::mesh::vector::Vec3;
 use multiversion::multiversion;
 
@@ -24,7 +24,6 @@ const UNCERTAIN: f64 = 4e-14;
 #[derive(Clone)]
 pub struct Batch {
     corners: [LaneVec3; 3],
-    logs: [LaneSym3; 3],
     /// Normal of twice the area.
     area: LaneVec3,
     /// Error bound of the volume, in the apex's greatest component from a.
@@ -50,7 +49,7 @@ impl Shapes {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn roots(cubes: &Lanes) -> Lanes {
     cubes.above(f64::MIN_POSITIVE, cubes.max(Lanes::all(f64::MIN_POSITIVE)).cbrt(), Lanes::ZERO)
 }
@@ -59,7 +58,6 @@ impl Default for Batch {
     fn default() -> Self {
         Self {
             corners: [[Lanes::ZERO; 3]; 3],
-            logs: [[Lanes::ZERO; 6]; 3],
             area: [Lanes::ZERO; 3],
             uncertain: Lanes::ZERO,
             dyads: [Lanes::ZERO; 6],
@@ -76,9 +74,9 @@ impl Batch {
             for i in 0..3 {
                 self.corners[k][i].0[lane] = points[k][i];
             }
-            for i in 0..6 {
-                self.logs[k][i].0[lane] = logs[k].0[i];
-            }
+        }
+        for i in 0..6 {
+            self.log_sum[i].0[lane] = logs[0].0[i] + logs[1].0[i] + logs[2].0[i];
         }
     }
 
@@ -116,9 +114,8 @@ impl Batch {
         for lane in (0..LANES).filter(|&lane| cubes.0[lane] > 0.0) {
             let [a, b, c] = self.corners.map(|corner| corner.map(|x| x.0[lane]));
             let points = [a, b, c, apex.map(|x| x.0[lane])];
-            let of_lane = |tensor: &LaneSym3| Sym3(tensor.map(|x| x.0[lane]));
-            let [la, lb, lc] = [0, 1, 2].map(|k| of_lane(&self.logs[k]));
-            exact.0[lane] = mean_ratio(points, [&la, &lb, &lc, &of_lane(log)]).max(0.0).powi(3);
+            let mean = Sym3(std::array::from_fn(|i| 0.25 * (self.log_sum[i].0[lane] + log[i].0[lane])));
+            exact.0[lane] = mean_ratio_log(points, &mean).max(0.0).powi(3);
         }
         Shapes { cubes: exact }
     }
@@ -159,7 +156,7 @@ struct LaneBowl {
     hessian: LaneSym3,
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn prepare(batch: &mut Batch) {
     let [a, b, c] = &batch.corners;
     let (ab, ac, bc) = (sub(b, a), sub(c, a), sub(c, b));
@@ -171,7 +168,6 @@ fn prepare(batch: &mut Batch) {
         add_dyad(&mut dyads, &v);
     }
     batch.dyads = dyads;
-    batch.log_sum = std::array::from_fn(|i| batch.logs[0][i] + batch.logs[1][i] + batch.logs[2][i]);
 }
 
 /// exp S of traceless tensors S as coefficients of 1, S and S², and whether no S is of strong anisotropy: as in
@@ -237,7 +233,7 @@ fn deviator(batch: &Batch, log: &LaneSym3) -> LaneSym3 {
 }
 
 /// Cubed mean ratios, 0 where the sign of the volume may be rounding, and whether all metrics are of mild anisotropy.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> (Lanes, bool) {
     let [a, b, c] = &batch.corners;
     let (pa, pb, pc) = (sub(apex, a), sub(apex, b), sub(apex, c));
@@ -261,7 +257,7 @@ fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> (Lanes, bool) {
 
 /// 1/Q³ = S³/(432 V²), S the sum of the squared edges in the mean metric: with v = ∇V/V and s = ∇S/S its gradient is
 /// (3s − 2v)/Q³ and its Hessian (6 (v − s)(v − s)ᵀ + 18 M̄/S)/Q³, positive definite: each tetrahedron's part is convex.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn bowl(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneBowl {
     let [a, b, c] = &batch.corners;
     let (pa, pb, pc) = (sub(apex, a), sub(apex, b), sub(apex, c));
@@ -331,7 +327,7 @@ impl Spokes {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn lengths(spokes: &Spokes, p: &LaneVec3, metric: &LaneSym3) -> Lanes {
     let v = sub(&spokes.ends, p);
     let here = dot(&v, &apply(metric, &v)).max(Lanes::all(f64::MIN_POSITIVE)).sqrt();
@@ -343,7 +339,7 @@ fn lengths(spokes: &Spokes, p: &LaneVec3, metric: &LaneSym3) -> Lanes {
 
 #[cfg(test)]
 mod tests {
-    use super::super::quality::edge_length;
+    use super::super::quality::{edge_length, mean_ratio};
     use super::super::random::spd;
     use super::*;
     use proptest::prelude::*;

@@ -8,11 +8,11 @@ use crate::mesh::vector::Vec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Numbers in a batch.
-pub const LANES: usize = 4;
+pub const LANES: usize = 8;
 
 /// Four numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(32))]
+#[repr(align(64))]
 pub struct Lanes(pub [f64; LANES]);
 
 /// A vector in each lane.
@@ -120,10 +120,10 @@ impl Lanes {
         self.0.map(|x| x < limit).into_iter().fold(false, |any, x| any | x)
     }
 
-    /// Sum of the four.
+    /// Sum of all.
     #[inline(always)]
     pub fn sum(self) -> f64 {
-        (self.0[0] + self.0[1]) + (self.0[2] + self.0[3])
+        self.0.iter().sum()
     }
 
     /// e^x to 1e-15 of it, for |x| below 700.
