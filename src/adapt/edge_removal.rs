@@ -14,15 +14,19 @@ use super::worker::Worker;
 /// Tetrahedra below this mean ratio are worth the longest rings, which cost most and seldom gain.
 const LONG_RINGS_BELOW: f64 = 0.5;
 
-/// Longest ring about an edge of a tetrahedron that is fair.
-const FAIR_RING: usize = 5;
+/// Tetrahedra below this mean ratio try rings of five: of 30 that are measured one gains.
+const RINGS_OF_FIVE_BELOW: f64 = 0.75;
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Removes the edge a–b of a tetrahedron that holds still, when the criterion gains by it.
     pub fn remove_edge(&mut self, a: VertexId, b: VertexId, t: TetId, criterion: Criterion) -> Result<(), Refusal> {
         self.claim(a)?;
         self.claim(b)?;
-        let longest = if self.store.quality(t) < LONG_RINGS_BELOW { LONGEST_RING } else { FAIR_RING };
+        let longest = match self.store.quality(t) {
+            quality if quality < LONG_RINGS_BELOW => LONGEST_RING,
+            quality if quality < RINGS_OF_FIVE_BELOW => 5,
+            _ => 4,
+        };
         self.gather_shell_while(a, b, t, longest, |worker, other| worker.goes_first(t, other))?;
         if let [only] = self.state.shell.tets[..] {
             return self.shed(only, a, b);

@@ -7,6 +7,7 @@ use super::surface::Placed;
 use super::worker::Worker;
 use crate::geometry::Entity;
 use crate::mesh::vector::{Vec3, lerp, sub};
+use crate::metric::quality::mean_length;
 
 /// An edge to be looked at, and a tetrahedron that held it when it was listed.
 #[derive(Clone, Copy, Debug)]
@@ -19,15 +20,25 @@ pub struct EdgeItem {
     pub tet: TetId,
 }
 
-/// Where along a–b the metric length from both ends is equal, for sizes that change geometrically: l_a, l_b are the
-/// lengths of the whole edge in the metrics of its ends.
-fn middle(la: f64, lb: f64) -> f64 {
-    let ratio = lb / la;
-    if (ratio - 1.0).abs() < 1e-3 { 0.5 } else { (((1.0 + ratio) * 0.5).ln() / ratio.ln()).clamp(0.1, 0.9) }
+/// What is taken from the least length of a new edge where a much too long one is split: a power of how much too long it is. With more
+/// the short edges are collapsed again at great cost, with less edges of many unit lengths stay beside coarse boundaries.
+const SHORT_FOR_LONG: f64 = 0.7;
+
+/// Where along a–b the metric length from a is this share of the whole, for sizes that change geometrically: la, lb are the lengths of
+/// the whole edge in the metrics of its ends.
+fn at_share(share: f64, la: f64, lb: f64) -> f64 {
+    let growth = lb / la - 1.0;
+    if growth.abs() < 1e-3 { share } else { ((share * growth).ln_1p() / growth.ln_1p()).clamp(0.1, 0.9) }
+}
+
+/// The share of an edge that is cut off: a third where three pieces come nearest to unit length, in the sense of their ratio, else half. Halves of
+/// edges of length three would be halved again, and be too short then.
+fn cut_off(length: f64) -> f64 {
+    if length * length > 6.0 && length * length < 18.0 { 1.0 / 3.0 } else { 0.5 }
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Splits an edge that is too long, at its middle in the metric, on its entity of the model.
+    /// Splits an edge that is too long, at its middle or its third in the metric, on its entity of the model.
     pub fn split_edge(&mut self, item: EdgeItem) -> Result<(), Refusal> {
         let EdgeItem { a, b, tet } = item;
         self.claim_live(a)?;
@@ -39,7 +50,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         self.gather_shell(a, b, tet)?;
         let entity = self.entity_of_edge(a, b);
-        let straight = self.middle_of(a, b);
+        let straight = self.cut(a, b);
         let placed = self.place(entity, straight, &[a, b]);
         let seeds = std::mem::take(&mut self.state.shell.tets);
         let mut result = self.insert(Seed::Edge(a, b), &seeds, placed, a);
@@ -60,12 +71,13 @@ impl<A: Access> Worker<'_, '_, A> {
         Ok(())
     }
 
-    fn middle_of(&self, a: VertexId, b: VertexId) -> Vec3 {
+    /// The point of the straight edge where it is cut.
+    fn cut(&self, a: VertexId, b: VertexId) -> Vec3 {
         let (p, q) = (self.store.position(a), self.store.position(b));
         let v = sub(q, p);
         let la = self.store.metric(a).quadratic(v).sqrt();
         let lb = self.store.metric(b).quadratic(v).sqrt();
-        lerp(p, q, middle(la, lb))
+        lerp(p, q, at_share(cut_off(mean_length(la, lb)), la, lb))
     }
 
     /// Inserts a vertex into the star over `seeds`; returns it.
@@ -94,7 +106,7 @@ impl<A: Access> Worker<'_, '_, A> {
             Seed::Edge(a, b) if limits.long_first => (limits.long / self.length(a, b)).min(1.0),
             _ => 1.0,
         };
-        let shortest_new = limits.shortest_new * excess * excess;
+        let shortest_new = limits.shortest_new * excess.powf(SHORT_FOR_LONG);
         if let Seed::Edge(..) = seed
             && self.state.shell.ring.iter().any(|&x| self.is_shorter(v, x, shortest_new))
         {

@@ -23,11 +23,9 @@ const SIZE_PASSES: usize = 20;
 const LITTLE: f64 = 0.05;
 
 /// The shapes are done when a pass saves less than this part of the mean of 1/Q − 1.
-const SETTLED: f64 = 0.15;
+const SETTLED: f64 = 0.2;
 
-/// Passes at least, and at most, that improve the shapes.
-const LEAST_SHAPE_PASSES: usize = 2;
-/// See [`LEAST_SHAPE_PASSES`].
+/// Passes at most that improve the shapes.
 const SHAPE_PASSES: usize = 6;
 
 /// Passes of the shapes after which vertices that wait for room on the model are taken out.
@@ -57,7 +55,7 @@ fn size_limits() -> Limits {
 /// Limits while shapes are improved: nothing may become bad that is not.
 fn shape_limits() -> Limits {
     Limits {
-        improve_below: 0.85,
+        improve_below: 0.9,
         flip_below: 0.82,
         flip_cost: 0.15,
         short: 0.75,
@@ -143,7 +141,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.mend();
             self.settle(pass);
             let after = self.cost();
-            let settled = pass + 1 >= LEAST_SHAPE_PASSES && before - after < SETTLED * before;
+            let settled = before - after < SETTLED * before;
             if (settled && self.waiting.is_empty()) || self.observer.stop() {
                 break;
             }
