@@ -28,7 +28,7 @@ pub struct Held {
 }
 
 /// Part of the energy that a step must promise to save, and of which it must keep half.
-const GAIN: f64 = 0.002;
+const GAIN: f64 = 0.001;
 
 /// A move that is longer in the metric may change what flips and collapses gain.
 const FAR: f64 = 0.05;

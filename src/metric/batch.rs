@@ -1,7 +1,7 @@
-//! Mean ratios of four tetrahedra at once: the inner loop of smoothing, of stars and of edge removal.
+//! Mean ratios of several tetrahedra at once: the inner loop of smoothing, of stars and of edge removal.
 //!
-//! A [`Batch`] holds four triangles with all that does not depend on the fourth vertex, the apex, so that trying another
-//! place for it costs little. Compiled for the baseline and for AVX2, chosen at run time; without fused
+//! A [`Batch`] holds [`LANES`] triangles with all that does not depend on the fourth vertex, the apex, so that trying another
+//! place for it costs little. Compiled for the baseline, AVX2 and AVX-512, chosen at run time; without fused
 //! multiplication, so that both give the same bits.
 use super::Sym3;
 use super::exponential::{SERIES, STRONG};
@@ -20,7 +20,7 @@ const FACTOR: f64 = 432.0;
 /// error of the 3×3 determinant of rounded differences.
 const UNCERTAIN: f64 = 4e-14;
 
-/// Four triangles (a, b, c), each to be joined to an apex p such that (a, b, c, p) is positive.
+/// Triangles (a, b, c), one a lane, each to be joined to an apex p such that (a, b, c, p) is positive.
 #[derive(Clone)]
 pub struct Batch {
     corners: [LaneVec3; 3],
@@ -34,7 +34,7 @@ pub struct Batch {
     log_sum: LaneSym3,
 }
 
-/// Mean ratios of the four tetrahedra of a [`Batch`].
+/// Mean ratios of the tetrahedra of a [`Batch`].
 #[derive(Clone, Copy, Debug)]
 pub struct Shapes {
     /// Q³: it needs no cube root. 0 where a tetrahedron is not positive, or so flat that only exact arithmetic knows: none such is made.
@@ -67,7 +67,7 @@ impl Default for Batch {
 }
 
 impl Batch {
-    /// Sets one triangle; all four must be set, the last ones by repetition. Then [`Batch::prepare`].
+    /// Sets one triangle; all lanes must be set, the last ones by repetition. Then [`Batch::prepare`].
     #[inline(always)]
     pub fn set(&mut self, lane: usize, points: [Vec3; 3], logs: [&Sym3; 3]) {
         for k in 0..3 {
@@ -86,13 +86,13 @@ impl Batch {
         prepare(self);
     }
 
-    /// The four tetrahedra with one apex p, its metric given as ln M.
+    /// The tetrahedra with one apex p, its metric given as ln M.
     #[inline]
     pub fn shapes(&self, p: Vec3, log: &Sym3) -> Shapes {
         self.shapes_each(&everywhere(p), &everywhere_tensor(log))
     }
 
-    /// The four tetrahedra, each with an apex of its own.
+    /// The tetrahedra, each with an apex of its own.
     #[inline]
     pub fn shapes_of(&self, apex: &[Vec3; LANES], logs: &[Sym3; LANES]) -> Shapes {
         let apex = std::array::from_fn(|i| Lanes(std::array::from_fn(|lane| apex[lane][i])));
@@ -288,7 +288,7 @@ fn bowl(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneBowl {
     LaneBowl { volume, energy, gradient, hessian }
 }
 
-/// Four edges from one vertex: the other ends.
+/// Edges from one vertex, one a lane: the other ends.
 #[derive(Clone, Copy)]
 pub struct Spokes {
     ends: LaneVec3,
@@ -351,7 +351,8 @@ mod tests {
     fn batch(x: &[Vec3; 7], logs: &[Sym3; 4]) -> Batch {
         let mut batch = Batch::default();
         for lane in 0..LANES {
-            batch.set(lane, [x[lane], x[lane + 1], x[lane + 2]], [&logs[0], &logs[1], &logs[2]]);
+            let k = lane % 4;
+            batch.set(lane, [x[k], x[k + 1], x[k + 2]], [&logs[0], &logs[1], &logs[2]]);
         }
         batch.prepare();
         batch
@@ -365,7 +366,8 @@ mod tests {
             let batch = batch(&x, &logs);
             let shapes = batch.shapes(x[6], &logs[3]);
             for (lane, found) in shapes.mean_ratios().into_iter().enumerate() {
-                let one = [x[lane], x[lane + 1], x[lane + 2], x[6]];
+                let k = lane % 4;
+                let one = [x[k], x[k + 1], x[k + 2], x[6]];
                 let wanted = mean_ratio(one, logs.each_ref()).max(0.0);
                 prop_assert!((found - wanted).abs() <= 1e-9 * wanted, "lane {lane}: {found} {wanted}");
             }
@@ -404,10 +406,10 @@ mod tests {
         fn spokes_as_edges(x in points(), m in prop::array::uniform4(prop_oneof![spd(0.01), spd(3.0)])) {
             let mut spokes = Spokes::default();
             for lane in 0..LANES {
-                spokes.set(lane, x[lane], &m[lane.min(2)]);
+                spokes.set(lane, x[lane % 6], &m[lane.min(2)]);
             }
             for (lane, found) in spokes.lengths(x[6], &m[3]).into_iter().enumerate() {
-                let v: Vec3 = std::array::from_fn(|i| x[lane][i] - x[6][i]);
+                let v: Vec3 = std::array::from_fn(|i| x[lane % 6][i] - x[6][i]);
                 let wanted = edge_length(v, &m[lane.min(2)], &m[3]);
                 // Where the lengths at both ends differ by Δ < 1e-3 METHOD.md takes their mean: off by Δ²/12L, and always by less than Δ.
                 let mean_law = if wanted < 0.01 { 1e-3 } else { 1e-5 };
@@ -424,10 +426,10 @@ mod tests {
             batch.set(lane, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [&logs[0]; 3]);
         }
         batch.prepare();
-        assert_eq!(batch.shapes([0.2, 0.3, 0.0], &logs[3]).mean_ratios(), [0.0; 4]);
-        assert_eq!(batch.shapes([0.2, 0.3, -1.0], &logs[3]).mean_ratios(), [0.0; 4]);
+        assert_eq!(batch.shapes([0.2, 0.3, 0.0], &logs[3]).mean_ratios(), [0.0; LANES]);
+        assert_eq!(batch.shapes([0.2, 0.3, -1.0], &logs[3]).mean_ratios(), [0.0; LANES]);
         // So flat that only the exact predicate knows the sign.
-        assert_eq!(batch.shapes([0.2, 0.3, 1e-17], &logs[3]).mean_ratios(), [0.0; 4]);
+        assert_eq!(batch.shapes([0.2, 0.3, 1e-17], &logs[3]).mean_ratios(), [0.0; LANES]);
         let q = batch.shapes([0.2, 0.3, 1e-9], &logs[3]).mean_ratios();
         assert!(q[0] > 0.0 && q[0] < 1e-5, "{q:?}");
     }

@@ -1,7 +1,7 @@
-//! Four numbers at once: the arithmetic of the batched kernels.
+//! Eight numbers at once: the arithmetic of the batched kernels.
 //!
-//! Plain arrays whose operations the compiler turns into vector instructions; the kernels that use them are compiled once for the
-//! baseline and once for AVX2 with FMA, and chosen at run time (`multiversion`). The elementary functions are polynomials
+//! Plain arrays whose operations the compiler turns into vector instructions; the kernels that use them are compiled for the
+//! baseline, for AVX2 and for AVX-512, and chosen at run time (`multiversion`). The elementary functions are polynomials
 //! of our own: a call of the library's would end the vectors.
 use super::Sym3;
 use crate::mesh::vector::Vec3;
@@ -10,7 +10,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Numbers in a batch.
 pub const LANES: usize = 8;
 
-/// Four numbers.
+/// A number in each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub struct Lanes(pub [f64; LANES]);
@@ -66,7 +66,7 @@ impl Lanes {
     /// Zeros.
     pub const ZERO: Self = Self([0.0; LANES]);
 
-    /// The same number four times.
+    /// The same number in each lane.
     #[inline(always)]
     pub const fn all(x: f64) -> Self {
         Self([x; LANES])
