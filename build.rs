@@ -1,9 +1,38 @@
-//! Builds the C++ side of the OpenCASCADE bridge when the feature `occt` is on.
+//! Builds the C++ sides: of the OpenCASCADE bridge when the feature `occt` is on, of task back-ends with `tbb` and `openmp`.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     #[cfg(feature = "occt")]
     occt::build();
+    #[cfg(feature = "tbb")]
+    {
+        // TBB_INCLUDE and TBB_LIB name its folders when it is not the system's.
+        let [include, library] = ["TBB_INCLUDE", "TBB_LIB"].map(folder);
+        tasks_side("tbb").includes(include).compile("geo-adapt-tbb");
+        library.iter().for_each(|library| println!("cargo:rustc-link-search=native={library}"));
+        println!("cargo:rustc-link-lib=tbb");
+    }
+    #[cfg(feature = "openmp")]
+    {
+        tasks_side("openmp").flag("-fopenmp").compile("geo-adapt-openmp");
+        println!("cargo:rustc-link-lib=gomp");
+    }
+}
+
+#[cfg(feature = "tbb")]
+fn folder(name: &str) -> Option<String> {
+    println!("cargo:rerun-if-env-changed={name}");
+    std::env::var(name).ok()
+}
+
+/// The C++ side of a task back-end.
+#[cfg(any(feature = "tbb", feature = "openmp"))]
+fn tasks_side(name: &str) -> cc::Build {
+    let source = format!("src/tasks/backends/cpp/{name}.cpp");
+    println!("cargo:rerun-if-changed={source}");
+    let mut build = cc::Build::new();
+    build.cpp(true).std("c++17").flag("-Wall").flag("-Wextra").file(source);
+    build
 }
 
 #[cfg(feature = "occt")]
