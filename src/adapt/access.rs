@@ -4,16 +4,24 @@
 //! tetrahedron at that vertex hold still, because whoever replaces a tetrahedron must hold all four of its vertices.
 //! With [`Exclusive`] a claim is nothing and the compiler removes it; with [`Speculative`] it takes the vertex's lock word,
 //! and a word held by another thread ends the operation with a conflict: everything is released, the item is tried again later.
+//! With [`Owned`] the words are written before the round: a part of the mesh belongs to whoever works on it, and a claim only looks.
 use super::discipline;
 use super::ids::VertexId;
 use super::lock::{self, Claim};
 use super::outcome::Refusal;
 use super::store::Store;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// How vertices are claimed.
 pub trait Access: Send {
     /// Claims a vertex for the operation at hand; claiming twice is harmless.
     fn claim(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal>;
+
+    /// Claims a vertex that is new.
+    #[inline(always)]
+    fn adopt(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal> {
+        self.claim(store, v)
+    }
 
     /// Ends the operation: gives back all that was claimed.
     fn release(&mut self, store: &Store);
@@ -74,5 +82,48 @@ impl Drop for Speculative {
         discipline::work_as(0);
         let ended = self.claimed.is_empty() || std::thread::panicking();
         debug_assert!(ended, "an operation ended without giving back its vertices");
+    }
+}
+
+/// A part of the mesh that is one thread's for a whole round: the lock words say whose each vertex is, and do not change.
+pub struct Owned {
+    /// Not 0.
+    owner: u32,
+}
+
+impl Owned {
+    /// The access of part `part`, counted from 0.
+    pub fn new(part: u32) -> Self {
+        let owner = Self::word(part);
+        discipline::work_as(owner);
+        Self { owner }
+    }
+
+    /// What the lock word of a vertex of that part says; 0 stands for nobody's.
+    #[inline(always)]
+    pub fn word(part: u32) -> u32 {
+        part + 1
+    }
+}
+
+impl Access for Owned {
+    #[inline(always)]
+    fn claim(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal> {
+        if store.lock(v).load(Relaxed) == self.owner { Ok(()) } else { Err(Refusal::Conflict) }
+    }
+
+    #[inline]
+    fn adopt(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal> {
+        store.lock(v).store(self.owner, Relaxed);
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn release(&mut self, _store: &Store) {}
+}
+
+impl Drop for Owned {
+    fn drop(&mut self) {
+        discipline::work_as(0);
     }
 }

@@ -10,7 +10,7 @@ use super::extract::{self, References};
 use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::{Counts, Refusal};
-use super::schedule::{self, Collapse, Operation, Reconnect, Smooth, Split};
+use super::schedule::{self, Collapse, Crew, Operation, Reconnect, Scheduler, Smooth, Split};
 use super::shape::{is_longer, is_shorter};
 use super::star::{Bounds, Seed};
 use super::worker::{State, Worker};
@@ -19,7 +19,7 @@ use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
 use crate::geometry::{Discrete, Error, Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::metric::Source;
-use crate::tasks::Pool;
+use crate::tasks::{Plan, Pool};
 
 /// What stays while a mesh is adapted: the surface it began with, and the metric.
 pub struct Domain {
@@ -180,7 +180,8 @@ impl<'m> Workbench<'m> {
     }
 
     fn run<O: Operation>(&mut self, operation: &O, items: &[O::Item]) -> Counts {
-        schedule::run(operation, items, &self.context, &mut self.states, &self.pool, &|_| {})
+        let crew = Crew { pool: &self.pool, scheduler: Scheduler::Sequential, plan: Plan::default() };
+        schedule::run(operation, items, &self.context, &mut self.states, crew, &|_| {})
     }
 
     /// Lists and carries out some sweeps, one after the other.
@@ -196,7 +197,7 @@ impl<'m> Workbench<'m> {
         // Else a store that was just renumbered would be left as it is.
         self.context.store.tick();
         self.context.reorder();
-        self.states[0].pool.clear();
+        self.states[0].supply.clear();
         self.context.store.vertex_bound()
     }
 

@@ -188,11 +188,11 @@ impl<A: Access> Worker<'_, '_, A> {
     fn number_new_tets(&mut self) -> Result<(), Refusal> {
         let state = &mut *self.state;
         let Replacement { old, new, ids, .. } = &mut state.replacement;
-        state.pool.provide_tets(self.store, new.len().saturating_sub(old.len()))?;
+        state.supply.provide_tets(self.store, new.len().saturating_sub(old.len()))?;
         ids.clear();
         ids.extend(old.iter().take(new.len()));
         while ids.len() < new.len() {
-            ids.push(state.pool.tet());
+            ids.push(state.supply.tet());
         }
         Ok(())
     }
@@ -224,11 +224,11 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         for &t in old.iter().skip(new.len()) {
             self.store.kill_tet(t);
-            state.pool.free_tet(t);
+            state.supply.free_tet(t);
         }
         for &v in &*dead {
             self.store.set_tet_of(v, TetId::NONE);
-            state.pool.free_vertex(v);
+            state.supply.free_vertex(v);
         }
     }
 }

@@ -93,7 +93,7 @@ impl<A: Access> Worker<'_, '_, A> {
         match result {
             Ok(()) => Ok(v),
             Err(refusal) => {
-                self.state.pool.free_vertex(v);
+                self.state.supply.free_vertex(v);
                 Err(refusal)
             }
         }

@@ -38,6 +38,7 @@ mod shell;
 mod smooth;
 mod star;
 mod store;
+mod supply;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -54,4 +55,5 @@ pub use criteria::Criterion;
 pub use extract::Extracted;
 pub use outcome::{Counts, Refusal};
 pub use run::{Adapted, Options, adapt};
+pub use schedule::Scheduler;
 pub use work::{KINDS, Kind, Observer, Work};

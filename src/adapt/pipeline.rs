@@ -8,12 +8,12 @@ use super::edges;
 use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
-use super::schedule::{self, Collapse, Create, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
+use super::schedule::{self, Collapse, Create, Crew, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::shape::{is_longer, is_shorter};
 use super::store::Store;
 use super::work::{KINDS, Kind, Observer, Work};
-use super::worker::{ID_BLOCK, State};
-use crate::tasks::Pool;
+use super::supply::ID_BLOCK;
+use super::worker::State;
 use std::time::Instant;
 
 /// Passes at most that bring the edges to their length.
@@ -72,7 +72,7 @@ pub struct Pipeline<'c, 'm> {
     /// One a thread.
     pub states: Vec<State<'m>>,
     /// The threads.
-    pub pool: &'c Pool,
+    pub crew: Crew<'c>,
     /// Who is told.
     pub observer: &'c dyn Observer,
     /// Criterion of the flips that follow refinement.
@@ -94,17 +94,17 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// A pipeline on a filled store.
     pub fn new(
         context: &'c mut Context<'m>,
-        pool: &'c Pool,
+        crew: Crew<'c>,
         observer: &'c dyn Observer,
         criterion: Criterion,
         waiting: Vec<VertexId>,
     ) -> Self {
         let ordered = context.store.tet_bound();
-        let states = (0..pool.threads()).map(|_| State::new(context)).collect();
+        let states = (0..crew.pool.threads()).map(|_| State::new(context)).collect();
         Self {
             context,
             states,
-            pool,
+            crew,
             observer,
             criterion,
             points: PointCreation::default(),
@@ -170,7 +170,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let number = self.context.reorder();
         self.waiting.iter_mut().for_each(|v| *v = number[v.index()]);
         self.waiting.retain(|v| v.is_some());
-        self.states.iter_mut().for_each(|state| state.pool.clear());
+        self.states.iter_mut().for_each(|state| state.supply.clear());
         self.ordered = self.context.store.tet_bound();
     }
 
@@ -325,8 +325,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Makes room for so many new vertices, with the tetrahedra about them, and for what flips add.
     fn make_room(&mut self, new: usize) {
         let store = &mut self.context.store;
-        let slack = ID_BLOCK * self.states.len();
-        let vertices = new + slack;
+        // Threads and parts take whole blocks of ids, and not all the same number of them.
+        let slack = ID_BLOCK * (self.states.len() + 2 * schedule::deterministic::MOST_PARTS);
+        let vertices = 2 * new + slack;
         let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
         let room = store.room();
         if room.0 < vertices || room.1 < tets {
@@ -345,7 +346,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let start = Instant::now();
         self.observer.begin(kind, self.pass, items.len());
         let advance = |n: usize| self.observer.advance(n);
-        let counts = schedule::run(operation, items, self.context, &mut self.states, self.pool, &advance);
+        let counts = schedule::run(operation, items, self.context, &mut self.states, self.crew, &advance);
         self.observer.end(&counts);
         let work = &mut self.work[kind as usize];
         work.counts.add(&counts);

@@ -6,13 +6,14 @@ use super::criteria::Criterion;
 use super::extract::{self, Extracted, References};
 use super::pipeline::Pipeline;
 use super::required::Required;
+use super::schedule::{Crew, Scheduler};
 use super::work::{KINDS, Observer, Work};
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::outward_triangles;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::metric::Source;
-use crate::tasks::{Pool, stage};
+use crate::tasks::{Plan, Pool, stage};
 use std::collections::HashMap;
 
 /// How to adapt.
@@ -22,11 +23,20 @@ pub struct Options {
     pub criterion: Criterion,
     /// Where refinement puts new vertices.
     pub points: PointCreation,
+    /// How the threads share the work.
+    pub scheduler: Scheduler,
+    /// Who runs their tasks, and how they are made.
+    pub plan: Plan,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { criterion: Criterion::MeanRatio, points: PointCreation::default() }
+        Self {
+            criterion: Criterion::MeanRatio,
+            points: PointCreation::default(),
+            scheduler: Scheduler::default(),
+            plan: Plan::default(),
+        }
     }
 }
 
@@ -60,7 +70,7 @@ pub fn adapt(
     context.required = Required::of(mesh);
     context.required.renumber(&ids);
     context.ids = ids;
-    let mut pipeline = Pipeline::new(&mut context, pool, observer, options.criterion, waiting);
+    let mut pipeline = Pipeline::new(&mut context, Crew { pool, scheduler: options.scheduler, plan: options.plan }, observer, options.criterion, waiting);
     pipeline.points = options.points;
     pipeline.run();
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());

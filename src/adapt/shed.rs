@@ -55,7 +55,7 @@ impl<A: Access> Worker<'_, '_, A> {
             face.iter().for_each(|&x| self.store.set_tet_of(x, outside));
         }
         self.store.kill_tet(t);
-        self.state.pool.free_tet(t);
+        self.state.supply.free_tet(t);
     }
 }
 

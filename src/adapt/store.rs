@@ -195,9 +195,27 @@ impl Store {
         take(&self.next_tet, self.tets.len(), count, |i| self.clear_tet(TetId(i)))
     }
 
+    /// The block of ids from `start` on, which nobody else takes; `None` when there is no room. What lies between it and the ids taken
+    /// before must be taken too before the next sweep.
+    pub fn take_vertices_at(&self, start: usize, count: usize) -> Option<std::ops::Range<u32>> {
+        take_at(&self.next_vertex, self.vertices.len(), start..start + count, |i| {
+            self.vertices[i as usize].tet.store(TetId::NONE.0, Relaxed);
+        })
+    }
+
+    /// As [`Store::take_vertices_at`], for tetrahedra.
+    pub fn take_tets_at(&self, start: usize, count: usize) -> Option<std::ops::Range<u32>> {
+        take_at(&self.next_tet, self.tets.len(), start..start + count, |i| self.clear_tet(TetId(i)))
+    }
+
     /// Ids of live vertices. Between sweeps only.
     pub fn live_vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
         (0..self.vertex_bound() as u32).map(VertexId).filter(|&v| self.is_vertex(v))
+    }
+
+    /// As [`Store::live_tets`], of some ids.
+    pub fn live_tets_in(&self, ids: std::ops::Range<usize>) -> impl Iterator<Item = TetId> + '_ {
+        (ids.start as u32..ids.end as u32).map(TetId).filter(|&t| self.is_tet(t))
     }
 
     /// Ids of live tetrahedra. Between sweeps only.
@@ -538,4 +556,19 @@ fn take(next: &AtomicUsize, room: usize, count: usize, fresh: impl Fn(u32)) -> O
     }
     (start..start + count).for_each(|i| fresh(i as u32));
     Some(start as u32..(start + count) as u32)
+}
+
+fn take_at(
+    next: &AtomicUsize,
+    room: usize,
+    ids: std::ops::Range<usize>,
+    fresh: impl Fn(u32),
+) -> Option<std::ops::Range<u32>> {
+    if ids.end > room {
+        return None;
+    }
+    let ids = ids.start as u32..ids.end as u32;
+    ids.clone().for_each(fresh);
+    next.fetch_max(ids.end as usize, Relaxed);
+    Some(ids)
 }

@@ -178,9 +178,9 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         for &(tet, _) in &thinning.gone {
             store.kill_tet(tet);
-            self.state.pool.free_tet(tet);
+            self.state.supply.free_tet(tet);
         }
         store.set_tet_of(v, TetId::NONE);
-        self.state.pool.free_vertex(v);
+        self.state.supply.free_vertex(v);
     }
 }

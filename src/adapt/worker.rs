@@ -8,66 +8,15 @@ use super::local::{FaceMap, LocalSet};
 use super::outcome::Refusal;
 use super::star::Star;
 use super::store::Store;
+use super::supply::Supply;
 use crate::geometry::{Evaluator, Geometry};
-
-/// Ids are taken from the store in blocks of this size.
-pub const ID_BLOCK: usize = 64;
-
-/// Ids that a thread may use for new vertices and tetrahedra.
-#[derive(Default)]
-pub struct Pool {
-    vertices: Vec<VertexId>,
-    tets: Vec<TetId>,
-}
-
-impl Pool {
-    /// A free vertex id.
-    pub fn vertex(&mut self, store: &Store) -> Result<VertexId, Refusal> {
-        if self.vertices.is_empty() {
-            let block = store.take_vertices(ID_BLOCK).ok_or(Refusal::Full)?;
-            self.vertices.extend(block.rev().map(VertexId));
-        }
-        self.vertices.pop().ok_or(Refusal::Full)
-    }
-
-    /// Makes sure that `count` tetrahedron ids are at hand.
-    pub fn provide_tets(&mut self, store: &Store, count: usize) -> Result<(), Refusal> {
-        while self.tets.len() < count {
-            let block = store.take_tets(ID_BLOCK).ok_or(Refusal::Full)?;
-            // Fresh ids go to the bottom: freed ones are used again first.
-            self.tets.splice(0..0, block.rev().map(TetId));
-        }
-        Ok(())
-    }
-
-    /// A free tetrahedron id; after [`Pool::provide_tets`].
-    pub fn tet(&mut self) -> TetId {
-        self.tets.pop().expect("ids were provided")
-    }
-
-    /// Forgets all ids: the store was renumbered.
-    pub fn clear(&mut self) {
-        self.vertices.clear();
-        self.tets.clear();
-    }
-
-    /// Gives a vertex id back.
-    pub fn free_vertex(&mut self, v: VertexId) {
-        self.vertices.push(v);
-    }
-
-    /// Gives a tetrahedron id back.
-    pub fn free_tet(&mut self, t: TetId) {
-        self.tets.push(t);
-    }
-}
 
 /// What a thread keeps from sweep to sweep.
 pub struct State<'m> {
     /// Its own evaluator of the model.
     pub evaluator: Evaluator<'m>,
     /// Free ids.
-    pub pool: Pool,
+    pub supply: Supply,
     /// The replacement that is being prepared.
     pub replacement: Replacement,
     /// The star cavity that is being prepared.
@@ -107,7 +56,7 @@ impl<'m> State<'m> {
     pub fn new(context: &Context<'m>) -> Self {
         Self {
             evaluator: context.model.evaluator(),
-            pool: Pool::default(),
+            supply: Supply::default(),
             replacement: Replacement::default(),
             star: Star::default(),
             face_map: FaceMap::default(),
@@ -210,8 +159,8 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
 
     /// A new vertex, claimed.
     pub fn new_vertex(&mut self) -> Result<VertexId, Refusal> {
-        let v = self.state.pool.vertex(self.store)?;
-        self.claim(v).inspect_err(|_| self.state.pool.free_vertex(v))?;
+        let v = self.state.supply.vertex(self.store)?;
+        self.access.adopt(self.store, v).inspect_err(|_| self.state.supply.free_vertex(v))?;
         Ok(v)
     }
 }

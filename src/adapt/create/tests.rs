@@ -1,7 +1,7 @@
 //! Encroachment, nearness, and whole meshes refined at centroids.
 use super::super::access::Exclusive;
 use super::super::build::{self, Filled};
-use super::super::schedule::{self, Create};
+use super::super::schedule::{self, Create, Crew, Scheduler};
 use super::super::work::{Kind, Observer};
 use super::super::worker::State;
 use super::super::{Counts, Options, adapt, extract};
@@ -12,7 +12,7 @@ use crate::geometry::{Discrete, Geometry, Model};
 use crate::mesh::vector::volume6;
 use crate::mesh::{TetMesh, samples, validity};
 use crate::metric::{Background, Source};
-use crate::tasks::Pool;
+use crate::tasks::{Plan, Pool};
 
 struct Silent;
 
@@ -114,7 +114,9 @@ fn a_candidate_nearer_to_a_vertex_than_an_edge_may_be_short_is_dropped() {
 
 #[test]
 fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh() {
-    for threads in [1, 3] {
+    for (threads, scheduler) in
+        [(1, Scheduler::Sequential), (3, Scheduler::Speculative), (1, Scheduler::Deterministic), (3, Scheduler::Deterministic)]
+    {
         let (mesh, place, model, source) = cube(2, [0.15; 3]);
         let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
         let context = Context::new(store, &source, &model);
@@ -126,7 +128,8 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let before = [1, 2, 3].map(count);
         let items = active_tets(&context);
         assert_eq!(items.len(), mesh.tets.len());
-        let counts = schedule::run(&Create, &items, &context, &mut states, &pool, &|_| {});
+        let crew = Crew { pool: &pool, scheduler, plan: Plan::default() };
+        let counts = schedule::run(&Create, &items, &context, &mut states, crew, &|_| {});
         assert!(counts.done > 0);
         let after = [1, 2, 3].map(count);
         assert!((0..3).all(|k| after[k] > before[k]), "{before:?} {after:?}");

@@ -1,4 +1,6 @@
 //! Who runs what, when: an operation is applied to a list of items by one thread or by several.
+pub mod deterministic;
+mod parts;
 mod sequential;
 mod speculative;
 
@@ -9,12 +11,66 @@ use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::{Counts, Refusal};
 use super::worker::{State, Worker};
-use crate::tasks::Pool;
+use super::store::Store;
+use crate::tasks::{Plan, Pool};
+use clap::ValueEnum;
+use serde::Serialize;
+
+/// Who does what, when.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scheduler {
+    /// All threads, each in parts of the mesh that do not depend on them: the same mesh bit for bit for any number of threads.
+    #[default]
+    Deterministic,
+    /// All threads, each where no other is at the moment: another mesh, as good, each time.
+    Speculative,
+    /// One thread, one item after the other.
+    Sequential,
+}
+
+/// The threads and how they share the work.
+#[derive(Clone, Copy)]
+pub struct Crew<'c> {
+    /// The threads.
+    pub pool: &'c Pool,
+    /// Who does what.
+    pub scheduler: Scheduler,
+    /// Who runs the tasks, and how they are made; the grain is each operation's own.
+    pub plan: Plan,
+}
+
+/// Something an operation is done to.
+pub trait Item: Copy + Send + Sync {
+    /// The vertices it is known by, some repeatedly; of one that is gone they may be anything. Between sweeps only.
+    fn vertices(self, store: &Store) -> [VertexId; 4];
+}
+
+impl Item for VertexId {
+    fn vertices(self, _store: &Store) -> [VertexId; 4] {
+        [self; 4]
+    }
+}
+
+impl Item for EdgeItem {
+    fn vertices(self, _store: &Store) -> [VertexId; 4] {
+        [self.a, self.b, self.a, self.b]
+    }
+}
+
+impl Item for TetId {
+    fn vertices(self, store: &Store) -> [VertexId; 4] {
+        store.peek(self)
+    }
+}
 
 /// Something to be done to each item of a list, written once for any way of claiming.
 pub trait Operation: Sync {
     /// What it is done to.
-    type Item: Copy + Send + Sync;
+    type Item: Item;
+
+    /// Whether it needs all tetrahedra at the vertices of its item.
+    const WHOLE_BALLS: bool;
 
     /// Tries it on one item.
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: Self::Item) -> Result<(), Refusal>;
@@ -23,18 +79,21 @@ pub trait Operation: Sync {
 /// Called now and then with the number of items that were done since.
 pub type Advance<'a> = &'a (dyn Fn(usize) + Sync);
 
-/// Applies the operation to all items, in order on one thread, speculatively on more.
+/// Applies the operation to all items; there is a state for each thread.
 pub fn run<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
     context: &Context<'m>,
     states: &mut [State<'m>],
-    pool: &Pool,
+    crew: Crew<'_>,
     advance: Advance<'_>,
 ) -> Counts {
-    match states {
-        [state] => sequential::run(operation, items, context, state, advance),
-        states => speculative::run(operation, items, context, states, pool, advance),
+    match crew.scheduler {
+        Scheduler::Sequential => sequential::run(operation, items, context, &mut states[0], advance),
+        Scheduler::Speculative => speculative::run(operation, items, context, states, crew.pool, advance),
+        Scheduler::Deterministic => {
+            deterministic::run(operation, items, context, states, (crew.pool, crew.plan), advance)
+        }
     }
 }
 
@@ -43,6 +102,7 @@ pub struct Split;
 
 impl Operation for Split {
     type Item = EdgeItem;
+    const WHOLE_BALLS: bool = false;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: EdgeItem) -> Result<(), Refusal> {
         worker.split_edge(item)
@@ -54,6 +114,7 @@ pub struct Create;
 
 impl Operation for Create {
     type Item = TetId;
+    const WHOLE_BALLS: bool = false;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: TetId) -> Result<(), Refusal> {
         worker.refine_tet(item)
@@ -65,6 +126,7 @@ pub struct Collapse;
 
 impl Operation for Collapse {
     type Item = EdgeItem;
+    const WHOLE_BALLS: bool = true;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: EdgeItem) -> Result<(), Refusal> {
         worker.collapse_edge(item)
@@ -76,6 +138,7 @@ pub struct Thin;
 
 impl Operation for Thin {
     type Item = VertexId;
+    const WHOLE_BALLS: bool = true;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
         worker.thin(item)
@@ -87,6 +150,7 @@ pub struct Reconnect(pub Criterion);
 
 impl Operation for Reconnect {
     type Item = TetId;
+    const WHOLE_BALLS: bool = false;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: TetId) -> Result<(), Refusal> {
         worker.reconnect(item, self.0)
@@ -98,6 +162,7 @@ pub struct Smooth;
 
 impl Operation for Smooth {
     type Item = VertexId;
+    const WHOLE_BALLS: bool = true;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
         worker.smooth(item)
@@ -109,6 +174,7 @@ pub struct Mend;
 
 impl Operation for Mend {
     type Item = TetId;
+    const WHOLE_BALLS: bool = false;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: TetId) -> Result<(), Refusal> {
         worker.mend(item)
@@ -121,6 +187,7 @@ pub struct Retire;
 
 impl Operation for Retire {
     type Item = VertexId;
+    const WHOLE_BALLS: bool = true;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
         let result = worker.claim_live(item).and_then(|()| worker.remove(item, 0.0));
@@ -136,6 +203,7 @@ pub struct Project;
 
 impl Operation for Project {
     type Item = VertexId;
+    const WHOLE_BALLS: bool = true;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
         let result = worker.project(item);

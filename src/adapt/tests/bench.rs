@@ -6,7 +6,9 @@ use crate::adapt::criteria::Criterion;
 use crate::adapt::ids::{EDGE, TetId, VertexId};
 use crate::adapt::insert::EdgeItem;
 use crate::adapt::outcome::Counts;
-use crate::adapt::schedule::{self, Collapse, Mend, Operation, Project, Reconnect, Retire, Smooth, Split, Thin};
+use crate::adapt::schedule::{
+    self, Collapse, Crew, Mend, Operation, Project, Reconnect, Retire, Scheduler, Smooth, Split, Thin,
+};
 use crate::adapt::worker::State;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary, samples};
@@ -14,7 +16,7 @@ use crate::geometry::{Discrete, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, lerp, norm, volume6};
 use crate::metric::{Background, Source, Sym3};
-use crate::tasks::Pool;
+use crate::tasks::{Plan, Pool};
 
 /// Numbers that repeat from run to run (splitmix64).
 pub struct Random(pub u64);
@@ -126,6 +128,7 @@ pub struct Bench<'m> {
     pub context: Context<'m>,
     pub states: Vec<State<'m>>,
     pub pool: Pool,
+    pub scheduler: Scheduler,
     pub random: Random,
     volume: f64,
     exact: bool,
@@ -141,7 +144,8 @@ impl<'m> Bench<'m> {
         context.limits = Limits { insert_floor: 0.02, collapse_floor: 0.02, ..Limits::default() };
         let pool = Pool::new(threads).unwrap();
         let states = (0..threads).map(|_| State::new(&context)).collect();
-        let mut bench = Self { context, states, pool, random: Random(seed), volume: 0.0, exact: true };
+        let scheduler = if threads == 1 { Scheduler::Sequential } else { Scheduler::Speculative };
+        let mut bench = Self { context, states, pool, scheduler, random: Random(seed), volume: 0.0, exact: true };
         bench.volume = bench.measure();
         // A plane surface keeps its volume, a curved one does not quite.
         bench.exact = (bench.volume - 1.0).abs() < 1e-12;
@@ -194,7 +198,8 @@ impl<'m> Bench<'m> {
 
     fn run<O: Operation>(&mut self, operation: &O, mut items: Vec<O::Item>) -> Counts {
         self.random.shuffle(&mut items);
-        schedule::run(operation, &items, &self.context, &mut self.states, &self.pool, &|_| {})
+        let crew = Crew { pool: &self.pool, scheduler: self.scheduler, plan: Plan::default() };
+        schedule::run(operation, &items, &self.context, &mut self.states, crew, &|_| {})
     }
 
     /// All edges; some are listed twice, with another tetrahedron.

@@ -75,7 +75,7 @@ fn renumbering_leaves_a_valid_mesh_without_dead_records() {
         };
         let before = places(&bench);
         let number = bench.context.reorder();
-        bench.states[0].pool.clear();
+        bench.states[0].supply.clear();
         bench.check("renumbering");
         let store = &bench.context.store;
         assert!(store.vertex_bound() < number.len() && store.live_vertices().count() == store.vertex_bound());

@@ -4,14 +4,14 @@ mod progress;
 mod report;
 
 use super::{Outcome, load};
-use crate::adapt::{self, Criterion, Options, PointCreation};
+use crate::adapt::{self, Criterion, Options, PointCreation, Scheduler};
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
 use crate::geometry::{Discrete, Model};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, io};
 use crate::metric::{Analytic, Background, Field, Source, field};
-use crate::tasks::{Pool, stage};
+use crate::tasks::{Backend, Plan, Pool, Strategy, stage};
 use progress::Progress;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -55,6 +55,18 @@ pub struct Arguments {
     /// Where refinement puts new vertices
     #[arg(long, value_enum, default_value_t = PointCreation::Edge)]
     points: PointCreation,
+    /// How the threads share the work
+    #[arg(long, value_enum, default_value_t = Scheduler::default())]
+    scheduler: Scheduler,
+    /// The same mesh bit for bit, whatever the number of threads: --scheduler deterministic
+    #[arg(long, conflicts_with = "scheduler")]
+    deterministic: bool,
+    /// Who runs the tasks of the threads
+    #[arg(long, value_enum, default_value_t = Backend::default())]
+    backend: Backend,
+    /// In which order the tasks are made
+    #[arg(long, value_enum, default_value_t = Strategy::default())]
+    strategy: Strategy,
     /// No progress and no table; errors only
     #[arg(short, long)]
     quiet: bool,
@@ -100,7 +112,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let threads = arguments.threads.map_or_else(available, usize::from);
     let pool = Pool::new(threads)?;
     let prepared = start.elapsed();
-    let options = Options { criterion: arguments.criterion, points: arguments.points };
+    pool.prepare(arguments.backend)?;
+    let scheduler = if arguments.deterministic { Scheduler::Deterministic } else { arguments.scheduler };
+    let plan = Plan { backend: arguments.backend, strategy: arguments.strategy, ..Plan::default() };
+    let options = Options { criterion: arguments.criterion, points: arguments.points, scheduler, plan };
     let adapted = adapt::adapt(&mesh, &place, &model, &source, &options, &pool, &progress)
         .map_err(|error| format!("{}: {error}", arguments.mesh.display()))?;
     progress.finish();

@@ -1,0 +1,206 @@
+//! The same mesh bit for bit, whatever the number of threads.
+//!
+//! In each round the mesh is in parts that depend on nothing but the mesh and the items. Each part is one thread's until the round
+//! ends: its items are done in their order, with ids of its own, and what would touch another part waits for the next round, whose parts
+//! are cut elsewhere. A tetrahedron with vertices in two parts stands still, and so does whatever a part can see of another; so it makes no
+//! difference which part comes first. No lock is taken: a claim is a look at a word that does not change.
+use super::parts::Parts;
+use super::{Advance, Item, Operation, sequential};
+use crate::adapt::access::Owned;
+use crate::adapt::context::Context;
+use crate::adapt::ids::VertexId;
+use crate::adapt::outcome::{Counts, Refusal};
+use crate::adapt::store::Store;
+use crate::adapt::supply::Supply;
+use crate::adapt::worker::{State, Worker};
+use crate::tasks::{Plan, Pool};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// Parts at most: enough for many threads, and no more, since what lies between them waits.
+pub const MOST_PARTS: usize = 64;
+
+/// Items a part, at least.
+/// Few in the unit tests, whose meshes are small.
+const ITEMS: usize = if cfg!(test) { 6 } else { 256 };
+
+/// Vertices or tetrahedra that are looked at in one task.
+const GRAIN: usize = 1 << 13;
+
+/// Where an item is done.
+const WAITS: u32 = u32::MAX;
+const GONE: u32 = u32::MAX - 1;
+
+/// What a part has of its own in a round, and what comes of it.
+struct Part {
+    supply: Supply,
+    waiting: Vec<VertexId>,
+    counts: Counts,
+    /// Numbers of items that met another part.
+    again: Vec<u32>,
+}
+
+/// Applies the operation to all items on all threads of the pool.
+pub fn run<'m, O: Operation>(
+    operation: &O,
+    items: &[O::Item],
+    context: &Context<'m>,
+    states: &mut [State<'m>],
+    (pool, plan): (&Pool, Plan),
+    advance: Advance<'_>,
+) -> Counts {
+    let mut counts = Counts::default();
+    let mut left: Vec<u32> = (0..items.len() as u32).collect();
+    let mut most = MOST_PARTS;
+    loop {
+        let parts = parts_for(left.len()).min(most);
+        if parts < 2 {
+            let rest: Vec<_> = left.iter().map(|&i| items[i as usize]).collect();
+            counts.add(&sequential::run(operation, &rest, context, &mut states[0], advance));
+            return counts;
+        }
+        let mut round = Round { operation, items, context, pool, plan, left, parts };
+        left = round.run(states, &mut counts, advance);
+        // What is left lies between the parts of this round: fewer and larger parts have less between them.
+        most = parts / 2;
+    }
+}
+
+fn parts_for(items: usize) -> usize {
+    let parts = (items / ITEMS).max(1);
+    1 << parts.ilog2()
+}
+
+struct Round<'r, 'm, O: Operation> {
+    operation: &'r O,
+    items: &'r [O::Item],
+    context: &'r Context<'m>,
+    pool: &'r Pool,
+    plan: Plan,
+    /// Numbers of the items to be done, ascending.
+    left: Vec<u32>,
+    parts: usize,
+}
+
+impl<'m, O: Operation> Round<'_, 'm, O> {
+    fn item(&self, number: u32) -> O::Item {
+        self.items[number as usize]
+    }
+
+    /// Does what can be done; returns what is left.
+    fn run(&mut self, states: &mut [State<'m>], counts: &mut Counts, advance: Advance<'_>) -> Vec<u32> {
+        let store = &self.context.store;
+        self.give_out(&Parts::of(store, self.left.iter().map(|&i| self.item(i)), self.parts));
+        let seats = self.seats();
+        let (sorted, starts, mut again) = self.sorted(&seats, counts);
+        let supplies = states[0].supply.deal(store, self.parts);
+        let part = |supply| Part { supply, waiting: Vec::new(), counts: Counts::default(), again: Vec::new() };
+        let parts: Vec<_> = supplies.into_iter().map(|supply| Mutex::new(part(supply))).collect();
+        let plan = Plan { grain: 1, ..self.plan };
+        self.pool.task_for_with(plan, self.parts, states, |state, _, range| {
+            for index in range {
+                let mut part = parts[index].lock().expect("each part is one task's");
+                self.work(&sorted[starts[index]..starts[index + 1]], index, &mut part, state);
+                let done = part.counts.attempts as usize - part.again.len();
+                advance(done);
+            }
+        });
+        let parts: Vec<_> = parts.into_iter().map(|part| part.into_inner().expect("no part failed")).collect();
+        let mut supplies = Vec::with_capacity(parts.len());
+        for part in parts {
+            counts.add(&part.counts);
+            again.extend(part.again);
+            states[0].waiting.extend(part.waiting);
+            supplies.push(part.supply);
+        }
+        states[0].supply.gather(store, supplies);
+        again.sort_unstable();
+        again
+    }
+
+    /// Writes into the lock words whose each vertex is.
+    fn give_out(&self, parts: &Parts) {
+        let store = &self.context.store;
+        self.pool.task_for(Plan { grain: GRAIN, ..self.plan }, store.vertex_bound(), |_, range| {
+            for v in range.map(|i| VertexId(i as u32)) {
+                // The dead are nobody's: their ids may become anybody's.
+                let word = if store.is_vertex(v) { Owned::word(parts.holds(store.position(v))) } else { 0 };
+                store.lock(v).store(word, Relaxed);
+            }
+        });
+    }
+
+    /// The part in which each item can be done.
+    fn seats(&self) -> Vec<u32> {
+        let store = &self.context.store;
+        let between = if O::WHOLE_BALLS { self.between() } else { Vec::new() };
+        let seat = |number: &u32| {
+            let vertices = self.item(*number).vertices(store);
+            if vertices.iter().any(|&v| !v.is_some() || !store.is_vertex(v)) {
+                return GONE;
+            }
+            let owner = store.lock(vertices[0]).load(Relaxed);
+            let foreign = |v: &VertexId| store.lock(*v).load(Relaxed) != owner;
+            let is_between = |v: &VertexId| between.get(v.index()).is_some_and(|flag| flag.load(Relaxed));
+            if vertices.iter().any(|v| foreign(v) || is_between(v)) { WAITS } else { owner - 1 }
+        };
+        self.pool.collect(Plan { grain: GRAIN, ..self.plan }, self.left.len(), |_, range, found| {
+            found.extend(self.left[range].iter().map(seat));
+        })
+    }
+
+    /// Whether a vertex has a neighbour in another part.
+    fn between(&self) -> Vec<AtomicBool> {
+        let store = &self.context.store;
+        let between: Vec<_> = (0..store.vertex_bound()).map(|_| AtomicBool::new(false)).collect();
+        self.pool.task_for(Plan { grain: GRAIN, ..self.plan }, store.tet_bound(), |_, range| {
+            for t in store.live_tets_in(range) {
+                let vertices = store.vertices(t);
+                let owners = vertices.map(|v| store.lock(v).load(Relaxed));
+                if owners.iter().any(|&owner| owner != owners[0]) {
+                    vertices.iter().for_each(|v| between[v.index()].store(true, Relaxed));
+                }
+            }
+        });
+        between
+    }
+
+    /// The items' numbers by part, where each part begins, and those that wait. What is gone is counted as that.
+    fn sorted(&self, seats: &[u32], counts: &mut Counts) -> (Vec<u32>, Vec<usize>, Vec<u32>) {
+        let mut starts = vec![0usize; self.parts + 1];
+        let is_done = |seat: u32| (seat as usize) < self.parts;
+        seats.iter().filter(|&&seat| is_done(seat)).for_each(|&seat| starts[seat as usize + 1] += 1);
+        for part in 0..self.parts {
+            starts[part + 1] += starts[part];
+        }
+        let (mut sorted, mut waits, mut places) = (vec![0; starts[self.parts]], Vec::new(), starts.clone());
+        for (&number, &seat) in self.left.iter().zip(seats) {
+            if is_done(seat) {
+                sorted[places[seat as usize]] = number;
+                places[seat as usize] += 1;
+            } else if seat == WAITS {
+                waits.push(number);
+            } else {
+                counts.record(Err(Refusal::Stale));
+            }
+        }
+        (sorted, starts, waits)
+    }
+
+    /// Does the items of one part.
+    fn work(&self, numbers: &[u32], index: usize, part: &mut Part, state: &mut State<'m>) {
+        let own = std::mem::take(&mut state.waiting);
+        std::mem::swap(&mut state.supply, &mut part.supply);
+        let mut worker = Worker::new(self.context, state, Owned::new(index as u32));
+        for &number in numbers {
+            let result = self.operation.attempt(&mut worker, self.item(number));
+            part.counts.record(result);
+            if result == Err(Refusal::Conflict) {
+                part.again.push(number);
+            }
+        }
+        drop(worker);
+        std::mem::swap(&mut state.supply, &mut part.supply);
+        part.waiting = std::mem::replace(&mut state.waiting, own);
+    }
+}

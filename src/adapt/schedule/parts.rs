@@ -1,0 +1,109 @@
+//! The mesh in parts for one round of the deterministic scheduler: half-spaces cut the items in halves, again and again.
+//!
+//! The cuts depend on the mesh alone. Of several directions the one whose cut crosses the fewest tetrahedra is taken: along a
+//! boundary layer, not across it, and in a later round across the cuts of the one before, beside which its items lie.
+use super::Item;
+use crate::adapt::ids::VertexId;
+use crate::adapt::store::Store;
+use crate::mesh::vector::{Vec3, dot};
+
+/// Normals of the cuts that are tried.
+const DIRECTIONS: [Vec3; 9] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 0.0, -1.0],
+    [0.0, 1.0, 1.0],
+    [0.0, 1.0, -1.0],
+];
+
+/// Items a part that are looked at to find the cuts.
+const SAMPLED: usize = 32;
+
+/// A cut: where a point has more than `offset` along the direction, it is on the second side.
+#[derive(Clone, Copy, Default)]
+struct Cut {
+    direction: usize,
+    offset: f64,
+}
+
+/// Parts by a binary tree of cuts.
+pub struct Parts {
+    /// The cut of node i; its sides are nodes 2i + 1 and 2i + 2.
+    cuts: Vec<Cut>,
+}
+
+/// A sampled item: along each direction its vertex, and the extent of a tetrahedron there.
+struct Sample {
+    at: [f64; DIRECTIONS.len()],
+    extent: [[f64; 2]; DIRECTIONS.len()],
+}
+
+impl Sample {
+    fn of(store: &Store, v: VertexId) -> Self {
+        let corners = store.vertices(store.tet_of(v)).map(|x| store.position(x));
+        let along = |d: &Vec3| corners.map(|p| dot(p, *d));
+        let extent = DIRECTIONS.map(|d| along(&d).into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [x.min(l), x.max(h)]));
+        Self { at: DIRECTIONS.map(|d| dot(store.position(v), d)), extent }
+    }
+}
+
+impl Parts {
+    /// Cuts the items into `count` parts, a power of two.
+    pub fn of<I: Item>(store: &Store, items: impl ExactSizeIterator<Item = I>, count: usize) -> Self {
+        let stride = items.len().div_ceil(SAMPLED * count).max(1);
+        let vertices = items.step_by(stride).map(|item| item.vertices(store)[0]);
+        let samples: Vec<_> =
+            vertices.filter(|&v| v.is_some() && store.is_vertex(v)).map(|v| Sample::of(store, v)).collect();
+        let mut cuts = vec![Cut::default(); count - 1];
+        let mut order: Vec<u32> = (0..samples.len() as u32).collect();
+        cut(&samples, &mut order, &mut cuts, 0);
+        Self { cuts }
+    }
+
+    /// The part a point lies in.
+    #[inline]
+    pub fn holds(&self, p: Vec3) -> u32 {
+        let mut node = 0;
+        while let Some(cut) = self.cuts.get(node) {
+            node = 2 * node + 1 + usize::from(dot(p, DIRECTIONS[cut.direction]) > cut.offset);
+        }
+        (node - self.cuts.len()) as u32
+    }
+}
+
+/// Finds the cut of one node and of those below it.
+fn cut(samples: &[Sample], order: &mut [u32], cuts: &mut [Cut], node: usize) {
+    if node >= cuts.len() || order.is_empty() {
+        return;
+    }
+    let middle = order.len() / 2;
+    let mut best = (usize::MAX, Cut::default());
+    for direction in 0..DIRECTIONS.len() {
+        let offset = halve(samples, order, direction);
+        let crossed = |s: &&u32| {
+            let [low, high] = samples[**s as usize].extent[direction];
+            low <= offset && offset < high
+        };
+        let crossings = order.iter().filter(crossed).count();
+        if crossings < best.0 {
+            best = (crossings, Cut { direction, offset });
+        }
+    }
+    cuts[node] = best.1;
+    halve(samples, order, best.1.direction);
+    let (below, above) = order.split_at_mut(middle);
+    cut(samples, below, cuts, 2 * node + 1);
+    cut(samples, above, cuts, 2 * node + 2);
+}
+
+/// Brings the lesser half along a direction to the front; returns where the second half begins.
+fn halve(samples: &[Sample], order: &mut [u32], direction: usize) -> f64 {
+    let at = |s: &u32| samples[*s as usize].at[direction];
+    let middle = order.len() / 2;
+    let (_, middle, _) = order.select_nth_unstable_by(middle, |x, y| at(x).total_cmp(&at(y)).then(x.cmp(y)));
+    at(middle)
+}
