@@ -25,8 +25,8 @@ use std::borrow::Cow;
 /// A mesh of so many times the tetrahedra that the metric asks for is coarsened.
 const CROWDED: f64 = 4.0;
 
-/// A round that removes less than this part of the vertices is the last.
-const LITTLE: f64 = 0.1;
+/// A round that removes less than this part of the vertices is the last: the next would remove little, and thinning does that as fast.
+const LITTLE: f64 = 0.6;
 
 /// A coarse mesh with what filling a store needs.
 pub struct Coarse {

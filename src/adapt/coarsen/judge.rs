@@ -15,6 +15,9 @@ const LONG: f64 = 2.0;
 /// Vertices near another that are looked at: as many as there are mostly.
 const WAYS: usize = 24;
 
+/// Of those near enough the nearest are tried, so many.
+const TRIED: usize = 8;
+
 /// A level, of which vertices are to go.
 pub struct Judge<'l, 'm> {
     /// The level.
@@ -93,7 +96,8 @@ impl Judge<'_, '_> {
         }
         let points = mapped.map(|v| level.points[v as usize]);
         let logs = mapped.map(|v| &level.logs[v as usize]);
-        !self.gets_long(nodes, &mapped) && is_positive(points) && mean_ratio(points, logs) >= FLOOR
+        // What costs least comes first.
+        is_positive(points) && !self.gets_long(nodes, &mapped) && mean_ratio(points, logs) >= FLOOR
     }
 
     /// Sends one of the vertices of a bad tetrahedron another way, so that nothing bad is left about it.
@@ -119,7 +123,7 @@ impl Judge<'_, '_> {
             }
         }
         found[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        for &(distance, x) in found[..count].iter().filter(|way| way.0.is_finite()) {
+        for &(distance, x) in found[..count].iter().take(TRIED).filter(|way| way.0.is_finite()) {
             let before = clusters.send(v, x, distance);
             if self.balls.at(v).iter().all(|&t| self.is_fair(t, clusters)) {
                 return true;
