@@ -1,4 +1,5 @@
 //! From the plain mesh to the store.
+use super::coarsen::Coarse;
 use super::ids::{TetId, VertexId};
 use super::numbering::Numbering;
 use super::store::{ROOM, Store};
@@ -8,7 +9,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, TriangleIndex, sorted3};
 use crate::mesh::predicate::is_positive;
 use crate::mesh::vector::Vec3;
-use crate::metric::{Source, mean_ratios};
+use crate::metric::{Source, Sym3, mean_ratios};
 
 /// A mesh that cannot be adapted.
 #[derive(Debug, thiserror::Error)]
@@ -63,6 +64,24 @@ pub struct Filled {
 /// # Errors
 /// When a tetrahedron is inverted, a face has more than two, or the triangles do not close the boundary.
 pub fn fill(mesh: &TetMesh, place: &Classification, source: &Source) -> Result<Filled, Error> {
+    fill_known(mesh, place, source, source.logs_on(mesh), None)
+}
+
+/// As [`fill`], with a mesh that was made coarse first: its vertices have their metrics and know where the search for another begins.
+///
+/// # Errors
+/// As [`fill`], with the numbers of the coarse mesh.
+pub fn fill_coarse(coarse: &Coarse, source: &Source) -> Result<Filled, Error> {
+    fill_known(&coarse.mesh, &coarse.place, source, Some(&coarse.logs), Some(&coarse.hints))
+}
+
+fn fill_known(
+    mesh: &TetMesh,
+    place: &Classification,
+    source: &Source,
+    logs: Option<&[Sym3]>,
+    hints: Option<&[u32]>,
+) -> Result<Filled, Error> {
     if mesh.tets.is_empty() {
         return Err(Error::Empty);
     }
@@ -85,7 +104,7 @@ pub fn fill(mesh: &TetMesh, place: &Classification, source: &Source) -> Result<F
     filling.tag_faces(faces)?;
     filling.join_ridges();
     let waiting = filling.leave_inverting();
-    filling.set_metrics(source);
+    filling.set_metrics(source, logs, hints);
     let Filling { mut store, order, .. } = filling;
     store.note_order();
     if measure(&store) {
@@ -216,12 +235,14 @@ impl Filling<'_> {
         }
     }
 
-    /// Gives every vertex its metric: at its own place that of the file, elsewhere the source's.
-    fn set_metrics(&self, source: &Source) {
-        let logs = source.logs_on(self.mesh);
+    /// Gives every vertex its metric: at its own place the one that is known, elsewhere the source's.
+    fn set_metrics(&self, source: &Source, logs: Option<&[Sym3]>, hints: Option<&[u32]>) {
         for (v, &old) in self.store.live_vertices().zip(&self.order.vertices) {
             let p = self.store.position(v);
-            let mut hint = self.order.tets[self.store.tet_of(v).index()];
+            let mut hint = match hints {
+                Some(hints) => hints[old as usize],
+                None => self.order.tets[self.store.tet_of(v).index()],
+            };
             let log = match logs {
                 Some(logs) if p == self.mesh.vertices[old as usize] => logs[old as usize],
                 _ => source.log_at(p, &mut hint),

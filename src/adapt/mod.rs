@@ -7,6 +7,7 @@ mod build;
 mod cavity;
 #[cfg(test)]
 mod check;
+mod coarsen;
 mod collapse;
 mod context;
 mod create;

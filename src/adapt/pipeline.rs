@@ -79,6 +79,8 @@ pub struct Pipeline<'c, 'm> {
     pub criterion: Criterion,
     /// Where refinement puts new vertices.
     pub points: PointCreation,
+    /// Whether the mesh had far too many vertices, some of which may be left.
+    pub crowded: bool,
     /// By kind of operation.
     pub work: [Work; KINDS],
     /// Boundary vertices that are not on the model yet.
@@ -108,6 +110,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             observer,
             criterion,
             points: PointCreation::default(),
+            crowded: false,
             work: [Work::default(); KINDS],
             waiting,
             looked: [0; KINDS],
@@ -119,7 +122,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
         self.context.limits = size_limits();
-        if thinning::is_crowded(&self.context.store) {
+        if self.crowded {
             self.thin();
         }
         for _ in 0..SIZE_PASSES {

@@ -51,6 +51,11 @@ impl Required {
         self.frozen.get(v.index()).copied().unwrap_or(false)
     }
 
+    /// The vertices that must neither move nor go.
+    pub fn frozen(&self) -> impl Iterator<Item = VertexId> + '_ {
+        self.frozen.iter().zip(0..).filter(|&(&frozen, _)| frozen).map(|(_, v)| VertexId(v))
+    }
+
     /// Whether the edge is required.
     #[inline]
     pub fn has_edge(&self, a: VertexId, b: VertexId) -> bool {

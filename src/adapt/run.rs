@@ -1,9 +1,11 @@
 //! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
 use super::build::{self, Filled};
+use super::coarsen;
 use super::context::Context;
 use super::create::PointCreation;
 use super::criteria::Criterion;
 use super::extract::{self, Extracted, References};
+use super::ids::VertexId;
 use super::pipeline::Pipeline;
 use super::required::Required;
 use super::schedule::{Crew, Scheduler};
@@ -64,14 +66,16 @@ pub fn adapt(
     pool: &Pool,
     observer: &dyn Observer,
 ) -> Result<Adapted, build::Error> {
-    let Filled { store, waiting, ids } = build::fill(mesh, place, source)?;
+    let required = Required::of(mesh);
+    let (Filled { store, waiting, ids }, crowded) = filled(mesh, place, source, &required)?;
     stage("store filled");
     let mut context = Context::new(store, source, model);
-    context.required = Required::of(mesh);
+    context.required = required;
     context.required.renumber(&ids);
     context.ids = ids;
     let mut pipeline = Pipeline::new(&mut context, Crew { pool, scheduler: options.scheduler, plan: options.plan }, observer, options.criterion, waiting);
     pipeline.points = options.points;
+    pipeline.crowded = crowded;
     pipeline.run();
     let (work, off_model) = (pipeline.work, pipeline.waiting.len());
     drop(pipeline);
@@ -85,6 +89,26 @@ pub fn adapt(
     let extracted = extract::extract(&context, mesh, &refs);
     stage("extracted");
     Ok(Adapted { extracted, work, off_model })
+}
+
+/// The mesh in a store, made coarse on the way where it is crowded, and whether that was so.
+fn filled(
+    mesh: &TetMesh,
+    place: &Classification,
+    source: &Source,
+    required: &Required,
+) -> Result<(Filled, bool), build::Error> {
+    let coarse = coarsen::coarsened(mesh, place, source, required);
+    if let Some(coarse) = &coarse
+        && let Ok(mut filled) = build::fill_coarse(coarse, source)
+    {
+        let mut ids = vec![VertexId::NONE; mesh.vertices.len()];
+        coarse.origin.iter().zip(&filled.ids).for_each(|(&old, &id)| ids[old as usize] = id);
+        filled.ids = ids;
+        return Ok((filled, true));
+    }
+    // What is wrong with the mesh is told in its own numbers.
+    Ok((build::fill(mesh, place, source)?, coarse.is_some()))
 }
 
 /// The reference of each model face: that of its first triangle.

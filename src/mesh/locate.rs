@@ -2,6 +2,7 @@
 //! the boundary for points outside, and one of all tetrahedra.
 use super::adjacency::{FACES, MatchedFaces, NONE};
 use super::box_tree::BoxTree;
+use super::starts::Starts;
 use super::vector::{Vec3, add, cross, distance, dot, norm, scale, sub, volume6};
 use super::{Elements, TetMesh};
 use std::sync::{Arc, OnceLock};
@@ -33,7 +34,12 @@ pub struct Locator {
     /// Sides 4·tet + face on the boundary, and the tree over them.
     boundary: OnceLock<Box<(Vec<u32>, BoxTree)>>,
     tree: OnceLock<Box<BoxTree>>,
+    /// Where long walks are cut short.
+    starts: OnceLock<Box<Starts>>,
 }
+
+/// Steps of a walk before it looks for a better start.
+const PATIENCE: u32 = 6;
 
 /// How a walk ended.
 enum Walk {
@@ -61,7 +67,7 @@ impl Locator {
         assert!(!mesh.tets.is_empty(), "a mesh without tetrahedra cannot be searched");
         assert_eq!(mesh.tets.len(), faces.neighbours.len(), "one row of neighbours a tetrahedron");
         assert!(mesh.tets.nodes.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()), "node out of range");
-        Self { mesh, faces, boundary: OnceLock::new(), tree: OnceLock::new() }
+        Self { mesh, faces, boundary: OnceLock::new(), tree: OnceLock::new(), starts: OnceLock::new() }
     }
 
     /// What lies across the faces of the tetrahedra.
@@ -109,7 +115,12 @@ impl Locator {
     /// barycentric terms. Meshes that are not Delaunay can make it run in circles: it gives up after a number of steps.
     fn walk(&self, p: Vec3, start: u32) -> Walk {
         let (mut tet, mut previous) = (start, NONE);
-        for _ in 0..STEPS {
+        for step in 0..STEPS {
+            if step == PATIENCE
+                && let Some(nearer) = self.nearer_start(p, tet)
+            {
+                (tet, previous) = (nearer, NONE);
+            }
             let corners = self.corners(tet);
             let volumes = sub_volumes(&corners, p);
             let total = volumes[0] + volumes[1] + volumes[2] + volumes[3];
@@ -132,6 +143,13 @@ impl Locator {
             (previous, tet) = (tet, next);
         }
         Walk::Lost(tet)
+    }
+
+    /// A tetrahedron that is likely nearer to p than one that is given.
+    fn nearer_start(&self, p: Vec3, tet: u32) -> Option<u32> {
+        let starts = self.starts.get_or_init(|| Box::new(Starts::of(self.vertices(), self.tets())));
+        let away = |tet: u32| distance(self.vertices()[self.tets()[tet as usize][0] as usize], p);
+        starts.near(p).filter(|&start| away(start) < away(tet))
     }
 
     /// The nearest tetrahedron, given one that bounds the distance: where all faces of the boundary that are nearest to p have it
@@ -352,6 +370,20 @@ mod tests {
             }
             assert!(locator.tree.get().is_none() && locator.boundary.get().is_some());
         }
+    }
+
+    #[test]
+    fn long_walks_take_a_short_cut() {
+        let locator = locator(16);
+        let near = |p: Vec3, hint: u32| {
+            let found = locator.locate(p, &mut hint.clone());
+            assert!(found.distance == 0.0 && distance(point(&locator, &found), p) < 1e-12);
+        };
+        near([0.01, 0.012, 0.014], 0);
+        assert!(locator.starts.get().is_none());
+        near([0.97, 0.98, 0.91], 0);
+        near([0.02, 0.98, 0.5], locator.tets().len() as u32 - 1);
+        assert!(locator.starts.get().is_some());
     }
 
     #[test]

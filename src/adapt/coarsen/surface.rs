@@ -1,0 +1,87 @@
+//! The triangles of a level.
+use super::clusters::Clusters;
+use super::level::{Balls, FIXED, Level, is_proper};
+use crate::mesh::vector::{Vec3, add, area2, dot, scale, unit};
+
+/// Least cosine between a triangle and what it comes from, and between it and the surface at its vertices.
+const BENT: f64 = 0.94;
+
+/// The triangles at the vertices of the boundary.
+pub struct Surface {
+    /// For each vertex its place here, [`NONE`] inside.
+    slots: Vec<u32>,
+    balls: Balls,
+    /// For each vertex on a face the unit normal there, be it outward or not.
+    normals: Vec<Vec3>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Surface {
+    /// Of a level.
+    pub fn of(level: &Level) -> Self {
+        let mut slots = vec![NONE; level.points.len()];
+        let mut count = 0;
+        for &v in level.triangles.iter().flatten() {
+            if slots[v as usize] == NONE {
+                slots[v as usize] = count;
+                count += 1;
+            }
+        }
+        let triangles: Vec<[u32; 3]> = level.triangles.iter().map(|nodes| nodes.map(|v| slots[v as usize])).collect();
+        let balls = Balls::of(&triangles, count as usize);
+        let mut normals = vec![[0.0; 3]; count as usize];
+        for (nodes, at) in level.triangles.iter().zip(&triangles) {
+            let normal = normal(level, nodes);
+            for (&v, &slot) in nodes.iter().zip(at) {
+                // Triangles of other faces meet at fixed vertices only.
+                if level.faces[v as usize] < FIXED {
+                    let sum = &mut normals[slot as usize];
+                    *sum = add(*sum, scale(normal, if dot(*sum, normal) < 0.0 { -1.0 } else { 1.0 }));
+                }
+            }
+        }
+        normals.iter_mut().for_each(|normal| *normal = unit(*normal));
+        Self { slots, balls, normals }
+    }
+
+    /// The triangles at a vertex.
+    pub fn at(&self, v: u32) -> &[u32] {
+        match self.slots[v as usize] {
+            NONE => &[],
+            slot => self.balls.at(slot),
+        }
+    }
+
+    /// Calls `f` with the vertices on faces that are joined to v by an edge on their own face; with some twice.
+    pub fn neighbours(&self, level: &Level, v: u32, mut f: impl FnMut(u32)) {
+        for &t in self.at(v) {
+            let face = level.of_face[level.triangle_origin[t as usize] as usize];
+            for x in level.triangles[t as usize] {
+                if x != v && level.faces[x as usize] == face {
+                    f(x);
+                }
+            }
+        }
+    }
+
+    /// Whether a triangle vanishes, stays as it is, or still lies along the surface.
+    pub fn is_fair(&self, level: &Level, t: u32, clusters: &Clusters) -> bool {
+        let nodes = &level.triangles[t as usize];
+        let mapped = clusters.map(nodes);
+        if mapped == *nodes || !is_proper(&mapped) {
+            return true;
+        }
+        let new = unit(normal(level, &mapped));
+        let along = |v: u32| {
+            level.faces[v as usize] >= FIXED || dot(self.normals[self.slots[v as usize] as usize], new).abs() >= BENT
+        };
+        dot(new, unit(normal(level, nodes))) >= BENT && mapped.into_iter().all(along)
+    }
+}
+
+/// Normal of twice the area.
+fn normal(level: &Level, nodes: &[u32; 3]) -> Vec3 {
+    let [a, b, c] = nodes.map(|v| level.points[v as usize]);
+    area2(a, b, c)
+}
