@@ -88,6 +88,7 @@ struct RemoveEdges;
 
 impl Operation for RemoveEdges {
     type Item = TetId;
+    const WHOLE_BALLS: bool = false;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, t: TetId) -> Result<(), Refusal> {
         let v = worker.claim_moving_tet(t)?;
@@ -100,6 +101,7 @@ struct RemoveFaces;
 
 impl Operation for RemoveFaces {
     type Item = TetId;
+    const WHOLE_BALLS: bool = false;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, t: TetId) -> Result<(), Refusal> {
         worker.claim_moving_tet(t)?;

@@ -10,7 +10,6 @@ use crate::adapt::access::Owned;
 use crate::adapt::context::Context;
 use crate::adapt::ids::VertexId;
 use crate::adapt::outcome::{Counts, Refusal};
-use crate::adapt::store::Store;
 use crate::adapt::supply::Supply;
 use crate::adapt::worker::{State, Worker};
 use crate::tasks::{Plan, Pool};
