@@ -11,8 +11,8 @@ use super::outcome::Counts;
 use super::schedule::{self, Collapse, Create, Crew, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::shape::{is_longer, is_shorter};
 use super::store::Store;
-use super::work::{KINDS, Kind, Observer, Work};
 use super::supply::ID_BLOCK;
+use super::work::{KINDS, Kind, Observer, Work};
 use super::worker::State;
 use std::time::Instant;
 
@@ -184,7 +184,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.collapse();
         self.reconnect(self.criterion, 1);
         self.smooth();
-        ((self.changes() - before) as f64) < LITTLE * self.context.store.vertex_bound() as f64
+        self.is_little(self.changes() - before)
     }
 
     /// One pass of all operations. Flips come after the edges' turn, where they find most: after smoothing they find next to nothing.
@@ -228,6 +228,11 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.gather_waiting();
     }
 
+    /// Whether so many changes are few for a mesh of this size.
+    fn is_little(&self, changes: u64) -> bool {
+        (changes as f64) < LITTLE * self.context.store.live_vertices().count() as f64
+    }
+
     fn changes(&self) -> u64 {
         self.work[Kind::Split as usize].counts.done + self.work[Kind::Collapse as usize].counts.done
     }
@@ -259,7 +264,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let done = self.sweep(Kind::Split, &Create, &items).done;
         self.project();
         self.reconnect(self.criterion, 1);
-        done as f64 >= LITTLE * self.context.store.vertex_bound() as f64
+        !self.is_little(done)
     }
 
     /// Collapses short edges.

@@ -10,6 +10,7 @@ use crate::adapt::access::Owned;
 use crate::adapt::context::Context;
 use crate::adapt::ids::VertexId;
 use crate::adapt::outcome::{Counts, Refusal};
+use crate::adapt::store::Store;
 use crate::adapt::supply::Supply;
 use crate::adapt::worker::{State, Worker};
 use crate::tasks::{Plan, Pool};
@@ -56,6 +57,9 @@ pub fn run<'m, O: Operation>(
         if parts < 2 {
             let rest: Vec<_> = left.iter().map(|&i| items[i as usize]).collect();
             counts.add(&sequential::run(operation, &rest, context, &mut states[0], advance));
+            if most < MOST_PARTS {
+                give_back(&context.store, (pool, plan));
+            }
             return counts;
         }
         let mut round = Round { operation, items, context, pool, plan, left, parts };
@@ -63,6 +67,13 @@ pub fn run<'m, O: Operation>(
         // What is left lies between the parts of this round: fewer and larger parts have less between them.
         most = parts / 2;
     }
+}
+
+/// All vertices are nobody's again.
+fn give_back(store: &Store, (pool, plan): (&Pool, Plan)) {
+    pool.task_for(Plan { grain: GRAIN, ..plan }, store.vertex_bound(), |_, range| {
+        range.for_each(|i| store.lock(VertexId(i as u32)).store(0, Relaxed));
+    });
 }
 
 fn parts_for(items: usize) -> usize {
