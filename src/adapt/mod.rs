@@ -23,6 +23,7 @@ mod local;
 mod lock;
 mod mend;
 mod merge;
+mod multi_face;
 mod numbering;
 mod outcome;
 mod pipeline;
