@@ -14,6 +14,7 @@ mod criteria;
 mod discipline;
 mod edge_removal;
 mod edges;
+mod extend;
 mod extract;
 mod face_removal;
 mod fan;

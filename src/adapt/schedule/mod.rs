@@ -60,6 +60,17 @@ impl Operation for Create {
     }
 }
 
+/// Creates points at unit distance from vertices, along the eigenvectors of their metrics.
+pub struct Extend;
+
+impl Operation for Extend {
+    type Item = VertexId;
+
+    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
+        worker.extend_vertex(item)
+    }
+}
+
 /// Collapses edges that are too short.
 pub struct Collapse;
 
