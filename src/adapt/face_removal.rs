@@ -8,9 +8,6 @@ use super::worker::Worker;
 use crate::mesh::vector::volume6;
 use crate::metric::lanes::LANES;
 
-/// Tetrahedra below this mean ratio are worth several faces at once: with those up to 0.82 a third more are looked at, and little is gained.
-const SEVERAL_BELOW: f64 = 0.75;
-
 impl<A: Access> Worker<'_, '_, A> {
     /// Removes the face opposite to local vertex i of a tetrahedron that is owned, alone or with others about it, when the criterion gains
     /// by it.
@@ -28,7 +25,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let face = FACE[i].map(|k| v[k]);
         let above = v[i];
         match self.flip_face([t, other], face, [above, below], criterion) {
-            Err(Refusal::Shape) if self.store.quality(t) < SEVERAL_BELOW => {
+            Err(Refusal::Shape) if self.store.quality(t) < self.context.limits.several_below => {
                 self.remove_faces(face, [t, other], [above, below], criterion)
             }
             result => result,

@@ -51,6 +51,7 @@ fn size_limits() -> Limits {
         short: 0.65,
         shortest_new: 0.7,
         long_first: true,
+        several_below: 0.0,
         ..Limits::default()
     }
 }
