@@ -44,10 +44,11 @@ proptest! {
 
 #[test]
 fn all_threads_take_part() {
-    // Each task waits until as many others have begun as there are threads: only so many threads can end this.
+    // Each task waits until as many others have begun as there are threads: only so many threads can end this. (oneTBB and OpenMP do
+    // not promise it: of two threads of oneTBB one now and then sleeps on while the other has a task to give.)
     for threads in THREADS {
         let pool = Pool::new(threads).unwrap();
-        for plan in plans(1) {
+        for plan in plans(1).filter(|plan| matches!(plan.backend, Backend::Stealing | Backend::Rayon)) {
             let begun = AtomicUsize::new(0);
             let seen = Mutex::new(vec![false; threads]);
             pool.task_for(plan, threads, |thread, _| {
