@@ -99,7 +99,8 @@ pub trait Evaluate {
     /// Closest point of the *trimmed* face, its boundary included.
     fn closest_on_face(&mut self, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> OnSurface;
 
-    /// Closest point on the face's surface near the guess, without a check of the trimming: what the adapter uses for
-    /// points inside a face. Falls back to [`Evaluate::closest_on_face`] when it does not converge to a true foot point.
+    /// Closest point on the face's surface near the guess: what the adapter uses for points inside a face. The trimming is looked at only
+    /// where chords of the face's edges leave it (a plane with a round edge): a vertex in a layer thinner than the chord's rise would
+    /// come to lie beside the face. Falls back to [`Evaluate::closest_on_face`] when it does not converge to a true foot point.
     fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface;
 }

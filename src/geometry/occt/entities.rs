@@ -35,7 +35,8 @@ pub fn build(occt: cxx::SharedPtr<ffi::Model>) -> Result<OcctModel, Exception> {
         add_face(&mut topology, i, &record);
     }
     connect(&mut topology);
-    Ok(OcctModel { topology, occt, surfaces, curves, size })
+    let rounded = topology.faces.iter().map(|face| is_rounded(&topology, face)).collect();
+    Ok(OcctModel { topology, occt, surfaces, curves, rounded, size })
 }
 
 /// Agreement with OCCT, relative to the model's size, without which a closed form is not used: a scaled location
@@ -165,4 +166,15 @@ fn connect(topology: &mut Topology) {
 fn corners(bounds: [f64; 6]) -> [[f64; 3]; 2] {
     let [a, b, c, d, e, f] = bounds;
     [[a, b, c], [d, e, f]]
+}
+
+/// Whether chords of the face's edges may leave it: on a cylinder circles and lines follow the parameters, on a plane round edges do not.
+fn is_rounded(topology: &Topology, face: &FaceEntity) -> bool {
+    let follows = |kind: CurveKind| match (face.kind, kind) {
+        (_, CurveKind::Line | CurveKind::None) => true,
+        (SurfaceKind::Plane, _) => false,
+        (_, CurveKind::Circle) => true,
+        _ => false,
+    };
+    !face.edges.iter().all(|&edge| follows(topology.edges[edge as usize].kind))
 }

@@ -38,6 +38,8 @@ pub struct OcctModel {
     occt: cxx::SharedPtr<ffi::Model>,
     surfaces: Vec<Shape<Surface>>,
     curves: Vec<Shape<Curve>>,
+    /// Whether a face has edges whose chords may leave it.
+    rounded: Vec<bool>,
     /// The greater of the box's diagonal and the largest coordinate: what rounding is measured by.
     size: f64,
 }

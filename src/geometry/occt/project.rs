@@ -88,19 +88,20 @@ fn nearest_cell(cells: &[Cell], point: Vec3, limit: f64) -> Option<&Cell> {
     nearest.1.filter(|_| reached)
 }
 
-/// Closest point of a face's surface near the guess.
+/// Closest point of a face near the guess. Chords of its edges may leave the face, where its edges do not follow the parameters: there
+/// the trimming counts.
 pub fn on_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
     let model = on.model;
     if let Some(foot) = model.surfaces[face as usize].form.foot(point, guess) {
-        let (uv, inside) = on.placed(face, foot);
-        if inside {
+        let (uv, in_range) = on.placed(face, foot);
+        if in_range && is_within(on, face, uv) {
             return at(on, face, uv, point);
         }
     } else if guess[0].is_finite() && guess[1].is_finite() {
         let (start, _) = on.placed(face, guess);
         let bounds = open_bounds(on, face);
         let found = newton::descend(|uv| on.jet(face, uv), point, start, bounds, model.size);
-        if found.foot {
+        if found.foot && is_within(on, face, found.uv) {
             return finish(on, face, &found, point);
         }
     }
@@ -149,6 +150,11 @@ fn open_bounds(on: &OcctEvaluator, face: u32) -> [[f64; 2]; 2] {
             if is_whole(face.range[k], face.period[k]) { [f64::NEG_INFINITY, f64::INFINITY] } else { face.range[k] }
         },
     )
+}
+
+/// Whether the parameters lie in the trimmed face, where that is in doubt.
+fn is_within(on: &mut OcctEvaluator, face: u32, uv: [f64; 2]) -> bool {
+    !on.model.rounded[face as usize] || inside(on, face, on.placed(face, uv).0)
 }
 
 /// Whether the parameters lie in the trimmed face.
