@@ -22,6 +22,10 @@ use geo_adapt::tasks::Pool;
 use std::hint::black_box;
 use std::time::Duration;
 
+/// As in the program.
+#[global_allocator]
+static MEMORY: geo_adapt::memory::HugePages = geo_adapt::memory::HugePages;
+
 /// ln of the factor of the metric for some ten thousand vertices.
 const LARGE: f64 = 0.0;
 /// And for some two thousand.

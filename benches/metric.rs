@@ -1,5 +1,5 @@
 //! The hot kernels of the metric: tensor maps, edge length, mean ratio, location. One call an iteration, over inputs that
-//! vary as they do in a mesh; those "four at once" are one call for four edges or tetrahedra.
+//! vary as they do in a mesh; those "eight at once" are one call for eight edges or tetrahedra.
 //!
 //!     cargo bench --bench metric -- --quick             # all; without --quick finer, and compared with the last time
 //!     cargo bench --bench metric -- --quick mean_ratio  # those whose name holds the word
@@ -74,15 +74,15 @@ fn quality(c: &mut Criterion) {
     let mut others = Numbers(4);
     let spokes: Vec<(Spokes, Vec3, Sym3)> = edges
         .chunks_exact(LANES)
-        .map(|four| {
+        .map(|some| {
             let mut spokes = Spokes::default();
-            for (lane, (point, metric, _)) in four.iter().enumerate() {
+            for (lane, (point, metric, _)) in some.iter().enumerate() {
                 spokes.set(lane, *point, metric);
             }
             (spokes, others.point(), others.metric(100.0))
         })
         .collect();
-    over(c, "edge_length, four at once", &spokes, |(spokes, p, metric)| spokes.lengths(*p, metric));
+    over(c, "edge_length, eight at once", &spokes, |(spokes, p, metric)| spokes.lengths(*p, metric));
     // Corners near those of a right tetrahedron: positive. Metrics of neighbours differ little.
     let tets: Vec<([Vec3; 4], [Sym3; 4])> = (0..INPUTS)
         .map(|_| {
@@ -97,18 +97,18 @@ fn quality(c: &mut Criterion) {
     over(c, "mean_ratio", &tets, |(p, logs)| mean_ratio(*p, logs.each_ref()));
     let batches: Vec<(Batch, Vec3, Sym3)> = tets
         .chunks_exact(LANES)
-        .map(|four| {
+        .map(|some| {
             let mut batch = Batch::default();
-            for (lane, (p, logs)) in four.iter().enumerate() {
+            for (lane, (p, logs)) in some.iter().enumerate() {
                 batch.set(lane, [p[0], p[1], p[2]], [&logs[0], &logs[1], &logs[2]]);
             }
             batch.prepare();
-            (batch, four[0].0[3], four[0].1[3])
+            (batch, some[0].0[3], some[0].1[3])
         })
         .collect();
-    over(c, "mean_ratio, four at once", &batches, |(batch, p, log)| batch.shapes(*p, log).mean_ratios());
-    over(c, "mean_ratio, four at once, cubed", &batches, |(batch, p, log)| batch.shapes(*p, log));
-    over(c, "bowl, four at once", &batches, |(batch, p, log)| batch.bowl(*p, log, LANES));
+    over(c, "mean_ratio, eight at once", &batches, |(batch, p, log)| batch.shapes(*p, log).mean_ratios());
+    over(c, "mean_ratio, eight at once, cubed", &batches, |(batch, p, log)| batch.shapes(*p, log));
+    over(c, "bowl, eight at once", &batches, |(batch, p, log)| batch.bowl(*p, log, LANES));
     over(c, "batch prepared", &batches, |(batch, ..)| {
         let mut batch = batch.clone();
         batch.prepare();

@@ -183,7 +183,7 @@ impl<A: Access> Worker<'_, '_, A> {
         Ok(())
     }
 
-    /// Finds the mean ratios over up to four wanted faces: each is seen, or the cavity grows over it.
+    /// Finds the mean ratios over several wanted faces: each is seen, or the cavity grows over it.
     fn judge_faces(&mut self, star: &mut Star, apex: &Apex, bounds: Bounds) -> Result<(), Refusal> {
         let count = star.wanted.len();
         let (store, batch) = (self.store, &mut self.state.batch);
