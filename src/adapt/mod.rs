@@ -21,7 +21,6 @@ mod fan;
 mod ids;
 mod insert;
 mod local;
-mod lock;
 mod mend;
 mod merge;
 mod numbering;
@@ -46,9 +45,6 @@ mod tests;
 mod thin;
 mod work;
 mod worker;
-
-// The atomics of the lock words; tests/lock_protocol.rs has loom's in their place.
-use std::sync::atomic;
 
 pub use build::Error;
 pub use create::PointCreation;

@@ -11,8 +11,8 @@ use super::outcome::Counts;
 use super::schedule::{self, Collapse, Create, Crew, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
 use super::shape::{is_longer, is_shorter};
 use super::store::Store;
-use super::work::{KINDS, Kind, Observer, Work};
 use super::supply::ID_BLOCK;
+use super::work::{KINDS, Kind, Observer, Work};
 use super::worker::State;
 use std::time::Instant;
 

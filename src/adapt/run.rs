@@ -73,7 +73,13 @@ pub fn adapt(
     context.required = required;
     context.required.renumber(&ids);
     context.ids = ids;
-    let mut pipeline = Pipeline::new(&mut context, Crew { pool, scheduler: options.scheduler, plan: options.plan }, observer, options.criterion, waiting);
+    let mut pipeline = Pipeline::new(
+        &mut context,
+        Crew { pool, scheduler: options.scheduler, plan: options.plan },
+        observer,
+        options.criterion,
+        waiting,
+    );
     pipeline.points = options.points;
     pipeline.crowded = crowded;
     pipeline.run();

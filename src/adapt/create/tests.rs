@@ -114,9 +114,12 @@ fn a_candidate_nearer_to_a_vertex_than_an_edge_may_be_short_is_dropped() {
 
 #[test]
 fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh() {
-    for (threads, scheduler) in
-        [(1, Scheduler::Sequential), (3, Scheduler::Speculative), (1, Scheduler::Deterministic), (3, Scheduler::Deterministic)]
-    {
+    for (threads, scheduler) in [
+        (1, Scheduler::Sequential),
+        (3, Scheduler::Speculative),
+        (1, Scheduler::Deterministic),
+        (3, Scheduler::Deterministic),
+    ] {
         let (mesh, place, model, source) = cube(2, [0.15; 3]);
         let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
         let context = Context::new(store, &source, &model);

@@ -46,7 +46,8 @@ impl Sample {
     fn of(store: &Store, v: VertexId) -> Self {
         let corners = store.vertices(store.tet_of(v)).map(|x| store.position(x));
         let along = |d: &Vec3| corners.map(|p| dot(p, *d));
-        let extent = DIRECTIONS.map(|d| along(&d).into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [x.min(l), x.max(h)]));
+        let extent = DIRECTIONS
+            .map(|d| along(&d).into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [x.min(l), x.max(h)]));
         Self { at: DIRECTIONS.map(|d| dot(store.position(v), d)), extent }
     }
 }
