@@ -3,109 +3,22 @@
 //! A new tetrahedron is judged by the thread that made it, which puts it into the list it works on. Faces of surfaces go first.
 use super::delaunay::{Scratch, Worker, enclose};
 use super::domain::Domain;
-use super::rules::{Item, Limits, Part, Rules, Wish};
+use super::list::{Counts, List};
+use super::rules::{Error, Item, Limits, Part, Rules, Wish};
 use super::seeds;
 use super::store::{Access, Alone, NONE, Refusal, Role, Store};
 use crate::mesh::adjacency::FACES;
 use crate::mesh::vector::distance;
 use crate::tasks::claims::Claims;
 use crate::tasks::{Backend, Pool, Task};
-use serde::Serialize;
-use std::collections::VecDeque;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
 /// Items between two looks at whether another thread has nothing to do.
 const BATCH: usize = 32;
 
-/// Lists shorter than this are not cut in two.
-const SHORT: usize = 16;
-
-/// Tetrahedra in a mesh, at most: their ids have 32 bits, and so have the corners of the output.
-const MOST_TETS: f64 = 2e8;
-
-/// Why there is no mesh.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the messages say it")]
-pub enum Error {
-    #[error(
-        "tetrahedra of size {0} would be about {1:.0e}, more than the {MOST_TETS:.0e} of the largest mesh; give a greater --size"
-    )]
-    TooMany(f64, f64),
-    #[error("needs more tetrahedra than ids have room for; give a greater --size or --surface-distance")]
-    Full,
-}
-
-/// What was done.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Counts {
-    /// Items that were tried.
-    pub attempts: usize,
-    /// Of these, ended by another thread's claim, and tried again.
-    pub conflicts: usize,
-    /// What they were about had gone.
-    pub stale: usize,
-    /// Put off: the point was within the surface ball of a face, which was refined first.
-    pub put_off: usize,
-    /// Given up: no room beside the surface's vertices.
-    pub crowded: usize,
-    /// Given up at the limit of the numbers.
-    pub lost: usize,
-    /// Vertices on surfaces.
-    pub surface_points: usize,
-    /// Vertices inside.
-    pub inner_points: usize,
-}
-
-impl Counts {
-    fn add(&mut self, other: &Self) {
-        self.attempts += other.attempts;
-        self.conflicts += other.conflicts;
-        self.stale += other.stale;
-        self.put_off += other.put_off;
-        self.crowded += other.crowded;
-        self.lost += other.lost;
-        self.surface_points += other.surface_points;
-        self.inner_points += other.inner_points;
-    }
-}
-
-/// A list of items.
-#[derive(Default)]
-struct List {
-    faces: VecDeque<Item>,
-    tets: VecDeque<Item>,
-}
-
-impl List {
-    fn len(&self) -> usize {
-        self.faces.len() + self.tets.len()
-    }
-
-    fn push(&mut self, item: Item) {
-        match item.part {
-            Part::Face(..) => self.faces.push_back(item),
-            Part::Whole => self.tets.push_back(item),
-        }
-    }
-
-    fn pop(&mut self) -> Option<Item> {
-        self.faces.pop_front().or_else(|| self.tets.pop_front())
-    }
-
-    /// The later half of both.
-    fn split(&mut self) -> Self {
-        Self {
-            faces: self.faces.split_off(self.faces.len().div_ceil(2)),
-            tets: self.tets.split_off(self.tets.len().div_ceil(2)),
-        }
-    }
-
-    fn append(&mut self, mut other: Self) {
-        self.faces.append(&mut other.faces);
-        self.tets.append(&mut other.tets);
-    }
-}
+/// Conflicts one after the other that end a task: the mesh is too small for so many threads, and another takes its list.
+const IN_THE_WAY: usize = 8;
 
 /// What a thread has in hand.
 #[derive(Default)]
@@ -123,6 +36,7 @@ struct Shared<'a> {
     /// Tasks that were spawned and have not ended.
     tasks: AtomicUsize,
     /// Items left when there was no room.
+    /// Also those of tasks that were in another's way.
     left: Mutex<List>,
     full: AtomicBool,
 }
@@ -132,16 +46,15 @@ struct Shared<'a> {
 /// # Errors
 /// When there would be too many tetrahedra.
 pub fn mesh(domain: &Domain, wish: Wish, pool: &Pool, backend: Backend) -> Result<(Store, Limits, Counts), Error> {
-    let limits = Limits::new(wish, domain);
-    foresee(domain, &limits)?;
+    let limits = Limits::new(wish, domain)?;
     let mut hands: Vec<Mutex<Hand>> = (0..pool.threads()).map(|_| Mutex::default()).collect();
     let first = hands[0].get_mut().expect("no thread has begun");
     let mut store = enclose(domain, &mut first.scratch);
     plant(domain, &limits, &mut store, first)?;
     let mut list = judge_all(domain, &limits, &store);
     while list.len() > 0 {
-        let left = round(&Rules { store: &store, domain, limits: &limits }, &hands, list, pool, backend);
-        if left.len() > 0 && !store.grow((store.tet_bound() as usize).max(1 << 16)) {
+        let (left, full) = round(&Rules { store: &store, domain, limits: &limits }, &hands, list, pool, backend);
+        if full && !store.grow((store.tet_bound() as usize).max(1 << 16)) {
             return Err(Error::Full);
         }
         list = left;
@@ -151,15 +64,6 @@ pub fn mesh(domain: &Domain, wish: Wish, pool: &Pool, backend: Backend) -> Resul
         counts.add(&hand.into_inner().expect("a panic would have gone on").counts);
     }
     Ok((store, limits, counts))
-}
-
-/// Refuses what would be too large, before the work. A Delaunay tetrahedron of circumradius R has a volume of about R³/6.
-fn foresee(domain: &Domain, limits: &Limits) -> Result<(), Error> {
-    let voxels = domain.padded().iter().product::<usize>();
-    let inside = (0..voxels).filter(|&voxel| domain.voxel_region(voxel) != 0).count();
-    let volume = inside as f64 * domain.frame().volume();
-    let tets = 6.0 * volume / limits.size.powi(3);
-    if tets > MOST_TETS { Err(Error::TooMany(limits.size, tets)) } else { Ok(()) }
 }
 
 /// Inserts the first points.
@@ -191,8 +95,9 @@ fn judge_all(domain: &Domain, limits: &Limits, store: &Store) -> List {
     list
 }
 
-/// Works on a list with all threads until it is empty, or there is no room: then what is left.
-fn round(rules: &Rules<'_>, hands: &[Mutex<Hand>], list: List, pool: &Pool, backend: Backend) -> List {
+/// Works on a list with all threads until it is empty, or there is no room, or all got into each other's way: what is left, and whether
+/// there was no room.
+fn round(rules: &Rules<'_>, hands: &[Mutex<Hand>], list: List, pool: &Pool, backend: Backend) -> (List, bool) {
     let Rules { store, domain, limits } = *rules;
     let shared = Shared {
         store,
@@ -207,60 +112,66 @@ fn round(rules: &Rules<'_>, hands: &[Mutex<Hand>], list: List, pool: &Pool, back
         let shared = &shared;
         scope.spawn(move |task| shared.work(task, list));
     });
-    shared.left.into_inner().expect("a panic would have gone on")
+    (shared.left.into_inner().expect("a panic would have gone on"), shared.full.into_inner())
 }
 
 impl<'a> Shared<'a> {
-    /// A task: works on its list, and gives half of it away when there are too few tasks.
-    fn work<'s>(&'s self, task: &Task<'_, 's>, list: List) {
+    /// A task: works on its list, gives half of it away when there are too few tasks, and all of it when it is in another's way.
+    fn work<'s>(&'s self, task: &Task<'_, 's>, mut list: List) {
         let mut hand =
             self.hands[task.thread()].try_lock().expect("tasks wait for nothing, so each has its thread's hand");
         if self.hands.len() == 1 {
-            self.work_with(Alone, &mut hand, list, task);
+            self.work_with(Alone, &mut hand, &mut list, task);
         } else {
-            self.work_with(Claims::new(task.thread()), &mut hand, list, task);
+            self.work_with(Claims::new(task.thread()), &mut hand, &mut list, task);
+        }
+        if list.len() > 0 {
+            self.left.lock().expect("nothing panics under this lock").append(list);
         }
         self.tasks.fetch_sub(1, Relaxed);
     }
 
-    fn work_with<'s, A: Access>(&'s self, access: A, hand: &mut Hand, mut list: List, task: &Task<'_, 's>) {
+    fn work_with<'s, A: Access>(&'s self, access: A, hand: &mut Hand, list: &mut List, task: &Task<'_, 's>) {
         let mut worker = Worker { store: self.store, domain: self.domain, access, scratch: &mut hand.scratch };
-        let mut until_look = BATCH;
-        while let Some(item) = list.pop() {
-            let result =
-                if self.full.load(Relaxed) { Err(Refusal::Full) } else { self.attempt(&mut worker, item, &mut list) };
+        let counts = &mut hand.counts;
+        let (mut until_look, mut in_the_way) = (BATCH, 0);
+        while let Some(mut item) = list.pop() {
+            let result = self.attempt(&mut worker, item, list);
             worker.access.release(self.store);
-            let counts = &mut hand.counts;
             counts.attempts += 1;
+            in_the_way = if result == Err(Refusal::Conflict) { in_the_way + 1 } else { 0 };
             match result {
                 Ok(Role::Inner) => counts.inner_points += 1,
                 Ok(_) => counts.surface_points += 1,
                 Err(Refusal::Stale) => counts.stale += 1,
                 Err(Refusal::Crowded) => counts.crowded += 1,
                 Err(Refusal::Lost) => counts.lost += 1,
+                Err(Refusal::Encroaching) if item.patience == 0 => counts.crowded += 1,
                 Err(Refusal::Encroaching) => {
                     counts.put_off += 1;
+                    item.patience -= 1;
                     list.push(item);
                 }
                 Err(Refusal::Conflict) => {
                     counts.conflicts += 1;
                     list.push(item);
-                    if list.len() < SHORT {
-                        std::thread::yield_now();
-                    }
                 }
                 Err(Refusal::Full) => {
-                    counts.attempts -= 1;
                     list.push(item);
                     self.full.store(true, Relaxed);
-                    self.left.lock().expect("nothing panics under this lock").append(list);
-                    return;
                 }
             }
+            if in_the_way >= IN_THE_WAY || self.full.load(Relaxed) {
+                return;
+            }
+            if self.hands.len() == 1 {
+                continue;
+            }
             until_look -= 1;
-            if until_look == 0 {
+            if until_look == 0 || list.len() == 0 {
                 until_look = BATCH;
-                if list.len() >= SHORT && self.tasks.load(Relaxed) < 2 * self.hands.len() && self.hands.len() > 1 {
+                list.append(std::mem::take(&mut *self.left.lock().expect("nothing panics under this lock")));
+                if list.len() >= BATCH && self.tasks.load(Relaxed) < 2 * self.hands.len() {
                     let half = list.split();
                     self.tasks.fetch_add(1, Relaxed);
                     task.spawn(move |task| self.work(task, half));

@@ -15,6 +15,31 @@ const CIRCLE_EDGE: f64 = 1.0;
 /// No two vertices come nearer than this part of the surface distance, of the size or of the least spacing, whichever is least; so it ends.
 const NEAREST: f64 = 0.25;
 
+/// How often an item is put off; then it is given up.
+const PATIENCE: u8 = 30;
+
+/// The least size and surface distance, in distances between voxels.
+const FINEST: f64 = 0.01;
+
+/// Tetrahedra in a mesh, at most: their ids have 32 bits, and so have the corners of the output.
+const MOST_TETS: f64 = 2e8;
+
+/// Why there is no mesh.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
+pub enum Error {
+    #[error(
+        "the surface is known to a ten-thousandth of a voxel only; give a --surface-distance and a --size of at least {0:.1e}"
+    )]
+    TooFine(f64),
+    #[error(
+        "tetrahedra of size {0} would be about {1:.0e}, more than the {MOST_TETS:.0e} of the largest mesh; give a greater --size"
+    )]
+    TooMany(f64, f64),
+    #[error("needs more tetrahedra than ids have room for; give a greater --size or --surface-distance")]
+    Full,
+}
+
 /// What is asked for; each none: as it suits the image.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wish {
@@ -41,11 +66,28 @@ pub struct Limits {
 
 impl Limits {
     /// The limits for an image.
-    pub fn new(wish: Wish, domain: &Domain) -> Self {
+    ///
+    /// # Errors
+    /// When the mesh would be too large, or finer than the surface is known.
+    pub fn new(wish: Wish, domain: &Domain) -> Result<Self, Error> {
         let size = wish.size.unwrap_or(4.0 * domain.mean_spacing());
         let surface_distance = wish.surface_distance.unwrap_or(0.5 * domain.mean_spacing());
         let nearest = NEAREST * surface_distance.min(size).min(domain.least_spacing());
-        Self { size, surface_distance, radius_edge: wish.radius_edge.unwrap_or(2.0), nearest }
+        let radius_edge = wish.radius_edge.unwrap_or(2.0);
+        Self { size, surface_distance, radius_edge, nearest }.foreseen(domain)
+    }
+
+    /// Refuses what would be too large, before the work. A Delaunay tetrahedron of circumradius R has a volume of about R³/6.
+    fn foreseen(self, domain: &Domain) -> Result<Self, Error> {
+        let finest = FINEST * domain.least_spacing();
+        if self.surface_distance.min(self.size) < finest {
+            return Err(Error::TooFine(finest));
+        }
+        let voxels = domain.padded().iter().product::<usize>();
+        let inside = (0..voxels).filter(|&voxel| domain.voxel_region(voxel) != 0).count();
+        let volume = inside as f64 * domain.frame().volume();
+        let tets = 6.0 * volume / self.size.powi(3);
+        if tets > MOST_TETS { Err(Error::TooMany(self.size, tets)) } else { Ok(self) }
     }
 }
 
@@ -57,6 +99,8 @@ pub struct Item {
     pub part: Part,
     /// Where the new vertex goes.
     pub at: Vec3,
+    /// How often it may still be put off.
+    pub patience: u8,
 }
 
 /// Which part of a tetrahedron.
@@ -121,7 +165,7 @@ impl Rules<'_> {
     /// A face as an item.
     pub fn face_item(&self, t: u32, nodes: [u32; 4], i: usize, n: u32, at: Vec3) -> Item {
         let beyond = self.store.nodes(n).into_iter().find(|v| !nodes.contains(v)).unwrap_or(NONE);
-        Item { tet: t, nodes, part: Part::Face(i as u8, beyond), at }
+        Item { tet: t, nodes, part: Part::Face(i as u8, beyond), at, patience: PATIENCE }
     }
 
     /// The tetrahedron as an item, if it is inside and to be refined.
@@ -136,6 +180,12 @@ impl Rules<'_> {
         let bad = radius > limits.size
             || radius > limits.radius_edge * shortest_edge(&points)
             || nodes.iter().any(|&v| store.role(v) == Role::Corner);
-        (bad && radius > limits.nearest).then_some(Item { tet: t, nodes, part: Part::Whole, at: centre })
+        (bad && radius > limits.nearest).then_some(Item {
+            tet: t,
+            nodes,
+            part: Part::Whole,
+            at: centre,
+            patience: PATIENCE,
+        })
     }
 }
