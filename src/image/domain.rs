@@ -184,12 +184,17 @@ fn heaviest(labels: [u16; 8], part: Vec3) -> u16 {
     if labels.iter().all(|&label| label == labels[0]) {
         return labels[0];
     }
-    let weight =
-        |corner: usize| -> f64 { (0..3).map(|i| if corner >> i & 1 == 0 { 1.0 - part[i] } else { part[i] }).product() };
-    let weights: [f64; 8] = std::array::from_fn(weight);
+    let [x, y, z] = part.map(|part| [1.0 - part, part]);
+    let weights: [f64; 8] = std::array::from_fn(|corner| x[corner & 1] * y[corner >> 1 & 1] * z[corner >> 2]);
     let (mut best, mut most) = (labels[0], -1.0);
     for candidate in labels {
-        let sum: f64 = (0..8).filter(|&corner| labels[corner] == candidate).map(|corner| weights[corner]).sum();
+        let mut sum = 0.0;
+        for corner in 0..8 {
+            sum += if labels[corner] == candidate { weights[corner] } else { 0.0 };
+        }
+        if sum > 0.5 {
+            return candidate;
+        }
         if sum > most || sum == most && candidate < best {
             (best, most) = (candidate, sum);
         }

@@ -16,6 +16,8 @@ mod refine;
 mod rules;
 mod seeds;
 mod store;
+#[cfg(test)]
+mod tests;
 
 pub use domain::{Domain, DomainError};
 pub use extract::{Extracted, RadiusEdge, Surface};

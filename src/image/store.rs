@@ -178,6 +178,12 @@ impl Store {
         self.next_point.load(Relaxed) as u32
     }
 
+    /// Whether nobody holds a vertex.
+    #[cfg(test)]
+    pub fn is_free(&self, v: u32) -> bool {
+        self.points[v as usize].lock.load(Relaxed) == 0
+    }
+
     /// Writes a vertex that is not yet known to others.
     pub fn write_point(&self, v: u32, at: Vec3, role: Role) {
         let point = &self.points[v as usize];
