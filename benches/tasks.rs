@@ -12,6 +12,11 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 /// Items of the empty loop.
 const ITEMS: usize = 1 << 14;
 
+/// Keeps the compiler from leaving the call out.
+fn seen<T>(value: T) {
+    black_box(value);
+}
+
 fn threads() -> usize {
     let told = std::env::var("GEO_ADAPT_BENCH_THREADS").ok().and_then(|text| text.parse().ok());
     told.unwrap_or_else(|| std::thread::available_parallelism().map_or(2, usize::from).max(2))
@@ -33,11 +38,11 @@ fn empty(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements((ITEMS / grain) as u64));
         let one = Plan::of_grain(grain);
         group.bench_function(BenchmarkId::new("one-thread", grain), |bencher| {
-            bencher.iter(|| alone.task_for(one, ITEMS, |thread, range| drop(black_box((thread, range)))));
+            bencher.iter(|| alone.task_for(one, ITEMS, |thread, range| seen((thread, range))));
         });
         for plan in plans(grain) {
             group.bench_function(BenchmarkId::new(name(plan), grain), |bencher| {
-                bencher.iter(|| pool.task_for(plan, ITEMS, |thread, range| drop(black_box((thread, range)))));
+                bencher.iter(|| pool.task_for(plan, ITEMS, |thread, range| seen((thread, range))));
             });
         }
     }
@@ -51,24 +56,22 @@ fn latency(criterion: &mut Criterion) {
     for backend in Backend::ALL.into_iter().filter(|backend| backend.is_built()) {
         let plan = Plan { backend, ..Plan::default() };
         group.bench_function(BenchmarkId::new("task_for", backend.name()), |bencher| {
-            bencher.iter(|| pool.task_for(plan, pool.threads(), |thread, range| drop(black_box((thread, range)))));
+            bencher.iter(|| pool.task_for(plan, pool.threads(), |thread, range| seen((thread, range))));
         });
         group.bench_function(BenchmarkId::new("nested", backend.name()), |bencher| {
             bencher.iter(|| {
                 pool.task_for(plan, pool.threads(), |_, _| {
-                    pool.task_for(plan, 16, |thread, range| drop(black_box((thread, range))));
+                    pool.task_for(plan, 16, |thread, range| seen((thread, range)));
                 });
             });
         });
         group.bench_function(BenchmarkId::new("spawn 1000", backend.name()), |bencher| {
             bencher.iter(|| {
-                pool.scope(backend, |scope| (0..1000).for_each(|_| scope.spawn(|task| drop(black_box(task.thread())))));
+                pool.scope(backend, |scope| (0..1000).for_each(|_| scope.spawn(|task| seen(task.thread()))));
             });
         });
     }
-    group.bench_function("on_each_thread", |bencher| {
-        bencher.iter(|| pool.on_each_thread(&|thread| drop(black_box(thread))))
-    });
+    group.bench_function("on_each_thread", |bencher| bencher.iter(|| pool.on_each_thread(&|thread| seen(thread))));
     group.finish();
 }
 
@@ -112,5 +115,9 @@ fn compute(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, empty, latency, memory, compute);
-criterion_main!(benches);
+#[allow(missing_docs, reason = "the macro writes a public function")]
+mod group {
+    use super::*;
+    criterion_group!(benches, empty, latency, memory, compute);
+}
+criterion_main!(group::benches);

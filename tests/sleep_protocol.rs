@@ -54,7 +54,7 @@ fn two_tasks_wake_two_threads() {
             state.1.fetch_add(1, Relaxed);
             state.0.wake_one();
         }
-        sleepers.map(|sleeper| sleeper.join().unwrap());
+        sleepers.into_iter().for_each(|sleeper| sleeper.join().unwrap());
     });
 }
 

@@ -15,6 +15,9 @@ use std::sync::atomic::Ordering::Relaxed;
 
 /// How vertices are claimed.
 pub trait Access: Send {
+    /// Whether a claim that is refused now will be refused as long as the round lasts, so that it is best asked for first of all.
+    const IS_LASTING: bool = false;
+
     /// Claims a vertex for the operation at hand; claiming twice is harmless.
     fn claim(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal>;
 
@@ -103,6 +106,8 @@ impl Owned {
 }
 
 impl Access for Owned {
+    const IS_LASTING: bool = true;
+
     #[inline(always)]
     fn claim(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal> {
         if store.lock(v).load(Relaxed) == self.owner { Ok(()) } else { Err(Refusal::Conflict) }

@@ -36,6 +36,8 @@ pub struct Limits {
     pub flip_below: f64,
     /// And at edges whose tetrahedra have on average at least this 1/Q − 1.
     pub flip_cost: f64,
+    /// Tetrahedra below this mean ratio try to remove several faces at once: up to 0.82 a third more are looked at, and little is gained.
+    pub several_below: f64,
     /// Reconnection looks at tetrahedra that changed at or after this time.
     pub since: u32,
     /// Surface triangles may tilt to this cosine against the model, but no further unless they do already: long thin ones across a
@@ -62,6 +64,7 @@ impl Default for Limits {
             improve_below: 1.0,
             flip_below: 1.0,
             flip_cost: 0.0,
+            several_below: 0.75,
             since: 0,
             tilt: 0.5,
             spread: 0.94,

@@ -30,16 +30,19 @@ pub enum PointCreation {
     Edge,
     /// At centroids of tetrahedra and surface triangles with long edges; at middles of edges where these fail
     Centroid,
+    /// Inside at unit distance from vertices along the eigenvectors of their metrics; at middles of edges on the model, where they are
+    /// much too long, and where these fail
+    Eigenvector,
 }
 
 /// A point that may become a vertex.
-struct Candidate<'a> {
-    seed: Seed,
-    entity: Entity,
-    point: Vec3,
-    metric: Sym3,
-    /// The vertices it is the centroid of.
-    around: &'a [VertexId],
+pub struct Candidate<'a> {
+    pub seed: Seed,
+    pub entity: Entity,
+    pub point: Vec3,
+    pub metric: Sym3,
+    /// The vertices it was found from.
+    pub around: &'a [VertexId],
 }
 
 /// The tetrahedra with an edge that is too long: those at the surface first, then by their longest edge.
@@ -65,7 +68,7 @@ fn encroaches_edge(m: &Sym3, [a, b]: [Vec3; 2], p: Vec3) -> bool {
 }
 
 /// Whether p lies inside the smallest ellipsoid (a sphere in the metric, its centre in the triangle's plane) through the corners.
-fn encroaches_face(m: &Sym3, [a, b, c]: [Vec3; 3], p: Vec3) -> bool {
+pub fn encroaches_face(m: &Sym3, [a, b, c]: [Vec3; 3], p: Vec3) -> bool {
     let (e, f) = (sub(b, a), sub(c, a));
     let (ee, ef, ff) = (m.quadratic(e), dot(m.apply(e), f), m.quadratic(f));
     let twice = 2.0 * (ee * ff - ef * ef);
@@ -157,7 +160,7 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// Inserts a candidate into the tetrahedra that hold it, unless it is too near to a vertex.
-    fn insert_apart(&mut self, candidate: &Candidate, seeds: &[TetId]) -> Result<(), Refusal> {
+    pub fn insert_apart(&mut self, candidate: &Candidate, seeds: &[TetId]) -> Result<(), Refusal> {
         let &Candidate { seed, entity, point, around, .. } = candidate;
         for &t in seeds {
             self.claim_tet(t)?;
@@ -180,12 +183,12 @@ impl<A: Access> Worker<'_, '_, A> {
     /// take it out again.
     fn is_near(&mut self, candidate: &Candidate, tets: &[TetId]) -> Result<bool, Refusal> {
         for &t in tets {
-            if self.is_near_any(candidate, self.store.vertices(t)) {
+            if self.is_near_any(candidate, &self.store.vertices(t)) {
                 return Ok(true);
             }
             for n in self.store.neighbours(t).into_iter().filter(|n| n.is_some()) {
                 let vertices = self.claim_tet(n)?;
-                if self.is_near_any(candidate, vertices) {
+                if self.is_near_any(candidate, &vertices) {
                     return Ok(true);
                 }
             }
@@ -193,10 +196,10 @@ impl<A: Access> Worker<'_, '_, A> {
         Ok(false)
     }
 
-    fn is_near_any(&self, candidate: &Candidate, vertices: [VertexId; 4]) -> bool {
+    pub fn is_near_any(&self, candidate: &Candidate, vertices: &[VertexId]) -> bool {
         let to = |v: VertexId| sub(self.store.position(v), candidate.point);
         let length = |v: VertexId| edge_length(to(v), &candidate.metric, &self.store.metric(v));
-        vertices.into_iter().any(|v| length(v) < self.context.limits.short)
+        vertices.iter().any(|&v| length(v) < self.context.limits.short)
     }
 
     fn is_long(&self, a: VertexId, b: VertexId) -> bool {
@@ -211,7 +214,7 @@ impl<A: Access> Worker<'_, '_, A> {
 }
 
 /// Of several candidates one insertion is a success; a conflict before any makes the item come again.
-fn better(one: Option<Result<(), Refusal>>, other: Option<Result<(), Refusal>>) -> Option<Result<(), Refusal>> {
+pub fn better(one: Option<Result<(), Refusal>>, other: Option<Result<(), Refusal>>) -> Option<Result<(), Refusal>> {
     match (one, other) {
         (Some(Ok(())), _) | (_, None) => one,
         (Some(Err(Refusal::Conflict)), Some(Err(_))) => one,

@@ -1,4 +1,4 @@
-//! The 2-3 flip: a face goes, the edge between the two vertices opposite to it comes.
+//! The 2-3 flip: a face goes, the edge between the two vertices opposite to it comes; where one face is not enough, several go (multi_face).
 use super::access::Access;
 use super::cavity::NewTet;
 use super::criteria::{Criterion, mean_ratio_score, wanted_score};
@@ -9,7 +9,8 @@ use crate::mesh::vector::volume6;
 use crate::metric::lanes::LANES;
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Removes the face opposite to local vertex i of a tetrahedron that is owned, when the criterion gains by it.
+    /// Removes the face opposite to local vertex i of a tetrahedron that is owned, alone or with others about it, when the criterion gains
+    /// by it.
     pub fn remove_face(&mut self, t: TetId, i: usize, criterion: Criterion) -> Result<(), Refusal> {
         let other = self.store.neighbour(t, i);
         if !other.is_some() || self.store.tags(t)[i] != 0 {
@@ -23,8 +24,24 @@ impl<A: Access> Worker<'_, '_, A> {
         let below = w.into_iter().find(|x| !v.contains(x)).ok_or(Refusal::Topology)?;
         let face = FACE[i].map(|k| v[k]);
         let above = v[i];
+        match self.flip_face([t, other], face, [above, below], criterion) {
+            Err(Refusal::Shape) if self.store.quality(t) < self.context.limits.several_below => {
+                self.remove_faces(face, [t, other], [above, below], criterion)
+            }
+            result => result,
+        }
+    }
+
+    /// Removes the face between two claimed tetrahedra, that above first, when the criterion gains by it.
+    pub fn flip_face(
+        &mut self,
+        tets: [TetId; 2],
+        face: [VertexId; 3],
+        [above, below]: [VertexId; 2],
+        criterion: Criterion,
+    ) -> Result<(), Refusal> {
         let cavity = [face[0], face[1], face[2], above, below];
-        let old = [t, other].map(|t| self.present_score(criterion, t, &cavity));
+        let old = tets.map(|t| self.present_score(criterion, t, &cavity));
         let wanted = wanted_score(criterion.join(old[0], old[1]));
         // (face, above) is positive, so each side of the face makes a positive tetrahedron with below and above.
         let new = [0, 1, 2].map(|k| [face[k], face[(k + 1) % 3], below, above]);
@@ -36,9 +53,9 @@ impl<A: Access> Worker<'_, '_, A> {
         if scores.fold(criterion.nothing(), |x, y| criterion.join(x, y)) <= wanted {
             return Err(Refusal::Shape);
         }
-        let region = self.store.region(t);
+        let region = self.store.region(tets[0]);
         self.state.replacement.clear();
-        self.state.replacement.old.extend([t, other]);
+        self.state.replacement.old.extend(tets);
         for (vertices, quality) in new.into_iter().zip(qualities) {
             self.state.replacement.new.push(NewTet { vertices, region, quality });
         }

@@ -5,10 +5,13 @@ use super::context::{Context, LONG, Limits};
 use super::create::{self, PointCreation};
 use super::criteria::Criterion;
 use super::edges;
+use super::extend;
 use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::Counts;
-use super::schedule::{self, Collapse, Create, Crew, Mend, Operation, Project, Reconnect, Retire, Smooth, Split};
+use super::schedule::{
+    self, Collapse, Create, Crew, Extend, Mend, Operation, Project, Reconnect, Retire, Smooth, Split,
+};
 use super::shape::{is_longer, is_shorter};
 use super::store::Store;
 use super::supply::ID_BLOCK;
@@ -48,6 +51,7 @@ fn size_limits() -> Limits {
         short: 0.65,
         shortest_new: 0.7,
         long_first: true,
+        several_below: 0.0,
         ..Limits::default()
     }
 }
@@ -184,7 +188,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.collapse();
         self.reconnect(self.criterion, 1);
         self.smooth();
-        ((self.changes() - before) as f64) < LITTLE * self.context.store.vertex_bound() as f64
+        self.is_little(self.changes() - before)
     }
 
     /// One pass of all operations. Flips come after the edges' turn, where they find most: after smoothing they find next to nothing.
@@ -228,13 +232,23 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.gather_waiting();
     }
 
+    /// Whether so many changes are few for a mesh of this size.
+    fn is_little(&self, changes: u64) -> bool {
+        (changes as f64) < LITTLE * self.context.store.live_vertices().count() as f64
+    }
+
     fn changes(&self) -> u64 {
         self.work[Kind::Split as usize].counts.done + self.work[Kind::Collapse as usize].counts.done
     }
 
-    /// Splits long edges, or refines at centroids, and reconnects.
+    /// Splits long edges, or refines in another way, and reconnects.
     fn refine(&mut self) {
-        if self.points == PointCreation::Centroid && self.create() {
+        let refined = match self.points {
+            PointCreation::Edge => false,
+            PointCreation::Centroid => self.create(),
+            PointCreation::Eigenvector => self.extend(),
+        };
+        if refined {
             return;
         }
         self.split();
@@ -259,7 +273,32 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let done = self.sweep(Kind::Split, &Create, &items).done;
         self.project();
         self.reconnect(self.criterion, 1);
-        done as f64 >= LITTLE * self.context.store.vertex_bound() as f64
+        !self.is_little(done)
+    }
+
+    /// Splits edges that are so long that a point at unit distance from one end would leave bad tetrahedra, and all long ones on the
+    /// model; then creates points along eigenvectors. Whether that went well, so that no other edges need be split yet.
+    fn extend(&mut self) -> bool {
+        let long = self.context.limits.long;
+        self.context.limits.long = extend::FAR * long;
+        self.split();
+        self.context.limits.long = long;
+        self.looked[Kind::Split as usize] = 0;
+        let mut items = self.long_edges();
+        let store = &self.context.store;
+        items.retain(|edge| store.dimension(edge.a).max(store.dimension(edge.b)) < 3);
+        if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
+            self.project();
+        }
+        self.looked[Kind::Split as usize] = 0;
+        self.reconnect(self.criterion, 1);
+        if self.observer.stop() {
+            return false;
+        }
+        let items = extend::active_vertices(self.context);
+        let done = self.sweep(Kind::Split, &Extend, &items).done;
+        self.reconnect(self.criterion, 1);
+        !self.is_little(done)
     }
 
     /// Collapses short edges.

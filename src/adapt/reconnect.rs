@@ -21,6 +21,12 @@ impl<A: Access> Worker<'_, '_, A> {
         if self.store.quality(t) >= self.context.limits.flip_below {
             return Err(Refusal::Stale);
         }
+        if A::IS_LASTING {
+            // Its edges and faces need these sooner or later.
+            for n in self.store.neighbours(t).into_iter().filter(|n| n.is_some()) {
+                self.claim_tet(n)?;
+            }
+        }
         let mut refusal = Refusal::Shape;
         for [i, j] in EDGE {
             match self.remove_edge(v[i], v[j], t, criterion) {

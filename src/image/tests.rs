@@ -91,7 +91,7 @@ fn a_store_without_room_grows() {
     // 65536 tetrahedra at first: this needs more.
     let domain = balls();
     for threads in [1, 3] {
-        let wish = Wish { size: Some(0.6), ..Wish::default() };
+        let wish = Wish { size: Some(0.45), ..Wish::default() };
         let (store, limits, _) = mesh(&domain, wish, &Pool::new(threads).unwrap(), Backend::default()).unwrap();
         assert!(store.tet_bound() > 1 << 16);
         check(&store, &domain, &limits);

@@ -41,6 +41,7 @@ impl Drop for Entered {
 }
 
 /// Whether this thread is in the midst of a task: nothing but what the task waits for may run on it.
+#[cfg(any(feature = "tbb", feature = "openmp"))]
 pub fn in_task() -> bool {
     IN_TASK.get()
 }

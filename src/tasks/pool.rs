@@ -144,6 +144,10 @@ impl Pool {
 
     /// Runs `work(thread)` here as one task, if this thread has an id in this pool or nobody else has.
     fn alone(&self, work: impl FnOnce(usize)) -> bool {
+        let work = |thread| {
+            let _in_task = place::mark(true);
+            work(thread);
+        };
         if let Some(place) = place::find(self.core.id) {
             return place.thread.map(work).is_some();
         }
@@ -175,11 +179,14 @@ impl Pool {
 
     /// The threads of the back-end, of a pool of several.
     fn engine(&self, backend: Backend) -> Result<&dyn Engine, Error> {
-        let cell = &self.engines[backend as usize];
-        let _making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
         if let (Backend::Stealing, Some(engine)) = (backend, &self.stealing) {
             return Ok(engine);
         }
+        let cell = &self.engines[backend as usize];
+        if let Some(engine) = cell.get() {
+            return Ok(&**engine);
+        }
+        let _making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
         if cell.get().is_none() {
             let made = backends::engine(backend, &self.core);
             let made = made.map_err(|reason| Error::Threads { threads: self.threads(), reason })?;

@@ -1,5 +1,5 @@
 //! `task_for`: each item once, ids that are nobody else's.
-use crate::{THREADS, Watch, each_plan, plans};
+use crate::{THREADS, Watch, add, each_plan, plans};
 use geo_adapt::tasks::{Backend, Plan, Pool, Strategy};
 use proptest::prelude::*;
 use std::ops::Range;
@@ -12,8 +12,11 @@ fn check(pool: &Pool, plan: Plan, items: usize) {
     let times: Vec<_> = (0..items).map(|_| AtomicUsize::new(0)).collect();
     let grain = plan.grain.max(1);
     pool.task_for(plan, items, |thread, range: Range<usize>| {
-        assert!(range.start % grain == 0 && range.end == items.min(range.start + grain), "{range:?} is no chunk");
-        watch.task(thread, &[range.start], || times[range].iter().for_each(|time| drop(time.fetch_add(1, Relaxed))));
+        assert!(
+            range.start.is_multiple_of(grain) && range.end == items.min(range.start + grain),
+            "{range:?} is no chunk"
+        );
+        watch.task(thread, &[range.start], || times[range].iter().for_each(|time| add(time, 1)));
     });
     assert!(times.iter().all(|time| time.load(Relaxed) == 1), "{plan:?}, {items} items, {} threads", pool.threads());
 }
@@ -41,10 +44,11 @@ proptest! {
 
 #[test]
 fn all_threads_take_part() {
-    // Each task waits until as many others have begun as there are threads: only so many threads can end this.
+    // Each task waits until as many others have begun as there are threads: only so many threads can end this. (oneTBB and OpenMP do
+    // not promise it: of two threads of oneTBB one now and then sleeps on while the other has a task to give.)
     for threads in THREADS {
         let pool = Pool::new(threads).unwrap();
-        for plan in plans(1) {
+        for plan in plans(1).filter(|plan| matches!(plan.backend, Backend::Stealing | Backend::Rayon)) {
             let begun = AtomicUsize::new(0);
             let seen = Mutex::new(vec![false; threads]);
             pool.task_for(plan, threads, |thread, _| {
@@ -103,7 +107,7 @@ fn tiny_loops_one_after_another() {
         let rounds = if plan.backend == Backend::Stealing { 5000 } else { 500 };
         for round in 0..rounds {
             let sum = AtomicUsize::new(0);
-            pool.task_for(plan, 2 + round % 7, |_, range| drop(sum.fetch_add(range.start + 1, Relaxed)));
+            pool.task_for(plan, 2 + round % 7, |_, range| add(&sum, range.start + 1));
             let items = 2 + round % 7;
             assert_eq!(sum.into_inner(), items * (items + 1) / 2);
             if round % 50 == 0 {
@@ -119,9 +123,7 @@ fn many_tasks() {
     for strategy in Strategy::ALL {
         let sum = AtomicUsize::new(0);
         let items = 200_000;
-        pool.task_for(Plan { strategy, ..Plan::default() }, items, |_, range| {
-            drop(sum.fetch_add(range.start, Relaxed))
-        });
+        pool.task_for(Plan { strategy, ..Plan::default() }, items, |_, range| add(&sum, range.start));
         assert_eq!(sum.into_inner(), items * (items - 1) / 2);
     }
 }

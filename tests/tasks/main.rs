@@ -9,6 +9,7 @@ mod scopes;
 
 use geo_adapt::tasks::{Backend, Plan, Pool, Strategy};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 const THREADS: [usize; 4] = [1, 2, 3, 8];
 
@@ -20,6 +21,11 @@ fn backends() -> impl Iterator<Item = Backend> {
 /// Every back-end with every strategy.
 fn plans(grain: usize) -> impl Iterator<Item = Plan> {
     backends().flat_map(move |backend| Strategy::ALL.map(|strategy| Plan { backend, strategy, grain }))
+}
+
+/// Counts on.
+fn add(count: &AtomicUsize, more: usize) {
+    count.fetch_add(more, Relaxed);
 }
 
 /// A pool and a plan of every kind.

@@ -1,5 +1,5 @@
 //! Loops and scopes within tasks: ids stay right, and who waits runs its descendants and nothing else.
-use crate::{Watch, backends, each_plan, plans};
+use crate::{Watch, add, backends, each_plan, plans};
 use geo_adapt::tasks::{Backend, Plan, Pool};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -34,7 +34,7 @@ fn a_nested_loop_may_name_another_backend() {
             pool.task_for(outer, 4, |thread, a| {
                 watch.task(thread, &[a.start], || {
                     pool.task_for(inner, 4, |thread, b| {
-                        watch.task(thread, &[a.start, b.start], || drop(count.fetch_add(1, Relaxed)));
+                        watch.task(thread, &[a.start, b.start], || add(&count, 1));
                     });
                 });
             });
@@ -170,7 +170,7 @@ fn deep_nesting() {
             return 1;
         }
         let total = AtomicUsize::new(0);
-        pool.task_for(plan, 3, |_, _| drop(total.fetch_add(sum(pool, plan, depth - 1), Relaxed)));
+        pool.task_for(plan, 3, |_, _| add(&total, sum(pool, plan, depth - 1)));
         total.into_inner()
     }
     each_plan(1, |pool, plan| assert_eq!(sum(pool, plan, 6), 729, "{plan:?}"));

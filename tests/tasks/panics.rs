@@ -1,5 +1,5 @@
 //! A panic goes to who waits when all others have ended, and the pool lives on.
-use crate::{THREADS, backends, each_plan};
+use crate::{THREADS, add, backends, each_plan};
 use geo_adapt::tasks::Pool;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -23,7 +23,7 @@ fn of_a_loop() {
         assert_eq!(message(work), "number 98");
         assert_eq!(others.into_inner(), 98, "{plan:?}: all others have ended");
         let again = AtomicUsize::new(0);
-        pool.task_for(plan, 100, |_, range| drop(again.fetch_add(range.len(), Relaxed)));
+        pool.task_for(plan, 100, |_, range| add(&again, range.len()));
         assert_eq!(again.into_inner(), 100);
     });
 }
@@ -74,7 +74,7 @@ fn of_scopes() {
             ended.store(0, Relaxed);
             let work = || {
                 pool.scope(backend, |scope| {
-                    (0..20).for_each(|_| scope.spawn(move |_| drop(ended.fetch_add(1, Relaxed))));
+                    (0..20).for_each(|_| scope.spawn(move |_| add(ended, 1)));
                     panic!("body");
                 });
             };
@@ -90,7 +90,7 @@ fn of_each_thread() {
         let pool = Pool::new(threads).unwrap();
         assert_eq!(message(|| pool.on_each_thread(&|thread| assert!(thread != 0, "first"))), "first");
         let count = AtomicUsize::new(0);
-        pool.on_each_thread(&|_| drop(count.fetch_add(1, Relaxed)));
+        pool.on_each_thread(&|_| add(&count, 1));
         assert_eq!(count.into_inner(), threads);
     }
 }

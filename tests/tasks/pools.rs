@@ -1,5 +1,5 @@
 //! Pools: made, shared, asked for what is not there, and dropped.
-use crate::{THREADS, Watch, backends, plans};
+use crate::{THREADS, Watch, add, backends, plans};
 use geo_adapt::tasks::{Backend, Plan, Pool};
 use std::collections::HashSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -63,7 +63,7 @@ fn several_threads_share_a_pool() {
                 for _ in 0..30 {
                     for plan in plans(1) {
                         pool.task_for(plan, 10, |thread, range| {
-                            watch.task(thread, &[guest, range.start], || drop(count.fetch_add(1, Relaxed)));
+                            watch.task(thread, &[guest, range.start], || add(count, 1));
                         });
                     }
                 }

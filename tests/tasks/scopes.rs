@@ -1,5 +1,5 @@
 //! Tasks spawned one by one.
-use crate::{THREADS, Watch, backends};
+use crate::{THREADS, Watch, add, backends};
 use geo_adapt::tasks::{Pool, Task};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -18,7 +18,7 @@ fn all_spawned_tasks_run_once() {
         let answer = pool.scope(backend, |scope| {
             for (one, time) in times.iter().enumerate() {
                 let watch = &watch;
-                scope.spawn(move |task| watch.task(task.thread(), &[one], || drop(time.fetch_add(1, Relaxed))));
+                scope.spawn(move |task| watch.task(task.thread(), &[one], || add(time, 1)));
             }
             42
         });
@@ -74,7 +74,7 @@ fn wait_all_waits_for_all_and_the_scope_goes_on() {
                     let done = &done;
                     scope.spawn(move |task| {
                         Watch::tarry();
-                        task.spawn(|_| drop(done.fetch_add(1, Relaxed)));
+                        task.spawn(|_| add(done, 1));
                     });
                 }
                 scope.wait_all();

@@ -1,7 +1,9 @@
-//! Encroachment, nearness, and whole meshes refined at centroids.
+//! Encroachment, nearness, and whole meshes refined at centroids and along eigenvectors.
 use super::super::access::Exclusive;
 use super::super::build::{self, Filled};
-use super::super::schedule::{self, Create, Crew, Scheduler};
+use super::super::check::check;
+use super::super::extend::active_vertices;
+use super::super::schedule::{self, Create, Crew, Extend, Scheduler};
 use super::super::work::{Kind, Observer};
 use super::super::worker::State;
 use super::super::{Counts, Options, adapt, extract};
@@ -145,11 +147,72 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
     }
 }
 
+/// What becomes of the vertex in the middle of a cube with cells of 1/4, and where it has new vertices then.
+fn extend_middle(sizes: Vec3) -> (Result<(), Refusal>, Vec<Vec3>) {
+    let (mesh, place, model, source) = cube(4, sizes);
+    let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
+    let context = Context::new(store, &source, &model);
+    let store = &context.store;
+    let old = store.vertex_bound() as u32;
+    let middle = store.live_vertices().find(|&v| store.position(v) == [0.5; 3]).expect("a vertex in the middle");
+    let mut state = State::new(&context);
+    let result = Worker::new(&context, &mut state, Exclusive).extend_vertex(middle);
+    check(&context).unwrap();
+    let new = store.live_vertices().filter(|v| v.0 >= old);
+    (result, new.map(|v| sub(store.position(v), [0.5; 3])).collect())
+}
+
 #[test]
-fn a_cube_refined_at_centroids_is_a_valid_mesh_with_edges_of_unit_length() {
-    for (sizes, threads) in [([0.2; 3], 1), ([0.3, 0.3, 0.06], 1), ([0.3, 0.3, 0.06], 2)] {
+fn points_along_eigenvectors_lie_at_unit_distance_both_ways() {
+    let (result, mut steps) = extend_middle([0.1, 0.11, 0.12]);
+    assert_eq!(result, Ok(()));
+    steps.sort_by(|p, q| p.partial_cmp(q).unwrap());
+    let expected =
+        [[-0.1, 0.0, 0.0], [0.0, -0.11, 0.0], [0.0, 0.0, -0.12], [0.0, 0.0, 0.12], [0.0, 0.11, 0.0], [0.1, 0.0, 0.0]];
+    let rounded: Vec<_> = steps.iter().map(|p| p.map(|x| (1e6 * x).round() / 1e6 + 0.0)).collect();
+    assert_eq!(rounded, expected);
+}
+
+#[test]
+fn points_along_eigenvectors_near_to_vertices_or_beyond_them_are_dropped() {
+    // The ends of the edges along the axes are at 1.47, and nearer than one.
+    for size in [0.17, 0.3] {
+        assert_eq!(extend_middle([size; 3]), (Err(Refusal::Length), Vec::new()));
+    }
+}
+
+#[test]
+fn a_sweep_along_eigenvectors_leaves_a_valid_mesh_with_more_vertices_inside() {
+    for threads in [1, 3] {
+        let (mesh, place, model, source) = cube(4, [0.13, 0.1, 0.12]);
+        let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
+        let context = Context::new(store, &source, &model);
+        let pool = Pool::new(threads).expect("a pool");
+        let mut states: Vec<_> = (0..threads).map(|_| State::new(&context)).collect();
+        let before = context.store.live_vertices().count();
+        let items = active_vertices(&context);
+        assert_eq!(items.len(), before);
+        let dimension = |&v: &VertexId| context.store.dimension(v);
+        assert!(items.is_sorted_by_key(dimension));
+        for _ in 0..3 {
+            context.store.tick();
+            let items = active_vertices(&context);
+            let crew = Crew { pool: &pool, scheduler: Scheduler::Speculative, plan: Plan::default() };
+            schedule::run(&Extend, &items, &context, &mut states, crew, &|_| {});
+            check(&context).unwrap();
+        }
+        let after = context.store.live_vertices().count();
+        assert!(after > 2 * before, "{before} {after}");
+    }
+}
+
+#[test]
+fn a_cube_refined_in_any_way_is_a_valid_mesh_with_edges_of_unit_length() {
+    let ways = [PointCreation::Centroid, PointCreation::Eigenvector];
+    let runs = [([0.2; 3], 1), ([0.3, 0.3, 0.06], 1), ([0.3, 0.3, 0.06], 2)];
+    for (points, (sizes, threads)) in ways.into_iter().flat_map(|points| runs.map(|run| (points, run))) {
         let (mesh, place, model, source) = cube(2, sizes);
-        let options = Options { points: PointCreation::Centroid, ..Options::default() };
+        let options = Options { points, ..Options::default() };
         let pool = Pool::new(threads).expect("a pool");
         let adapted = adapt(&mesh, &place, &model, &source, &options, &pool, &Silent).expect("the cube is valid");
         let refined = &adapted.extracted.mesh;

@@ -10,6 +10,7 @@ use crate::adapt::access::Owned;
 use crate::adapt::context::Context;
 use crate::adapt::ids::VertexId;
 use crate::adapt::outcome::{Counts, Refusal};
+use crate::adapt::store::Store;
 use crate::adapt::supply::Supply;
 use crate::adapt::worker::{State, Worker};
 use crate::tasks::{Plan, Pool};
@@ -17,11 +18,15 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Parts at most: enough for many threads, and no more, since what lies between them waits.
+/// Their words fit in a byte.
 pub const MOST_PARTS: usize = 64;
 
 /// Items a part, at least.
 /// Few in the unit tests, whose meshes are small.
-const ITEMS: usize = if cfg!(test) { 6 } else { 256 };
+const ITEMS: usize = if cfg!(test) { 6 } else { 1024 };
+
+/// What is left is one thread's when it is less than this part of all items.
+const LITTLE: f64 = 0.02;
 
 /// Vertices or tetrahedra that are looked at in one task.
 const GRAIN: usize = 1 << 13;
@@ -53,9 +58,12 @@ pub fn run<'m, O: Operation>(
     let mut most = MOST_PARTS;
     loop {
         let parts = parts_for(left.len()).min(most);
-        if parts < 2 {
+        if parts < 2 || (left.len() as f64) < LITTLE * items.len() as f64 {
             let rest: Vec<_> = left.iter().map(|&i| items[i as usize]).collect();
             counts.add(&sequential::run(operation, &rest, context, &mut states[0], advance));
+            if left.len() < items.len() || most < MOST_PARTS {
+                give_back(&context.store, (pool, plan));
+            }
             return counts;
         }
         let mut round = Round { operation, items, context, pool, plan, left, parts };
@@ -63,6 +71,13 @@ pub fn run<'m, O: Operation>(
         // What is left lies between the parts of this round: fewer and larger parts have less between them.
         most = parts / 2;
     }
+}
+
+/// All vertices are nobody's again.
+fn give_back(store: &Store, (pool, plan): (&Pool, Plan)) {
+    pool.task_for(Plan { grain: GRAIN, ..plan }, store.vertex_bound(), |_, range| {
+        range.for_each(|i| store.lock(VertexId(i as u32)).store(0, Relaxed));
+    });
 }
 
 fn parts_for(items: usize) -> usize {
@@ -89,8 +104,8 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     /// Does what can be done; returns what is left.
     fn run(&mut self, states: &mut [State<'m>], counts: &mut Counts, advance: Advance<'_>) -> Vec<u32> {
         let store = &self.context.store;
-        self.give_out(&Parts::of(store, self.left.iter().map(|&i| self.item(i)), self.parts));
-        let seats = self.seats();
+        let owners = self.give_out(&Parts::of(store, self.left.iter().map(|&i| self.item(i)), self.parts));
+        let seats = self.seats(&owners);
         let (sorted, starts, mut again) = self.sorted(&seats, counts);
         let supplies = states[0].supply.deal(store, self.parts);
         let part = |supply| Part { supply, waiting: Vec::new(), counts: Counts::default(), again: Vec::new() };
@@ -117,31 +132,34 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         again
     }
 
-    /// Writes into the lock words whose each vertex is.
-    fn give_out(&self, parts: &Parts) {
+    /// Writes into the lock words whose each vertex is; returns the same, close together.
+    fn give_out(&self, parts: &Parts) -> Vec<u8> {
         let store = &self.context.store;
-        self.pool.task_for(Plan { grain: GRAIN, ..self.plan }, store.vertex_bound(), |_, range| {
-            for v in range.map(|i| VertexId(i as u32)) {
+        let mut owners = vec![0; store.vertex_bound()];
+        self.pool.for_each_chunk_mut(Plan { grain: GRAIN, ..self.plan }, &mut owners, |_, start, chunk| {
+            for (owner, v) in chunk.iter_mut().zip(start as u32..).map(|(owner, v)| (owner, VertexId(v))) {
                 // The dead are nobody's: their ids may become anybody's.
                 let word = if store.is_vertex(v) { Owned::word(parts.holds(store.position(v))) } else { 0 };
                 store.lock(v).store(word, Relaxed);
+                *owner = word as u8;
             }
         });
+        owners
     }
 
     /// The part in which each item can be done.
-    fn seats(&self) -> Vec<u32> {
+    fn seats(&self, owners: &[u8]) -> Vec<u32> {
         let store = &self.context.store;
-        let between = if O::WHOLE_BALLS { self.between() } else { Vec::new() };
+        let between = if O::WHOLE_BALLS { self.between(owners) } else { Vec::new() };
         let seat = |number: &u32| {
             let vertices = self.item(*number).vertices(store);
-            if vertices.iter().any(|&v| !v.is_some() || !store.is_vertex(v)) {
+            if vertices.iter().any(|&v| !v.is_some() || owners[v.index()] == 0) {
                 return GONE;
             }
-            let owner = store.lock(vertices[0]).load(Relaxed);
-            let foreign = |v: &VertexId| store.lock(*v).load(Relaxed) != owner;
+            let owner = owners[vertices[0].index()];
             let is_between = |v: &VertexId| between.get(v.index()).is_some_and(|flag| flag.load(Relaxed));
-            if vertices.iter().any(|v| foreign(v) || is_between(v)) { WAITS } else { owner - 1 }
+            let waits = vertices.iter().any(|v| owners[v.index()] != owner || is_between(v));
+            if waits { WAITS } else { u32::from(owner) - 1 }
         };
         self.pool.collect(Plan { grain: GRAIN, ..self.plan }, self.left.len(), |_, range, found| {
             found.extend(self.left[range].iter().map(seat));
@@ -149,14 +167,15 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     }
 
     /// Whether a vertex has a neighbour in another part.
-    fn between(&self) -> Vec<AtomicBool> {
+    fn between(&self, owners: &[u8]) -> Vec<AtomicBool> {
         let store = &self.context.store;
-        let between: Vec<_> = (0..store.vertex_bound()).map(|_| AtomicBool::new(false)).collect();
+        let mut between = Vec::new();
+        between.resize_with(owners.len(), AtomicBool::default);
         self.pool.task_for(Plan { grain: GRAIN, ..self.plan }, store.tet_bound(), |_, range| {
             for t in store.live_tets_in(range) {
                 let vertices = store.vertices(t);
-                let owners = vertices.map(|v| store.lock(v).load(Relaxed));
-                if owners.iter().any(|&owner| owner != owners[0]) {
+                let [a, b, c, d] = vertices.map(|v| owners[v.index()]);
+                if (a ^ b) | (a ^ c) | (a ^ d) != 0 {
                     vertices.iter().for_each(|v| between[v.index()].store(true, Relaxed));
                 }
             }

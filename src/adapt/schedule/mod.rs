@@ -121,6 +121,18 @@ impl Operation for Create {
     }
 }
 
+/// Creates points at unit distance from vertices, along the eigenvectors of their metrics.
+pub struct Extend;
+
+impl Operation for Extend {
+    type Item = VertexId;
+    const WHOLE_BALLS: bool = true;
+
+    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: VertexId) -> Result<(), Refusal> {
+        worker.extend_vertex(item)
+    }
+}
+
 /// Collapses edges that are too short.
 pub struct Collapse;
 

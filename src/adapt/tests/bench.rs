@@ -129,6 +129,7 @@ pub struct Bench<'m> {
     pub states: Vec<State<'m>>,
     pub pool: Pool,
     pub scheduler: Scheduler,
+    pub plan: Plan,
     pub random: Random,
     volume: f64,
     exact: bool,
@@ -145,12 +146,28 @@ impl<'m> Bench<'m> {
         let pool = Pool::new(threads).unwrap();
         let states = (0..threads).map(|_| State::new(&context)).collect();
         let scheduler = if threads == 1 { Scheduler::Sequential } else { Scheduler::Speculative };
-        let mut bench = Self { context, states, pool, scheduler, random: Random(seed), volume: 0.0, exact: true };
+        let mut bench = Self {
+            context,
+            states,
+            pool,
+            scheduler,
+            plan: Plan::default(),
+            random: Random(seed),
+            volume: 0.0,
+            exact: true,
+        };
         bench.volume = bench.measure();
         // A plane surface keeps its volume, a curved one does not quite.
         bench.exact = (bench.volume - 1.0).abs() < 1e-12;
         bench.check("as built");
         bench
+    }
+
+    /// Other sizes, so that there is always something to do: finer and coarser in turn.
+    pub fn vary_sizes(&mut self) {
+        let long = [0.7, 1.4, 2.8][self.random.below(3)];
+        let limits = &mut self.context.limits;
+        (limits.long, limits.short, limits.longest_new, limits.shortest_new) = (long, 0.5 * long, long, 0.3 * long);
     }
 
     fn measure(&self) -> f64 {
@@ -198,7 +215,7 @@ impl<'m> Bench<'m> {
 
     fn run<O: Operation>(&mut self, operation: &O, mut items: Vec<O::Item>) -> Counts {
         self.random.shuffle(&mut items);
-        let crew = Crew { pool: &self.pool, scheduler: self.scheduler, plan: Plan::default() };
+        let crew = Crew { pool: &self.pool, scheduler: self.scheduler, plan: self.plan };
         schedule::run(operation, &items, &self.context, &mut self.states, crew, &|_| {})
     }
 

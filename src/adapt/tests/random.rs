@@ -11,11 +11,11 @@ use crate::geometry::Entity;
 use crate::mesh::vector::Vec3;
 use proptest::prelude::*;
 
-type Tet = (TetId, [VertexId; 4], [TetId; 4], [u32; 4]);
-type Vertex = (VertexId, Vec3, Entity, [f64; 2], [f64; 6]);
+pub type Tet = (TetId, [VertexId; 4], [TetId; 4], [u32; 4]);
+pub type Vertex = (VertexId, Vec3, Entity, [f64; 2], [f64; 6]);
 
 /// All that an operation may change.
-fn picture(store: &Store) -> (Vec<Tet>, Vec<Vertex>) {
+pub fn picture(store: &Store) -> (Vec<Tet>, Vec<Vertex>) {
     let tet = |t| (t, store.vertices(t), store.neighbours(t), store.tags(t));
     let vertex = |v| (v, store.position(v), store.entity(v), store.parameters(v), store.metric(v).0);
     (store.live_tets().map(tet).collect(), store.live_vertices().map(vertex).collect())

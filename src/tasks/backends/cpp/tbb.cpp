@@ -3,6 +3,8 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <mutex>
+
 namespace {
 
 // Runs a task on the thread of this id; catches what the task throws.
@@ -10,12 +12,24 @@ using Run = void (*)(const void *engine, void *job, int thread);
 // What is called inside the arena.
 using Body = void (*)(void *body, int thread);
 
-struct Arena {
-    explicit Arena(int threads) : allowed(tbb::global_control::max_allowed_parallelism, threads), arena(threads, 1) {}
+// Lets oneTBB have as many threads as the largest pool so far, more than there are cores if need be. Of several controls it heeds the
+// least, so there is one for all pools; it stays to the end, since threads that are not used only sleep.
+void allow(int threads) {
+    static std::mutex mutex;
+    static int allowed = 0;
+    static tbb::global_control *control = nullptr;
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (threads > allowed) {
+        delete control;
+        control = new tbb::global_control(tbb::global_control::max_allowed_parallelism, threads);
+        allowed = threads;
+    }
+}
 
-    // More threads than cores, if the pool is so large.
-    tbb::global_control allowed;
+struct Arena {
     // With one place kept for who opens a region.
+    explicit Arena(int threads) : arena(threads, 1) { allow(threads); }
+
     tbb::task_arena arena;
     tbb::task_group group;
 };
