@@ -190,9 +190,13 @@ fn describe(report: &Report) -> String {
     }
     let rate = (counts.surface_points + counts.inner_points) as f64 / seconds.refine.max(1e-9);
     table.row("attempts", format_args!("{}, of which {} met another thread", counts.attempts, counts.conflicts));
+    let plural = if report.threads == 1 { "" } else { "s" };
     table.row(
         "seconds",
-        format_args!("{:.2} to refine, {rate:.0} vertices a second on {} threads", seconds.refine, report.threads),
+        format_args!(
+            "{:.2} to refine, {rate:.0} vertices a second on {} thread{plural}",
+            seconds.refine, report.threads
+        ),
     );
     table.text().into()
 }

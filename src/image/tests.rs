@@ -11,7 +11,7 @@ use crate::tasks::{Backend, Pool};
 
 /// A ball of label 2 within one of label 1, off the middle.
 fn balls() -> Domain {
-    let index = (0..20 * 20 * 20).map(|voxel| [voxel % 20, voxel / 20 % 20, voxel / 400].map(|i| f64::from(i)));
+    let index = (0..20 * 20 * 20).map(|voxel| [voxel % 20, voxel / 20 % 20, voxel / 400].map(f64::from));
     let label = |p: [f64; 3]| {
         let inner = norm(sub(p, [8.0, 9.0, 9.5])) < 4.0;
         if inner { 2.0 } else { f64::from(u8::from(norm(sub(p, [9.5; 3])) < 8.0)) }
