@@ -2,10 +2,12 @@
 //!
 //! The way of the data: a [`mesh::TetMesh`] is classified on a [`geometry::Model`], given a
 //! [`metric::Field`], adapted by [`adapt`], and comes out as a [`mesh::TetMesh`] again.
-//! Imports go one way: `cli → adapt → { metric, geometry, tasks } → mesh`.
+//! [`image`] makes a first mesh of a 3D image.
+//! Imports go one way: `cli → { adapt, image } → { metric, geometry, tasks } → mesh`.
 pub mod adapt;
 pub mod cli;
 pub mod geometry;
+pub mod image;
 pub mod memory;
 pub mod mesh;
 pub mod metric;

@@ -1,12 +1,12 @@
 //! The locks of the kernel hold in every order of two threads, and for every value that a load may have by the memory model:
 //! loom runs through them all. The lock words are the kernel's own file on loom's atomics; the records about them, relaxed
 //! like the store's, are modelled here with the kernel's way of writing, killing and reading them.
+use loom::sync;
 use loom::sync::Arc;
-use loom::sync::atomic;
 use loom::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use loom::thread;
 
-#[path = "../src/adapt/lock.rs"]
+#[path = "../src/tasks/lock.rs"]
 mod lock;
 use lock::Claim;
 

@@ -7,9 +7,10 @@
 //! With [`Owned`] the words are written before the round: a part of the mesh belongs to whoever works on it, and a claim only looks.
 use super::discipline;
 use super::ids::VertexId;
-use super::lock::{self, Claim};
 use super::outcome::Refusal;
 use super::store::Store;
+use crate::tasks::claims::Claims;
+use crate::tasks::lock::Claim;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// How vertices are claimed.
@@ -45,26 +46,23 @@ impl Access for Exclusive {
 
 /// Several threads: one lock word a vertex, never waited for (so there is no deadlock).
 pub struct Speculative {
-    /// Not 0; another one for each thread.
-    owner: u32,
-    claimed: Vec<VertexId>,
+    claims: Claims,
 }
 
 impl Speculative {
     /// The access of thread `thread`, counted from 0.
     pub fn new(thread: usize) -> Self {
-        let owner = thread as u32 + 1;
-        discipline::work_as(owner);
-        Self { owner, claimed: Vec::with_capacity(256) }
+        let claims = Claims::new(thread);
+        discipline::work_as(claims.owner());
+        Self { claims }
     }
 }
 
 impl Access for Speculative {
     #[inline]
     fn claim(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal> {
-        match lock::claim(store.lock(v), self.owner) {
+        match self.claims.claim(v.0, store.lock(v)) {
             Claim::Taken => {
-                self.claimed.push(v);
                 discipline::pause();
                 Ok(())
             }
@@ -74,16 +72,14 @@ impl Access for Speculative {
     }
 
     fn release(&mut self, store: &Store) {
-        for v in self.claimed.drain(..) {
-            lock::release(store.lock(v));
-        }
+        self.claims.release(|v| store.lock(VertexId(v)));
     }
 }
 
 impl Drop for Speculative {
     fn drop(&mut self) {
         discipline::work_as(0);
-        let ended = self.claimed.is_empty() || std::thread::panicking();
+        let ended = self.claims.is_empty() || std::thread::panicking();
         debug_assert!(ended, "an operation ended without giving back its vertices");
     }
 }

@@ -22,7 +22,6 @@ mod fan;
 mod ids;
 mod insert;
 mod local;
-mod lock;
 mod mend;
 mod merge;
 mod multi_face;
@@ -48,9 +47,6 @@ mod tests;
 mod thin;
 mod work;
 mod worker;
-
-// The atomics of the lock words; tests/lock_protocol.rs has loom's in their place.
-use std::sync::atomic;
 
 pub use build::Error;
 pub use create::PointCreation;

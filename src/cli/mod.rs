@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 mod adapt;
 mod classify;
+mod image_mesh;
 mod inspect;
 mod load;
 mod model;
@@ -23,6 +24,8 @@ enum Command {
     Adapt(adapt::Arguments),
     /// Put a mesh's boundary on the entities of a CAD model
     Classify(classify::Arguments),
+    /// Mesh the regions of a 3D image
+    ImageMesh(image_mesh::Arguments),
     /// Check a mesh and measure it in a metric
     Inspect(inspect::Arguments),
     /// List the entities of a CAD model
@@ -44,6 +47,7 @@ pub fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
+        Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
     };
@@ -56,6 +60,11 @@ pub fn main() -> ExitCode {
 /// Writes to standard output; a closed pipe (`| head`) is no error.
 fn print(text: &str) {
     let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
+}
+
+/// Threads when none are asked for: all cores.
+fn available() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
 /// Parses a positive number.

@@ -18,12 +18,14 @@
 //! - **One thread** makes no task: all runs in place, in order.
 //! - In a task of the rayon back-end, rayon's own parallel calls must not be used: rayon would run other tasks while they wait.
 mod backends;
+pub mod claims;
 mod core;
 mod each;
 mod gather;
 mod group;
 mod in_place;
 mod job;
+pub mod lock;
 mod nested;
 mod place;
 mod plan;

@@ -109,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     for notice in read.notices.iter().filter(|_| !arguments.quiet) {
         eprintln!("geo-adapt: note: {notice}");
     }
-    let threads = arguments.threads.map_or_else(available, usize::from);
+    let threads = arguments.threads.map_or_else(super::available, usize::from);
     let pool = Pool::new(threads)?;
     let prepared = start.elapsed();
     pool.prepare(arguments.backend)?;
@@ -128,10 +128,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
         super::print(&report.text(arguments));
     }
     Ok(if progress.interrupted() { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
-}
-
-fn available() -> usize {
-    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
 /// The metric's source: the analytic field, or the input mesh with the file's metric as background.

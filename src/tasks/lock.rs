@@ -1,8 +1,8 @@
-//! The lock word of a vertex: 0 when free, else the number of the thread that holds it.
+//! A lock word, such as one a vertex: 0 when free, else the number of the thread that holds it.
 //!
-//! Never waited for, so there is no deadlock. Nothing but the word orders threads: all else in the store is relaxed.
+//! Never waited for, so there is no deadlock. Nothing but the word orders threads: all else in what the words guard may be relaxed.
 //! tests/lock_protocol.rs runs this file on loom's atomics, through all orders of two threads and all values their loads may have.
-use super::atomic::{
+use super::sync::atomic::{
     AtomicU32,
     Ordering::{Acquire, Relaxed, Release},
 };
