@@ -2,7 +2,7 @@
 //!
 //! The way of the data: a [`mesh::TetMesh`] is classified on a [`geometry::Model`], given a
 //! [`metric::Field`], adapted by [`adapt`], and comes out as a [`mesh::TetMesh`] again.
-//! Imports go one way: `cli → adapt → { metric, geometry, tasks } → mesh`.
+//! Imports go one way: `cli → adapt → { metric, geometry } → mesh → tasks`.
 pub mod adapt;
 pub mod cli;
 pub mod geometry;

@@ -12,7 +12,7 @@ use crate::geometry::{Discrete, Geometry, Model};
 use crate::mesh::vector::volume6;
 use crate::mesh::{TetMesh, samples, validity};
 use crate::metric::{Background, Source};
-use crate::tasks::{Plan, Pool};
+use crate::tasks::{Plan, Pool, Team};
 
 struct Silent;
 
@@ -35,7 +35,8 @@ const SKEW: Sym3 = Sym3([4.0, 1.0, 9.25, -2.0, 2.5, 2.0625]);
 /// The cube, its surface as the model, and a constant metric of these sizes along the axes.
 fn cube(n: u32, sizes: Vec3) -> (TetMesh, Classification, Model, Source) {
     let mesh = samples::cube(n);
-    let (model, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).expect("the cube has a surface");
+    let (model, place) =
+        Discrete::from_mesh(Team::alone(), &mesh, DEFAULT_RIDGE_ANGLE).expect("the cube has a surface");
     let [x, y, z] = sizes.map(|h| -2.0 * h.ln());
     let logs = vec![Sym3([x, 0.0, y, 0.0, 0.0, z]); mesh.vertices.len()];
     let background = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs);
@@ -94,7 +95,7 @@ fn refine_inner_tet(longest: f64) -> Result<(), Refusal> {
     let n = 4;
     let size = 3.0_f64.sqrt() / f64::from(n) / longest;
     let (mesh, place, model, source) = cube(n, [size; 3]);
-    let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
+    let Filled { store, .. } = build::fill(Team::alone(), &mesh, &place, &source).expect("the cube is valid");
     let context = Context::new(store, &source, &model);
     let store = &context.store;
     store.tick();
@@ -114,11 +115,14 @@ fn a_candidate_nearer_to_a_vertex_than_an_edge_may_be_short_is_dropped() {
 
 #[test]
 fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh() {
-    for (threads, scheduler) in
-        [(1, Scheduler::Sequential), (3, Scheduler::Speculative), (1, Scheduler::Deterministic), (3, Scheduler::Deterministic)]
-    {
+    for (threads, scheduler) in [
+        (1, Scheduler::Sequential),
+        (3, Scheduler::Speculative),
+        (1, Scheduler::Deterministic),
+        (3, Scheduler::Deterministic),
+    ] {
         let (mesh, place, model, source) = cube(2, [0.15; 3]);
-        let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
+        let Filled { store, .. } = build::fill(Team::alone(), &mesh, &place, &source).expect("the cube is valid");
         let context = Context::new(store, &source, &model);
         let pool = Pool::new(threads).expect("a pool");
         let mut states: Vec<_> = (0..threads).map(|_| State::new(&context)).collect();
@@ -126,7 +130,7 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let count =
             |dimension| context.store.live_vertices().filter(|&v| context.store.dimension(v) == dimension).count();
         let before = [1, 2, 3].map(count);
-        let items = active_tets(&context);
+        let items = active_tets(Team::alone(), &context);
         assert_eq!(items.len(), mesh.tets.len());
         let crew = Crew { pool: &pool, scheduler, plan: Plan::default() };
         let counts = schedule::run(&Create, &items, &context, &mut states, crew, &|_| {});
@@ -137,7 +141,7 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let edges = vec![1; topology.edges.len()];
         let faces = vec![1; topology.faces.len()];
         let refs = extract::References { inward: vec![false; faces.len()], faces, edges };
-        let extracted = extract::extract(&context, &mesh, &refs);
+        let extracted = extract::extract(Team::alone(), &context, &mesh, &refs);
         assert_valid_cube(&extracted.mesh);
     }
 }
@@ -152,7 +156,8 @@ fn a_cube_refined_at_centroids_is_a_valid_mesh_with_edges_of_unit_length() {
         let refined = &adapted.extracted.mesh;
         assert_valid_cube(refined);
         assert_eq!(adapted.off_model, 0);
-        let statistics = crate::metric::statistics::Statistics::in_metric(refined, &adapted.extracted.metrics);
+        let statistics =
+            crate::metric::statistics::Statistics::in_metric(Team::alone(), refined, &adapted.extracted.metrics);
         let unit = statistics.metric.expect("there is a metric").unit_edges;
         assert!(unit > 0.85, "{unit}");
     }
