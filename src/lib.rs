@@ -3,7 +3,7 @@
 //! The way of the data: a [`mesh::TetMesh`] is classified on a [`geometry::Model`], given a
 //! [`metric::Field`], adapted by [`adapt`], and comes out as a [`mesh::TetMesh`] again.
 //! [`image`] makes a first mesh of a 3D image.
-//! Imports go one way: `cli → { adapt, image } → { metric, geometry, tasks } → mesh`.
+//! Imports go one way: `cli → { adapt, image } → { metric, geometry } → mesh → tasks`.
 pub mod adapt;
 pub mod cli;
 pub mod geometry;

@@ -8,6 +8,7 @@ use geo_adapt::geometry::classify::{Options, classify};
 use geo_adapt::geometry::{Geometry, Model, fidelity};
 use geo_adapt::mesh::{TetMesh, io};
 use geo_adapt::metric::Sym3;
+use geo_adapt::tasks::Team;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -41,13 +42,13 @@ impl Case {
     /// Everything that a mesh on a model promises.
     fn check(&self, found: &Adapted) {
         let mesh = &found.mesh;
-        let (place, report) = classify(mesh, &self.model, &Options::default()).unwrap();
+        let (place, report) = classify(Team::alone(), mesh, &self.model, &Options::default()).unwrap();
         assert!(report.notices.is_empty(), "{:?}", report.notices);
         for dimension in &report.dimensions {
             assert_eq!(dimension.from_file, dimension.count, "the file's association is the model's: {report:?}");
         }
         assert_eq!(report.faces_from_file, mesh.triangles.len());
-        let fidelity = fidelity::measure(mesh, &self.model, &place);
+        let fidelity = fidelity::measure(Team::alone(), mesh, &self.model, &place);
         for farthest in [fidelity.from_model, fidelity.from_entity] {
             assert!(farthest.unwrap().distance < 1e-9, "{farthest:?}");
         }

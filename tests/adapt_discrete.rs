@@ -7,6 +7,7 @@ use geo_adapt::geometry::discrete::outward_triangles;
 use geo_adapt::mesh::vector::{Vec3, area2, distance};
 use geo_adapt::mesh::{Elements, TetMesh, io};
 use geo_adapt::metric::{Sym3, field};
+use geo_adapt::tasks::Team;
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
@@ -283,7 +284,7 @@ fn the_complexity_is_reached_from_a_coarse_mesh_too() {
     let found = work.adapt(&work.mesh(&mesh), &["--metric", &metric, "--complexity", "600"]);
     // The integral over the new mesh: the sum over its vertices counts too much where sizes change as fast as here.
     let logs: Vec<Sym3> = found.metrics.iter().map(Sym3::ln).collect();
-    let reached = field::complexity_between(&found.mesh, &logs);
+    let reached = field::complexity_between(Team::alone(), &found.mesh, &logs);
     assert!((reached / 600.0 - 1.0).abs() < 0.05, "{reached}");
 }
 
@@ -293,13 +294,13 @@ fn triangles_look_to_the_side_that_they_looked_to() {
     for inward in [false, true] {
         let work = Workplace::new();
         let mut mesh = one(3);
-        mesh.triangles.nodes = outward_triangles(&mesh);
+        mesh.triangles.nodes = outward_triangles(Team::alone(), &mesh);
         if inward {
             mesh.triangles.nodes.iter_mut().for_each(|nodes| nodes.swap(0, 1));
         }
         let metric = work.metric(&mesh, |_| isotropic(0.2));
         let found = work.adapt(&work.mesh(&mesh), &["--metric", &metric]);
-        let outward = outward_triangles(&found.mesh);
+        let outward = outward_triangles(Team::alone(), &found.mesh);
         let same = found.mesh.triangles.nodes.iter().zip(&outward).filter(|(found, outward)| found == outward).count();
         assert_eq!(same, if inward { 0 } else { outward.len() });
     }

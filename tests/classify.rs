@@ -7,6 +7,7 @@ use geo_adapt::geometry::classify::{Classification, Error, Options, Report, clas
 use geo_adapt::geometry::{Entity, Evaluate, Geometry, Model};
 use geo_adapt::mesh::vector::distance;
 use geo_adapt::mesh::{Association, Elements, TetMesh, io};
+use geo_adapt::tasks::Team;
 use std::path::PathBuf;
 
 /// Meshes with their models: entities of the model (vertices that corners stand on, edges that ridges cover, faces).
@@ -36,7 +37,7 @@ fn case(number: usize) -> Option<Case> {
 }
 
 fn fit(mesh: &TetMesh, model: &Model) -> Result<(Classification, Report), Error> {
-    classify(mesh, model, &Options::default())
+    classify(Team::alone(), mesh, model, &Options::default())
 }
 
 /// The mesh without anything that names entities.

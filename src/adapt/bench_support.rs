@@ -19,7 +19,7 @@ use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
 use crate::geometry::{Discrete, Error, Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::metric::Source;
-use crate::tasks::{Plan, Pool};
+use crate::tasks::{Plan, Pool, Team};
 
 /// What stays while a mesh is adapted: the surface it began with, and the metric.
 pub struct Domain {
@@ -42,7 +42,7 @@ pub struct Snapshot {
 /// # Errors
 /// When the surface of the mesh is no model.
 pub fn domain(mesh: TetMesh, source: Source) -> Result<(Domain, Snapshot), Error> {
-    let (model, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE)?;
+    let (model, place) = Discrete::from_mesh(Team::alone(), &mesh, DEFAULT_RIDGE_ANGLE)?;
     Ok((Domain { model: Model::Discrete(model), source }, Snapshot { mesh, place }))
 }
 
@@ -132,7 +132,7 @@ impl<'m> Workbench<'m> {
     /// # Errors
     /// When the snapshot is no valid mesh.
     pub fn fill(domain: &'m Domain, from: &Snapshot) -> Result<Self, build::Error> {
-        let Filled { store, .. } = build::fill(&from.mesh, &from.place, &domain.source)?;
+        let Filled { store, .. } = build::fill(Team::alone(), &from.mesh, &from.place, &domain.source)?;
         let context = Context::new(store, &domain.source, &domain.model);
         let states = vec![State::new(&context)];
         let pool = Pool::new(1).expect("one thread is there already");
@@ -153,15 +153,15 @@ impl<'m> Workbench<'m> {
     /// The edges that are too long, long ones first.
     pub fn long_edges(&self) -> Vec<EdgeItem> {
         let limit = self.context.limits.long;
-        let found = edges::listed(&self.context.store, 0, |a, b| is_longer(a, b, limit));
-        edges::in_order(&found, |edge| edges::CLASSES - 1 - u32::from(edge.class))
+        let found = edges::listed(Team::alone(), &self.context.store, 0, |a, b| is_longer(a, b, limit));
+        edges::in_order(Team::alone(), &found, |edge| edges::CLASSES - 1 - u32::from(edge.class))
     }
 
     /// The edges that are too short, short ones first.
     pub fn short_edges(&self) -> Vec<EdgeItem> {
         let limit = self.context.limits.short;
-        let found = edges::listed(&self.context.store, 0, |a, b| is_shorter(a, b, limit));
-        edges::in_order(&found, |edge| u32::from(edge.class))
+        let found = edges::listed(Team::alone(), &self.context.store, 0, |a, b| is_shorter(a, b, limit));
+        edges::in_order(Team::alone(), &found, |edge| u32::from(edge.class))
     }
 
     /// Carries out a sweep over items that were listed for it.
@@ -198,7 +198,7 @@ impl<'m> Workbench<'m> {
     pub fn reorder(&mut self) -> usize {
         // Else a store that was just renumbered would be left as it is.
         self.context.store.tick();
-        self.context.reorder();
+        self.context.reorder(Team::alone());
         self.states[0].supply.clear();
         self.context.store.vertex_bound()
     }
@@ -208,7 +208,7 @@ impl<'m> Workbench<'m> {
         let topology = self.context.model.topology();
         let (faces, edges) = (topology.faces.len(), topology.edges.len());
         let refs = References { faces: vec![1; faces], inward: vec![false; faces], edges: vec![1; edges] };
-        let extracted = extract::extract(&self.context, &from.mesh, &refs);
+        let extracted = extract::extract(Team::alone(), &self.context, &from.mesh, &refs);
         Snapshot { mesh: extracted.mesh, place: extracted.classification }
     }
 

@@ -6,10 +6,11 @@ use super::store::{ROOM, Store};
 use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, TriangleIndex, sorted3};
+use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, Side, TriangleIndex, sorted3};
 use crate::mesh::predicate::is_positive;
 use crate::mesh::vector::Vec3;
 use crate::metric::{Source, Sym3, mean_ratios};
+use crate::tasks::{GRAIN, Team};
 
 /// A mesh that cannot be adapted.
 #[derive(Debug, thiserror::Error)]
@@ -63,19 +64,20 @@ pub struct Filled {
 ///
 /// # Errors
 /// When a tetrahedron is inverted, a face has more than two, or the triangles do not close the boundary.
-pub fn fill(mesh: &TetMesh, place: &Classification, source: &Source) -> Result<Filled, Error> {
-    fill_known(mesh, place, source, source.logs_on(mesh), None)
+pub fn fill(team: Team<'_>, mesh: &TetMesh, place: &Classification, source: &Source) -> Result<Filled, Error> {
+    fill_known(team, mesh, place, source, source.logs_on(mesh), None)
 }
 
 /// As [`fill`], with a mesh that was made coarse first: its vertices have their metrics and know where the search for another begins.
 ///
 /// # Errors
 /// As [`fill`], with the numbers of the coarse mesh.
-pub fn fill_coarse(coarse: &Coarse, source: &Source) -> Result<Filled, Error> {
-    fill_known(&coarse.mesh, &coarse.place, source, Some(&coarse.logs), Some(&coarse.hints))
+pub fn fill_coarse(team: Team<'_>, coarse: &Coarse, source: &Source) -> Result<Filled, Error> {
+    fill_known(team, &coarse.mesh, &coarse.place, source, Some(&coarse.logs), Some(&coarse.hints))
 }
 
 fn fill_known(
+    team: Team<'_>,
     mesh: &TetMesh,
     place: &Classification,
     source: &Source,
@@ -89,16 +91,17 @@ fn fill_known(
     let faces = match source.faces_of(mesh) {
         Some(faces) => faces,
         None => {
-            own = MatchedFaces::of(&mesh.tets.nodes);
+            own = MatchedFaces::of(team, &mesh.tets.nodes);
             &own
         }
     };
     if let Some(crowd) = faces.crowded {
         return Err(Error::Shared { nodes: crowd.nodes.map(|v| v + 1), tets: crowd.tets });
     }
-    let order = Numbering::along_curve(&place.projected, &mesh.tets.nodes);
+    let order = Numbering::along_curve(team, &place.projected, &mesh.tets.nodes);
     let (nv, nt) = (mesh.vertices.len(), mesh.tets.len());
-    let mut filling = Filling { mesh, place, order, store: Store::with_capacity(2 * nv + ROOM, 2 * nt + 6 * ROOM) };
+    let store = Store::with_capacity(2 * nv + ROOM, 2 * nt + 6 * ROOM);
+    let mut filling = Filling { team, mesh, place, order, store };
     filling.write_vertices();
     filling.write_tets(faces);
     filling.tag_faces(faces)?;
@@ -107,7 +110,7 @@ fn fill_known(
     filling.set_metrics(source, logs, hints);
     let Filling { mut store, order, .. } = filling;
     store.note_order();
-    if measure(&store) {
+    if measure(team, &store) {
         // Their mean ratio is 0, also where it is only too small for a number.
         check_positive(mesh)?;
     }
@@ -125,6 +128,7 @@ fn check_positive(mesh: &TetMesh) -> Result<(), Error> {
 
 /// A store that is being filled.
 struct Filling<'a> {
+    team: Team<'a>,
     mesh: &'a TetMesh,
     place: &'a Classification,
     order: Numbering,
@@ -136,28 +140,36 @@ impl Filling<'_> {
         self.order.vertex_ids[v as usize]
     }
 
+    /// Calls f with each vertex by its id and by its number in the mesh.
+    fn each_vertex(&self, f: impl Fn(VertexId, usize) + Sync) {
+        self.team.for_each(GRAIN, self.order.vertices.len(), |range| {
+            range.for_each(|id| f(VertexId(id as u32), self.order.vertices[id] as usize));
+        });
+    }
+
     /// Sets position and place.
     fn write_vertices(&self) {
         self.store.take_vertices(self.order.vertices.len()).expect("room was made");
-        for (id, &v) in self.order.vertices.iter().enumerate() {
-            let (id, v) = (VertexId(id as u32), v as usize);
+        self.each_vertex(|id, v| {
             self.store.set_position(id, self.place.projected[v]);
             self.store.set_place(id, self.place.entities[v], self.place.parameters[v]);
-        }
+        });
     }
 
-    /// Sets vertices and neighbours, and each vertex's tetrahedron.
+    /// Sets vertices and neighbours, and the first of each vertex's tetrahedra.
     fn write_tets(&self, faces: &MatchedFaces) {
         self.store.take_tets(self.order.tets.len()).expect("room was made");
-        for (id, &t) in self.order.tets.iter().enumerate() {
-            let (id, t) = (TetId(id as u32), t as usize);
-            let vertices = self.mesh.tets.nodes[t].map(|v| self.id(v));
-            self.store.write_tet(id, vertices, self.mesh.tets.refs[t] as u32, 1.0);
-            for (i, &n) in faces.neighbours[t].iter().enumerate().filter(|(_, n)| **n != NONE) {
-                self.store.set_neighbour(id, i, self.order.tet_ids[n as usize]);
+        self.team.for_each(GRAIN, self.order.tets.len(), |range| {
+            for id in range {
+                let (t, id) = (self.order.tets[id] as usize, TetId(id as u32));
+                let vertices = self.mesh.tets.nodes[t].map(|v| self.id(v));
+                self.store.write_tet(id, vertices, self.mesh.tets.refs[t] as u32, 1.0);
+                for (i, &n) in faces.neighbours[t].iter().enumerate().filter(|(_, n)| **n != NONE) {
+                    self.store.set_neighbour(id, i, self.order.tet_ids[n as usize]);
+                }
+                vertices.iter().for_each(|&v| self.store.lower_tet_of(v, id));
             }
-            vertices.iter().for_each(|&v| self.store.set_tet_of(v, id));
-        }
+        });
     }
 
     /// Sets the tags of faces with a triangle.
@@ -165,21 +177,24 @@ impl Filling<'_> {
     /// # Errors
     /// When a face on the boundary has none.
     fn tag_faces(&self, faces: &MatchedFaces) -> Result<(), Error> {
-        let triangles = TriangleIndex::new(&self.mesh.triangles.nodes, self.mesh.vertices.len());
-        triangles.for_each_side(&self.mesh.tets.nodes, |triangle, t, i| {
-            let (id, tag) = (self.order.tet_ids[t as usize], self.place.faces[triangle as usize] + 1);
-            let before = self.store.tags(id)[i];
-            self.store.set_tag(id, i, if before == 0 { tag } else { tag.min(before) });
-        });
-        for (t, neighbours) in faces.neighbours.iter().enumerate().filter(|(_, neighbours)| neighbours.contains(&NONE))
-        {
-            let tags = self.store.tags(self.order.tet_ids[t]);
-            if let Some(open) = (0..4).find(|&i| neighbours[i] == NONE && tags[i] == 0) {
-                let nodes = sorted3(FACES[open].map(|k| self.mesh.tets.nodes[t][k]));
-                return Err(Error::Open { nodes: nodes.map(|v| v + 1) });
-            }
+        let triangles = TriangleIndex::new(self.team, &self.mesh.triangles.nodes, self.mesh.vertices.len());
+        for Side { triangle, tet, face } in triangles.sides(self.team, &self.mesh.tets.nodes) {
+            let (id, tag) = (self.order.tet_ids[tet as usize], self.place.faces[triangle as usize] + 1);
+            let before = self.store.tags(id)[face as usize];
+            self.store.set_tag(id, face as usize, if before == 0 { tag } else { tag.min(before) });
         }
-        Ok(())
+        let nodes = &self.mesh.tets.nodes;
+        let open = self.team.collect(GRAIN, nodes.len(), |range, found| {
+            for t in range.filter(|&t| faces.neighbours[t].contains(&NONE)) {
+                let tags = self.store.tags(self.order.tet_ids[t]);
+                let open = (0..4).find(|&i| faces.neighbours[t][i] == NONE && tags[i] == 0);
+                found.extend(open.map(|open| sorted3(FACES[open].map(|k| nodes[t][k]))));
+            }
+        });
+        match open.first() {
+            Some(nodes) => Err(Error::Open { nodes: nodes.map(|v| v + 1) }),
+            None => Ok(()),
+        }
     }
 
     /// Sets the ridge neighbours of vertices on model edges and of corners.
@@ -212,19 +227,22 @@ impl Filling<'_> {
     /// Where projected points invert a tetrahedron, its vertices go back to where they were, and are returned.
     fn leave_inverting(&self) -> Vec<VertexId> {
         let before = |v: VertexId| -> Vec3 { self.mesh.vertices[self.order.vertices[v.index()] as usize] };
-        let moved: Vec<bool> = self.store.live_vertices().map(|v| self.store.position(v) != before(v)).collect();
+        let is_moved = |v: VertexId| self.store.position(v) != before(v);
+        let moved = self.team.map(GRAIN, self.order.vertices.len(), |v| is_moved(VertexId(v as u32)));
         let mut waiting = Vec::new();
         if !moved.contains(&true) {
             return waiting;
         }
+        let is_bad = |vertices: [VertexId; 4]| !is_positive(vertices.map(|v| self.store.position(v)));
         loop {
+            let bad = self.team.collect(GRAIN, self.store.tet_bound(), |range, bad| {
+                let vertices = self.store.live_tets_in(range).map(|t| self.store.vertices(t));
+                bad.extend(vertices.filter(|of| of.iter().any(|v| moved[v.index()]) && is_bad(*of)));
+            });
             let many = waiting.len();
-            for t in self.store.live_tets() {
-                let vertices = self.store.vertices(t);
-                if !vertices.iter().any(|v| moved[v.index()]) || is_positive(vertices.map(|v| self.store.position(v))) {
-                    continue;
-                }
-                for v in vertices.into_iter().filter(|&v| self.store.position(v) != before(v)) {
+            // Another one's vertices may have gone back by now.
+            for vertices in bad.into_iter().filter(|&of| is_bad(of)) {
+                for v in vertices.into_iter().filter(|&v| is_moved(v)) {
                     self.store.set_position(v, before(v));
                     waiting.push(v);
                 }
@@ -237,32 +255,39 @@ impl Filling<'_> {
 
     /// Gives every vertex its metric: at its own place the one that is known, elsewhere the source's.
     fn set_metrics(&self, source: &Source, logs: Option<&[Sym3]>, hints: Option<&[u32]>) {
-        for (v, &old) in self.store.live_vertices().zip(&self.order.vertices) {
+        self.each_vertex(|v, old| {
+            // A vertex of no tetrahedron.
+            if !self.store.is_vertex(v) {
+                return;
+            }
             let p = self.store.position(v);
             let mut hint = match hints {
-                Some(hints) => hints[old as usize],
+                Some(hints) => hints[old],
                 None => self.order.tets[self.store.tet_of(v).index()],
             };
             let log = match logs {
-                Some(logs) if p == self.mesh.vertices[old as usize] => logs[old as usize],
+                Some(logs) if p == self.mesh.vertices[old] => logs[old],
                 _ => source.log_at(p, &mut hint),
             };
             self.store.set_metric(v, &log, &log.exp());
             self.store.set_hint(v, hint);
-        }
+        });
     }
 }
 
 /// Gives every tetrahedron its mean ratio; whether one is 0, as that of an inverted or flat one is.
-pub fn measure(store: &Store) -> bool {
+pub fn measure(team: Team<'_>, store: &Store) -> bool {
     let corners = |t: TetId| {
         let vertices = store.vertices(t);
         (vertices.map(|v| store.position(v)), vertices.map(|v| store.log(v)))
     };
-    let mut zero = false;
-    mean_ratios(store.live_tets(), corners, |t, ratio| {
-        zero |= ratio == 0.0;
-        store.set_quality(t, ratio);
+    let zeros = team.chunks(GRAIN, store.tet_bound(), |range| {
+        let mut zero = false;
+        mean_ratios(store.live_tets_in(range), corners, |t, ratio| {
+            zero |= ratio == 0.0;
+            store.set_quality(t, ratio);
+        });
+        zero
     });
-    zero
+    zeros.contains(&true)
 }

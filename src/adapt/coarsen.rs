@@ -18,7 +18,7 @@ use crate::mesh::predicate::is_positive;
 use crate::mesh::vector::volume6;
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::{Source, Sym3};
-use crate::tasks::stage;
+use crate::tasks::{GRAIN, Team, stage};
 use level::Level;
 use std::borrow::Cow;
 
@@ -43,15 +43,18 @@ pub struct Coarse {
 }
 
 /// The mesh made coarse; none where it is not several times too fine, or not valid.
-pub fn coarsened(mesh: &TetMesh, place: &Classification, source: &Source, required: &Required) -> Option<Coarse> {
+pub fn coarsened(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    place: &Classification,
+    source: &Source,
+    required: &Required,
+) -> Option<Coarse> {
     let logs = match source.logs_on(mesh) {
         Some(logs) => Cow::Borrowed(logs),
-        None => {
-            let mut hint = 0;
-            Cow::Owned(mesh.vertices.iter().map(|&p| source.log_at(p, &mut hint)).collect())
-        }
+        None => Cow::Owned(team.map(GRAIN, mesh.vertices.len(), |v| source.log_at(mesh.vertices[v], &mut 0))),
     };
-    if !is_crowded(mesh, &logs) {
+    if !is_crowded(team, mesh, &logs) {
         return None;
     }
     let mut level = Level::of(mesh, place, logs, required);
@@ -72,17 +75,22 @@ pub fn coarsened(mesh: &TetMesh, place: &Classification, source: &Source, requir
 }
 
 /// Whether the mesh is valid and has several times the tetrahedra that the metric asks for.
-fn is_crowded(mesh: &TetMesh, logs: &[Sym3]) -> bool {
-    let quarters: Vec<f64> = logs.iter().map(|log| (0.125 * log.trace()).exp()).collect();
-    let mut sum = 0.0;
-    for nodes in &mesh.tets.nodes {
-        let points = nodes.map(|v| mesh.vertices[v as usize]);
-        if !is_positive(points) {
-            return false;
+fn is_crowded(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> bool {
+    let quarters = team.map(GRAIN, logs.len(), |v| (0.125 * logs[v].trace()).exp());
+    // None as soon as one is not positive.
+    let parts = team.chunks(GRAIN, mesh.tets.len(), |range| {
+        let mut sum = 0.0;
+        for nodes in &mesh.tets.nodes[range] {
+            let points = nodes.map(|v| mesh.vertices[v as usize]);
+            if !is_positive(points) {
+                return None;
+            }
+            let [a, b, c, d] = points;
+            sum += volume6(a, b, c, d) * nodes.iter().map(|&v| quarters[v as usize]).product::<f64>();
         }
-        let [a, b, c, d] = points;
-        sum += volume6(a, b, c, d) * nodes.iter().map(|&v| quarters[v as usize]).product::<f64>();
-    }
+        Some(sum)
+    });
+    let Some(sum) = parts.into_iter().sum::<Option<f64>>() else { return false };
     // Six times the volume of a regular tetrahedron of unit edges is 1/√2.
     mesh.tets.len() as f64 > CROWDED * std::f64::consts::SQRT_2 * sum
 }

@@ -5,6 +5,7 @@ use super::store::Store;
 use crate::geometry::{Evaluate, Geometry, Model, SurfaceKind};
 use crate::mesh::vector::Vec3;
 use crate::metric::Source;
+use crate::tasks::{GRAIN, Team};
 
 /// √2 and 1/√2: an edge between them has unit length.
 pub const LONG: f64 = std::f64::consts::SQRT_2;
@@ -106,12 +107,14 @@ impl<'m> Context<'m> {
     }
 
     /// Renumbers the mesh along a space-filling curve; returns the new id of each old one. Pools of free ids must be emptied.
-    pub fn reorder(&mut self) -> Vec<VertexId> {
-        let number = self.store.reorder();
+    pub fn reorder(&mut self, team: Team<'_>) -> Vec<VertexId> {
+        let number = self.store.reorder(team);
         self.required.renumber(&number);
-        for id in self.ids.iter_mut().filter(|id| id.is_some()) {
-            *id = number[id.index()];
-        }
+        team.fill(GRAIN, &mut self.ids, |_, ids| {
+            for id in ids.iter_mut().filter(|id| id.is_some()) {
+                *id = number[id.index()];
+            }
+        });
         number
     }
 

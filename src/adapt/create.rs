@@ -18,6 +18,7 @@ use crate::geometry::Entity;
 use crate::mesh::vector::{Vec3, add, dot, scale, sub};
 use crate::metric::Sym3;
 use crate::metric::quality::edge_length;
+use crate::tasks::{GRAIN, Team};
 use clap::ValueEnum;
 use serde::Serialize;
 
@@ -46,20 +47,21 @@ pub struct Candidate<'a> {
 }
 
 /// The tetrahedra with an edge that is too long: those at the surface first, then by their longest edge.
-pub fn active_tets(context: &Context<'_>) -> Vec<TetId> {
+pub fn active_tets(team: Team<'_>, context: &Context<'_>) -> Vec<TetId> {
     let store = &context.store;
-    let mut found = Vec::new();
-    for t in store.live_tets() {
-        let v = store.vertices(t);
-        let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
-        let lengths = EDGE.map(|[i, j]| edge_length(sub(p[j], p[i]), &m[i], &m[j]));
-        let longest = lengths.into_iter().fold(0.0, f64::max);
-        if longest > context.limits.long {
-            found.push((store.tags(t) == [0; 4], longest, t));
+    let mut found = team.collect(GRAIN, store.tet_bound(), |range, found| {
+        for t in store.live_tets_in(range) {
+            let v = store.vertices(t);
+            let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
+            let lengths = EDGE.map(|[i, j]| edge_length(sub(p[j], p[i]), &m[i], &m[j]));
+            let longest = lengths.into_iter().fold(0.0, f64::max);
+            if longest > context.limits.long {
+                found.push((store.tags(t) == [0; 4], longest, t));
+            }
         }
-    }
-    found.sort_unstable_by(|x, y| x.0.cmp(&y.0).then(y.1.total_cmp(&x.1)).then(x.2.cmp(&y.2)));
-    found.into_iter().map(|(_, _, t)| t).collect()
+    });
+    team.sort_by(&mut found, |x, y| x.0.cmp(&y.0).then(y.1.total_cmp(&x.1)).then(x.2.cmp(&y.2)));
+    team.map(GRAIN, found.len(), |i| found[i].2)
 }
 
 /// Whether p lies inside the smallest ellipsoid (a sphere in the metric) through the ends of the segment.

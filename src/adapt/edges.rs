@@ -3,6 +3,8 @@ use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::store::Store;
 use crate::mesh::vector::sub;
+use crate::tasks::Team;
+use std::ops::Range;
 
 /// An edge and the class of its length in the metric.
 #[derive(Clone, Copy)]
@@ -22,35 +24,66 @@ fn class(fourth_power: f64) -> u16 {
     (fourth_power.max(0.0).to_bits() >> 52) as u16
 }
 
-/// The edges in the order of their ranks; those of one rank, whose lengths hardly differ, stay in the order of the mesh, so that what
-/// is done next is near in memory. A counting sort.
-pub fn in_order(edges: &[Classed], rank: impl Fn(&Classed) -> u32) -> Vec<EdgeItem> {
-    let greatest = edges.iter().map(&rank).max().unwrap_or(0) as usize;
-    let mut places = vec![0usize; greatest + 2];
-    edges.iter().for_each(|edge| places[rank(edge) as usize + 1] += 1);
-    for at in 1..places.len() {
-        places[at] += places[at - 1];
+/// Ranks that [`in_order`] tells apart.
+pub const RANKS: usize = 4 * CLASSES as usize;
+
+/// The edges in the order of their ranks, which are less than [`RANKS`]; those of one rank, whose lengths hardly differ, stay in the
+/// order of the mesh, so that what is done next is near in memory. A counting sort of a part of the edges on each thread.
+pub fn in_order(team: Team<'_>, edges: &[Classed], rank: impl Fn(&Classed) -> u32 + Sync) -> Vec<EdgeItem> {
+    let share = edges.len().div_ceil(team.threads()).max(1);
+    let parts = team.chunks(share, edges.len(), |range| sorted_by_rank(&edges[range], &rank));
+    if let [_] = parts[..] {
+        return parts.into_iter().flat_map(|(_, items)| items).collect();
+    }
+    let of_rank = |rank: usize| parts.iter().map(move |(starts, items)| &items[starts[rank]..starts[rank + 1]]);
+    let slices: Vec<_> = (0..RANKS).flat_map(of_rank).filter(|items| !items.is_empty()).collect();
+    team.join_slices(slices.iter().copied())
+}
+
+/// The edges in the order of their ranks, and where each rank begins.
+fn sorted_by_rank(edges: &[Classed], rank: impl Fn(&Classed) -> u32) -> (Vec<usize>, Vec<EdgeItem>) {
+    let ranks: Vec<u16> = edges.iter().map(|edge| rank(edge) as u16).collect();
+    // Counted two places on: while the edges are dealt out, each start moves to the next one's place.
+    let mut starts = vec![0; RANKS + 2];
+    ranks.iter().for_each(|&rank| starts[rank as usize + 2] += 1);
+    for at in 1..starts.len() {
+        starts[at] += starts[at - 1];
     }
     let nothing = EdgeItem { a: VertexId::NONE, b: VertexId::NONE, tet: TetId::NONE };
     let mut items = vec![nothing; edges.len()];
-    for edge in edges {
-        let place = &mut places[rank(edge) as usize];
+    for (edge, &rank) in edges.iter().zip(&ranks) {
+        let place = &mut starts[rank as usize + 1];
         items[*place] = edge.item;
         *place += 1;
     }
-    items
+    (starts, items)
 }
 
-/// Edges listed before those that were listed twice are taken out: with each of its tetrahedra an edge comes again, and what is near in
-/// memory is near in space.
-const AT_ONCE: usize = 1 << 16;
+/// Tetrahedra of a part, at least: with each of its tetrahedra an edge comes again, and what is near in memory is near in space, so that
+/// most doubles are found in one part.
+const PART: usize = 1 << 14;
+
+/// Parts of the tetrahedra at most, and ranges of the vertices.
+const PARTS: usize = 256;
 
 /// The edges of tetrahedra that changed at or after a time, as far as they pass the test of their squared lengths in the metrics of both
-/// ends; a few of them twice. In the order of their vertices within blocks. Between sweeps only.
-pub fn listed(store: &Store, since: u32, wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
+/// ends, in the order of their vertices. Between sweeps only.
+pub fn listed(team: Team<'_>, store: &Store, since: u32, wanted: impl Fn(f64, f64) -> bool + Sync) -> Vec<Classed> {
+    let [tets, vertices] = [store.tet_bound(), store.vertex_bound()];
+    let mut parts = team.chunks(PART.max(tets.div_ceil(PARTS)), tets, |range| listed_in(store, range, since, &wanted));
+    if parts.len() < 2 {
+        return parts.pop().unwrap_or_default();
+    }
+    let range = vertices.div_ceil(PARTS).max(PART / 4);
+    let merged = team.chunks(range, vertices, |range| merged(&parts, range));
+    drop(parts);
+    team.join(merged)
+}
+
+/// Those of some tetrahedra, in the order of their vertices.
+fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
     let mut found: Vec<Classed> = Vec::new();
-    let mut sorted = 0;
-    for t in store.live_tets().filter(|&t| store.stamp(t) >= since) {
+    for t in store.live_tets_in(tets).filter(|&t| store.stamp(t) >= since) {
         let v = store.vertices(t);
         let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
         for [i, j] in EDGE {
@@ -61,28 +94,33 @@ pub fn listed(store: &Store, since: u32, wanted: impl Fn(f64, f64) -> bool) -> V
                 found.push(Classed { item, class: class(at_i * at_j) });
             }
         }
-        if found.len() >= sorted + AT_ONCE {
-            sorted = without_doubles(&mut found, sorted);
-        }
     }
-    without_doubles(&mut found, sorted);
+    found.sort_unstable_by_key(key);
+    found.dedup_by_key(ends);
+    found.shrink_to_fit();
     found
 }
 
-/// Sorts what comes after `sorted` and takes doubles out of it; returns the length.
-fn without_doubles(edges: &mut Vec<Classed>, sorted: usize) -> usize {
-    let key = |edge: &Classed| (edge.item.a, edge.item.b, edge.item.tet);
-    edges[sorted..].sort_unstable_by_key(key);
-    let mut length = sorted;
-    for i in sorted..edges.len() {
-        let (edge, last) = (edges[i], length.checked_sub(1).map(|last| edges[last].item));
-        if length == sorted || last.is_none_or(|last| (last.a, last.b) != (edge.item.a, edge.item.b)) {
-            edges[length] = edge;
-            length += 1;
-        }
-    }
-    edges.truncate(length);
-    length
+/// Those of the parts whose lesser vertex is in a range.
+fn merged(parts: &[Vec<Classed>], vertices: Range<usize>) -> Vec<Classed> {
+    let of_part = |part: &'_ Vec<Classed>| {
+        let [start, end] = [vertices.start, vertices.end].map(|v| part.partition_point(|edge| edge.item.a.index() < v));
+        start..end
+    };
+    let mut found: Vec<Classed> = Vec::new();
+    parts.iter().for_each(|part| found.extend_from_slice(&part[of_part(part)]));
+    // Sorted pieces: this sort merges them.
+    found.sort_by_key(key);
+    found.dedup_by_key(ends);
+    found
+}
+
+fn key(edge: &Classed) -> (VertexId, VertexId, TetId) {
+    (edge.item.a, edge.item.b, edge.item.tet)
+}
+
+fn ends(edge: &mut Classed) -> (VertexId, VertexId) {
+    (edge.item.a, edge.item.b)
 }
 
 #[cfg(test)]
@@ -94,6 +132,7 @@ mod tests {
     use crate::mesh::adjacency::unique_edges;
     use crate::mesh::samples::cube;
     use crate::metric::{Background, Source, Sym3};
+    use crate::tasks::{Plan, Pool};
     use std::collections::BTreeSet;
 
     fn ends_of(item: &EdgeItem) -> [VertexId; 2] {
@@ -103,10 +142,10 @@ mod tests {
     #[test]
     fn every_wanted_edge_with_its_least_tetrahedron() {
         let mesh = cube(3);
-        let (_, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).unwrap();
+        let (_, place) = Discrete::from_mesh(Team::alone(), &mesh, DEFAULT_RIDGE_ANGLE).unwrap();
         let logs = vec![Sym3::ZERO; mesh.vertices.len()];
         let source = Source::Background(Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs));
-        let Filled { store, ids, .. } = build::fill(&mesh, &place, &source).unwrap();
+        let Filled { store, ids, .. } = build::fill(Team::alone(), &mesh, &place, &source).unwrap();
         let ends = |[a, b]: [u32; 2]| {
             let (a, b) = (ids[a as usize], ids[b as usize]);
             [a.min(b), a.max(b)]
@@ -123,7 +162,7 @@ mod tests {
                 store.live_tets().filter(|&t| store.stamp(t) >= since).any(|t| holds(&t))
             };
             let expected: BTreeSet<_> = all.iter().filter(touched).copied().filter(|&e| length(e) < 0.4).collect();
-            let found = listed(&store, since, is_short);
+            let found = listed(Team::alone(), &store, since, is_short);
             assert_eq!(found.len(), expected.len());
             assert_eq!(found.iter().map(|edge| ends_of(&edge.item)).collect::<BTreeSet<_>>(), expected);
             for Classed { item, class: of } in &found {
@@ -143,10 +182,21 @@ mod tests {
         let classed = |(k, length): (usize, &f64)| Classed { item: item(k), class: class(length.powi(4)) };
         let edges: Vec<_> = lengths.iter().enumerate().map(classed).collect();
         let order = |items: Vec<EdgeItem>| items.iter().map(|item| item.a.0).collect::<Vec<_>>();
-        assert_eq!(order(in_order(&edges, |edge| u32::from(edge.class))), [5, 2, 6, 0, 3, 1, 4]);
-        assert_eq!(order(in_order(&edges, |edge| CLASSES - 1 - u32::from(edge.class))), [4, 1, 0, 3, 2, 6, 5]);
+        assert_eq!(order(in_order(Team::alone(), &edges, |edge| u32::from(edge.class))), [5, 2, 6, 0, 3, 1, 4]);
+        assert_eq!(
+            order(in_order(Team::alone(), &edges, |edge| CLASSES - 1 - u32::from(edge.class))),
+            [4, 1, 0, 3, 2, 6, 5]
+        );
         assert!(edges.iter().all(|edge| u32::from(edge.class) < CLASSES));
-        assert!(in_order(&[], |edge| u32::from(edge.class)).is_empty());
+        assert!(in_order(Team::alone(), &[], |edge| u32::from(edge.class)).is_empty());
+        // Shared out among threads, it is the same.
+        let many: Vec<_> = (0..500).map(|k| Classed { item: item(k), class: (k * k % 701) as u16 }).collect();
+        let alone = in_order(Team::alone(), &many, |edge| u32::from(edge.class));
+        for threads in [2, 3, 8] {
+            let pool = Pool::new(threads).unwrap();
+            let found = in_order(Team::new(&pool, Plan::default()), &many, |edge| u32::from(edge.class));
+            assert!(found.iter().map(ends_of).eq(alone.iter().map(ends_of)));
+        }
         // A fifth more is another class.
         assert_ne!(class(1.2f64.powi(4)), class(1.0));
     }

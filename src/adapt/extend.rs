@@ -17,14 +17,15 @@ use super::worker::Worker;
 use crate::geometry::Entity;
 use crate::mesh::vector::{Vec3, add, scale, volume6};
 use crate::metric::quality::edge_length;
+use crate::tasks::Team;
 
 /// Edges longer than this factor times the limit are split in the middle: a point at unit distance from one end is far from the other.
 pub const FAR: f64 = 2.0;
 
 /// The vertices of edges that are too long: those on the model first.
-pub fn active_vertices(context: &Context<'_>) -> Vec<VertexId> {
+pub fn active_vertices(team: Team<'_>, context: &Context<'_>) -> Vec<VertexId> {
     let (store, limit) = (&context.store, context.limits.long);
-    let found = edges::listed(store, 0, |a, b| is_longer(a, b, limit));
+    let found = edges::listed(team, store, 0, |a, b| is_longer(a, b, limit));
     let mut vertices: Vec<VertexId> = found.iter().flat_map(|edge| [edge.item.a, edge.item.b]).collect();
     vertices.sort_unstable_by_key(|&v| (store.dimension(v), v));
     vertices.dedup();

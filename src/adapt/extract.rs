@@ -1,12 +1,15 @@
 //! From the store back to the plain mesh.
 use super::context::Context;
 use super::ids::{FACE, TetId, VertexId};
+use super::numbering::inverse;
 use super::required::Required;
 use super::store::Store;
+use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
-use crate::geometry::{Entity, Geometry, Topology};
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::Sym3;
+use crate::tasks::{GRAIN, Team};
+use std::collections::HashMap;
 
 /// What the mesh calls each face and each edge of the model, and how it turns a face's triangles.
 pub struct References {
@@ -28,82 +31,112 @@ pub struct Extracted {
     pub metrics: Vec<Sym3>,
 }
 
-/// Takes the mesh out of the store, in the order of its ids, with what `input` required. `face_refs` gives each model
-/// face its reference.
-pub fn extract(context: &Context, input: &TetMesh, refs: &References) -> Extracted {
+/// Takes the mesh out of the store, in the order of its ids, with what `input` required; `refs` gives each model
+/// entity its reference.
+pub fn extract(team: Team<'_>, context: &Context, input: &TetMesh, refs: &References) -> Extracted {
     let store = &context.store;
-    let mut number = vec![u32::MAX; store.vertex_bound()];
-    let (live, live_tets) = (store.live_vertices().count(), store.live_tets().count());
-    let mut mesh = TetMesh { vertices: Vec::with_capacity(live), ..TetMesh::default() };
-    mesh.vertex_refs.reserve_exact(live);
-    mesh.tets = Elements { nodes: Vec::with_capacity(live_tets), refs: Vec::with_capacity(live_tets) };
-    let mut classification = Classification {
-        entities: Vec::with_capacity(live),
-        parameters: Vec::with_capacity(live),
-        ..Default::default()
-    };
-    classification.projected.reserve_exact(live);
-    let mut metrics = Vec::with_capacity(live);
-    let mut original = vec![VertexId::NONE; store.vertex_bound()];
-    for (v, id) in context.ids.iter().enumerate().filter(|(_, id)| id.is_some()) {
-        original[id.index()] = VertexId(v as u32);
-    }
-    for v in store.live_vertices() {
-        number[v.index()] = mesh.vertices.len() as u32;
-        mesh.vertices.push(store.position(v));
-        // Only corners and frozen vertices surely are what they were: other ids may have been used again.
-        let is_old = matches!(store.entity(v), Entity::Vertex(_)) || context.is_frozen(v);
-        let kept = is_old.then(|| original[v.index()]).filter(|v| v.is_some());
-        mesh.vertex_refs.push(kept.map_or(0, |v| input.vertex_refs[v.index()]));
-        classification.entities.push(store.entity(v));
-        classification.parameters.push(store.parameters(v));
-        classification.projected.push(store.position(v));
-        metrics.push(store.metric(v));
-    }
+    let vertices = team.collect(GRAIN, store.vertex_bound(), |range, live| {
+        live.extend(store.live_vertices_in(range).map(|v| v.0));
+    });
+    let number = inverse(team, &vertices, store.vertex_bound(), |place| place);
     let renumber = |v: VertexId| number[v.index()];
-    for t in store.live_tets() {
-        let (v, n, tags) = (store.vertices(t), store.neighbours(t), store.tags(t));
-        mesh.tets.push(v.map(renumber), store.region(t) as i32);
-        // Between two regions a triangle belongs to the lesser one.
-        let region = |t: TetId| (store.region(t) as i32, t);
-        for i in (0..4).filter(|&i| tags[i] != 0 && (!n[i].is_some() || region(t) < region(n[i]))) {
-            let [a, b, c] = FACE[i].map(|k| renumber(v[k]));
-            let face = tags[i] - 1;
-            let outward = !refs.inward[face as usize];
-            mesh.triangles.push(if outward { [a, c, b] } else { [a, b, c] }, refs.faces[face as usize]);
-            classification.faces.push(face);
-        }
-    }
-    classification.ridges = ridges(store, context.model.topology(), renumber);
+    let mut mesh = TetMesh {
+        vertices: at(team, &vertices, |v| store.position(v)),
+        vertex_refs: vertex_refs(team, context, &vertices, input),
+        tets: tets(team, store, &renumber),
+        ..TetMesh::default()
+    };
+    let triangles = team.collect(GRAIN, store.tet_bound(), |range, found| {
+        store.live_tets_in(range).for_each(|t| triangles_of(store, t, refs, &renumber, found));
+    });
+    mesh.triangles.nodes = triangles.iter().map(|&(nodes, _)| nodes).collect();
+    mesh.triangles.refs = triangles.iter().map(|&(_, face)| refs.faces[face as usize]).collect();
+    let classification = Classification {
+        entities: at(team, &vertices, |v| store.entity(v)),
+        parameters: at(team, &vertices, |v| store.parameters(v)),
+        projected: mesh.vertices.clone(),
+        ridges: ridges(team, store, renumber),
+        faces: triangles.iter().map(|&(_, face)| face).collect(),
+    };
+    debug_assert!(classification.ridges.iter().all(|&(_, edge)| (edge as usize) < refs.edges.len()));
     for &(nodes, edge) in &classification.ridges {
         mesh.edges.push(nodes, refs.edges[edge as usize]);
     }
     Required::list(input, &mut mesh, |v| renumber(context.ids[v.index()]));
-    Extracted { mesh, classification, metrics }
+    Extracted { mesh, classification, metrics: at(team, &vertices, |v| store.metric(v)) }
 }
 
-/// Each ridge edge once, in the order of its lower vertex.
-fn ridges(store: &Store, topology: &Topology, number: impl Fn(VertexId) -> u32) -> Vec<([u32; 2], u32)> {
-    let mut edges = Elements::<2>::default();
-    for v in store.live_vertices() {
-        match store.entity(v) {
-            Entity::Edge(curve) => {
-                for other in store.ridge(v).into_iter().filter(|w| w.is_some()) {
-                    if store.dimension(other) == 0 || v < other {
-                        edges.push([number(v), number(other)], curve as i32);
-                    }
-                }
-            }
-            Entity::Vertex(_) => {
-                for (other, curve) in store.corner_ridges(v) {
-                    if store.dimension(other) == 0 && v < other {
-                        edges.push([number(v), number(other)], curve as i32);
-                    }
-                }
-            }
-            _ => {}
-        }
+/// Something of each vertex.
+fn at<T: Copy + Send>(team: Team<'_>, vertices: &[u32], of: impl Fn(VertexId) -> T + Sync) -> Vec<T> {
+    team.map(GRAIN, vertices.len(), |i| of(VertexId(vertices[i])))
+}
+
+/// References that the vertices had in the input. Only corners and frozen vertices surely are what they were: other ids may have been
+/// used again.
+fn vertex_refs(team: Team<'_>, context: &Context, vertices: &[u32], input: &TetMesh) -> Vec<i32> {
+    let is_old = |v: VertexId| matches!(context.store.entity(v), Entity::Vertex(_)) || context.is_frozen(v);
+    let is_there = |v: VertexId| v.is_some() && context.store.is_vertex(v);
+    let known = team.collect(GRAIN, context.ids.len(), |range, known| {
+        let old = range.map(|v| (context.ids[v], input.vertex_refs[v]));
+        known.extend(old.filter(|&(id, reference)| reference != 0 && is_there(id) && is_old(id)));
+    });
+    let known: HashMap<VertexId, i32> = known.into_iter().collect();
+    if known.is_empty() {
+        return vec![0; vertices.len()];
     }
-    debug_assert!(edges.refs.iter().all(|&curve| (curve as usize) < topology.edges.len()));
-    edges.iter().map(|(nodes, curve)| (nodes, curve as u32)).collect()
+    at(team, vertices, |v| if is_old(v) { known.get(&v).copied().unwrap_or(0) } else { 0 })
+}
+
+fn tets(team: Team<'_>, store: &Store, number: &(impl Fn(VertexId) -> u32 + Sync)) -> Elements<4> {
+    let live = team.collect(GRAIN, store.tet_bound(), |range, live| live.extend(store.live_tets_in(range)));
+    Elements {
+        nodes: team.map(GRAIN, live.len(), |i| store.vertices(live[i]).map(number)),
+        refs: team.map(GRAIN, live.len(), |i| store.region(live[i]) as i32),
+    }
+}
+
+/// The triangles of a tetrahedron with their faces of the model. Between two regions a triangle belongs to the lesser one.
+fn triangles_of(
+    store: &Store,
+    t: TetId,
+    refs: &References,
+    number: &impl Fn(VertexId) -> u32,
+    found: &mut Vec<([u32; 3], u32)>,
+) {
+    let tags = store.tags(t);
+    if tags == [0; 4] {
+        return;
+    }
+    let (v, n) = (store.vertices(t), store.neighbours(t));
+    let region = |t: TetId| (store.region(t) as i32, t);
+    for i in (0..4).filter(|&i| tags[i] != 0 && (!n[i].is_some() || region(t) < region(n[i]))) {
+        let [a, b, c] = FACE[i].map(|k| number(v[k]));
+        let face = tags[i] - 1;
+        found.push((if refs.inward[face as usize] { [a, b, c] } else { [a, c, b] }, face));
+    }
+}
+
+/// Each ridge edge once with its model edge, in the order of its lower vertex.
+fn ridges(team: Team<'_>, store: &Store, number: impl Fn(VertexId) -> u32 + Sync) -> Vec<([u32; 2], u32)> {
+    team.collect(GRAIN, store.vertex_bound(), |range, edges| {
+        for v in store.live_vertices_in(range) {
+            match store.entity(v) {
+                Entity::Edge(curve) => {
+                    for other in store.ridge(v).into_iter().filter(|w| w.is_some()) {
+                        if store.dimension(other) == 0 || v < other {
+                            edges.push(([number(v), number(other)], curve));
+                        }
+                    }
+                }
+                Entity::Vertex(_) => {
+                    for (other, curve) in store.corner_ridges(v) {
+                        if store.dimension(other) == 0 && v < other {
+                            edges.push(([number(v), number(other)], curve));
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+    })
 }

@@ -2,6 +2,8 @@
 use super::ids::{TetId, VertexId};
 use crate::mesh::hilbert;
 use crate::mesh::vector::Vec3;
+use crate::tasks::{Buckets, GRAIN, Team};
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// New numbers along the Hilbert curve.
 pub struct Numbering {
@@ -17,47 +19,30 @@ pub struct Numbering {
 
 impl Numbering {
     /// Vertices along the curve, tetrahedra by their first vertex; what is equal keeps its order.
-    pub fn along_curve(points: &[Vec3], tets: &[[u32; 4]]) -> Self {
-        let vertices = hilbert::order(points);
-        let mut vertex_ids = vec![VertexId::NONE; vertices.len()];
-        vertices.iter().zip(0..).for_each(|(&old, new)| vertex_ids[old as usize] = VertexId(new));
+    pub fn along_curve(team: Team<'_>, points: &[Vec3], tets: &[[u32; 4]]) -> Self {
+        let vertices = hilbert::order(team, points.len(), |v| points[v]);
+        let vertex_ids = inverse(team, &vertices, points.len(), VertexId);
         let first = |t: usize| tets[t].map(|v| vertex_ids[v as usize].0).into_iter().min().unwrap_or(0);
-        let (tets, tet_ids) = by_first(tets.len(), vertices.len(), first);
+        let tets = by_first(team, tets.len(), vertices.len(), first);
+        let tet_ids = inverse(team, &tets, tets.len(), TetId);
         Self { vertices, vertex_ids, tets, tet_ids }
     }
 }
 
-/// Tetrahedra in the order of their first vertex, and their new numbers: a counting sort.
-pub fn by_first(tets: usize, vertices: usize, first: impl Fn(usize) -> u32) -> (Vec<u32>, Vec<TetId>) {
-    let mut starts = vec![0u32; vertices + 1];
-    let mut ids: Vec<TetId> = (0..tets).map(|t| TetId(first(t))).collect();
-    ids.iter().for_each(|first| starts[first.index() + 1] += 1);
-    for v in 1..starts.len() {
-        starts[v] += starts[v - 1];
-    }
-    let mut order = vec![0u32; tets];
-    for (t, id) in ids.iter_mut().enumerate() {
-        let start = &mut starts[id.index()];
-        order[*start as usize] = t as u32;
-        *id = TetId(*start);
-        *start += 1;
-    }
-    (order, ids)
+/// Tetrahedra in the order of their first vertex; those without one (`u32::MAX`) are left out.
+pub fn by_first(team: Team<'_>, tets: usize, vertices: usize, first: impl Fn(usize) -> u32 + Sync) -> Vec<u32> {
+    Buckets::of(team, vertices, tets, |t| [first(t)]).into_entries()
 }
 
-/// Brings records into an order, by swaps: what is at `order[i]` comes to i.
-pub fn permute(mut order: Vec<u32>, mut swap: impl FnMut(usize, usize)) {
-    for start in 0..order.len() {
-        let mut at = start;
-        loop {
-            let from = std::mem::replace(&mut order[at], at as u32) as usize;
-            if from == start {
-                break;
-            }
-            swap(at, from);
-            at = from;
+/// For each old number below `bound` its place in an order, as an id; none for what is not in the order.
+pub fn inverse<I>(team: Team<'_>, order: &[u32], bound: usize, id: impl Fn(u32) -> I) -> Vec<I> {
+    let places: Vec<_> = (0..bound).map(|_| AtomicU32::new(u32::MAX)).collect();
+    team.for_each(GRAIN, order.len(), |range| {
+        for new in range {
+            places[order[new] as usize].store(new as u32, Relaxed);
         }
-    }
+    });
+    places.into_iter().map(|place| id(place.into_inner())).collect()
 }
 
 #[cfg(test)]
@@ -66,18 +51,9 @@ mod tests {
     use crate::mesh::samples::cube;
 
     #[test]
-    fn records_come_into_their_order() {
-        for order in [vec![0, 1, 2], vec![3, 0, 1, 2, 4], vec![1, 0, 5, 2, 4, 3]] {
-            let mut records: Vec<u32> = (0..order.len() as u32).collect();
-            permute(order.clone(), |i, j| records.swap(i, j));
-            assert_eq!(records, order);
-        }
-    }
-
-    #[test]
     fn numbers_follow_the_curve_and_the_first_vertex() {
         let mesh = cube(3);
-        let order = Numbering::along_curve(&mesh.vertices, &mesh.tets.nodes);
+        let order = Numbering::along_curve(Team::alone(), &mesh.vertices, &mesh.tets.nodes);
         assert!(order.vertices.iter().zip(0..).all(|(&old, new)| order.vertex_ids[old as usize] == VertexId(new)));
         assert!(order.tets.iter().zip(0..).all(|(&old, new)| order.tet_ids[old as usize] == TetId(new)));
         let first = |&t: &u32| mesh.tets.nodes[t as usize].map(|v| order.vertex_ids[v as usize]).into_iter().min();
@@ -85,6 +61,10 @@ mod tests {
         // A second time there is nothing to do.
         let points: Vec<Vec3> = order.vertices.iter().map(|&v| mesh.vertices[v as usize]).collect();
         let same: Vec<u32> = (0..points.len() as u32).collect();
-        assert_eq!(Numbering::along_curve(&points, &[]).vertices, same);
+        assert_eq!(Numbering::along_curve(Team::alone(), &points, &[]).vertices, same);
+        // Without a first vertex a tetrahedron has no place.
+        let kept = by_first(Team::alone(), 5, 3, |t| [2, u32::MAX, 0, 2, 0][t]);
+        assert_eq!(kept, [2, 4, 0, 3]);
+        assert_eq!(inverse(Team::alone(), &kept, 5, TetId), [2, u32::MAX, 0, 3, 1].map(TetId));
     }
 }

@@ -17,6 +17,8 @@ use super::store::Store;
 use super::supply::ID_BLOCK;
 use super::work::{KINDS, Kind, Observer, Work};
 use super::worker::State;
+use crate::tasks::{GRAIN, Team};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
 
 /// Passes at most that bring the edges to their length.
@@ -156,11 +158,35 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
     }
 
+    /// The threads, for lists.
+    fn team(&self) -> Team<'c> {
+        Team::new(self.crew.pool, self.crew.plan)
+    }
+
+    /// The tetrahedra that are wanted.
+    fn tets(&self, wanted: impl Fn(&Store, TetId) -> bool + Sync) -> Vec<TetId> {
+        let store = &self.context.store;
+        self.team().collect(GRAIN, store.tet_bound(), |range, found| {
+            found.extend(store.live_tets_in(range).filter(|&t| wanted(store, t)));
+        })
+    }
+
+    /// The vertices that are wanted.
+    fn vertices(&self, wanted: impl Fn(&Store, VertexId) -> bool + Sync) -> Vec<VertexId> {
+        let store = &self.context.store;
+        self.team().collect(GRAIN, store.vertex_bound(), |range, found| {
+            found.extend(store.live_vertices_in(range).filter(|&v| wanted(store, v)));
+        })
+    }
+
     /// Mean of 1/Q − 1 over the tetrahedra: what is left to improve.
     fn cost(&self) -> f64 {
         let store = &self.context.store;
-        let costs = store.live_tets().map(|t| 1.0 / store.quality(t).max(1e-3) - 1.0);
-        let (sum, count) = costs.fold((0.0, 0.0), |(sum, count), cost| (sum + cost, count + 1.0));
+        let parts = self.team().chunks(GRAIN, store.tet_bound(), |range| {
+            let costs = store.live_tets_in(range).map(|t| 1.0 / store.quality(t).max(1e-3) - 1.0);
+            costs.fold((0.0, 0.0), |(sum, count), cost| (sum + cost, count + 1.0))
+        });
+        let (sum, count) = parts.into_iter().fold((0.0, 0.0), |all, part| (all.0 + part.0, all.1 + part.1));
         sum / count
     }
 
@@ -174,7 +200,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Puts near in memory what is near in space.
     fn reorder(&mut self) {
         self.gather_waiting();
-        let number = self.context.reorder();
+        let number = self.context.reorder(self.team());
         self.waiting.iter_mut().for_each(|v| *v = number[v.index()]);
         self.waiting.retain(|v| v.is_some());
         self.states.iter_mut().for_each(|state| state.supply.clear());
@@ -207,9 +233,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.context.limits =
             Limits { improve_below: MEND_BELOW, flip_below: MEND_BELOW, longest_new: 1.3 * LONG, ..shape_limits() };
         for _ in 0..3 {
+            let mut items = self.tets(|store, t| store.quality(t) < MEND_BELOW);
             let store = &self.context.store;
-            let mut items: Vec<TetId> = store.live_tets().filter(|&t| store.quality(t) < MEND_BELOW).collect();
-            items.sort_by(|&x, &y| store.quality(x).total_cmp(&store.quality(y)));
+            self.team().sort_by(&mut items, |x, y| store.quality(*x).total_cmp(&store.quality(*y)).then(x.cmp(y)));
             if self.observer.stop() || self.sweep(Kind::Mend, &Mend, &items).done == 0 {
                 break;
             }
@@ -269,7 +295,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         if self.observer.stop() {
             return false;
         }
-        let items = create::active_tets(self.context);
+        let items = create::active_tets(self.team(), self.context);
         let done = self.sweep(Kind::Split, &Create, &items).done;
         self.project();
         self.reconnect(self.criterion, 1);
@@ -295,7 +321,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         if self.observer.stop() {
             return false;
         }
-        let items = extend::active_vertices(self.context);
+        let items = extend::active_vertices(self.team(), self.context);
         let done = self.sweep(Kind::Split, &Extend, &items).done;
         self.reconnect(self.criterion, 1);
         !self.is_little(done)
@@ -314,10 +340,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         for _ in 0..sweeps {
             let since = self.begin(Kind::Reconnect);
             self.context.limits.since = since;
-            let store = &self.context.store;
             let limit = self.context.limits.flip_below;
-            let items: Vec<TetId> =
-                store.live_tets().filter(|&t| store.stamp(t) >= since && store.quality(t) < limit).collect();
+            let items = self.tets(|store, t| store.stamp(t) >= since && store.quality(t) < limit);
             if self.observer.stop() || self.sweep(Kind::Reconnect, &Reconnect(criterion), &items).done == 0 {
                 break;
             }
@@ -329,7 +353,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let since = self.begin(Kind::Smooth);
         let limit = self.context.limits.improve_below;
         let changed = self.at_tets(|store, t| store.moved(t) >= since && store.quality(t) < limit);
-        let items: Vec<VertexId> = self.context.store.live_vertices().filter(|v| changed[v.index()]).collect();
+        let items = self.vertices(|_, v| changed[v.index()].load(Relaxed));
         if !self.observer.stop() {
             self.sweep(Kind::Smooth, &Smooth, &items);
         }
@@ -341,12 +365,14 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     }
 
     /// For each vertex whether one of its tetrahedra is wanted.
-    fn at_tets(&self, wanted: impl Fn(&Store, TetId) -> bool) -> Vec<bool> {
+    fn at_tets(&self, wanted: impl Fn(&Store, TetId) -> bool + Sync) -> Vec<AtomicBool> {
         let store = &self.context.store;
-        let mut at = vec![false; store.vertex_bound()];
-        for t in store.live_tets().filter(|&t| wanted(store, t)) {
-            store.vertices(t).iter().for_each(|v| at[v.index()] = true);
-        }
+        let at: Vec<_> = (0..store.vertex_bound()).map(|_| AtomicBool::new(false)).collect();
+        self.team().for_each(GRAIN, store.tet_bound(), |range| {
+            for t in store.live_tets_in(range).filter(|&t| wanted(store, t)) {
+                store.vertices(t).iter().for_each(|v| at[v.index()].store(true, Relaxed));
+            }
+        });
         at
     }
 
@@ -366,6 +392,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Makes room for so many new vertices, with the tetrahedra about them, and for what flips add.
     fn make_room(&mut self, new: usize) {
+        let team = self.team();
         let store = &mut self.context.store;
         // Threads and parts take whole blocks of ids, and not all the same number of them.
         let slack = ID_BLOCK * (self.states.len() + 2 * schedule::deterministic::MOST_PARTS);
@@ -374,7 +401,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let room = store.room();
         if room.0 < vertices || room.1 < tets {
             // More than is needed, so that it is not needed again soon: untouched pages cost no memory.
-            store.reserve(vertices + store.vertex_bound(), tets + store.tet_bound());
+            store.reserve(team, vertices + store.vertex_bound(), tets + store.tet_bound());
         }
     }
 
@@ -401,16 +428,18 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
         let (store, limit) = (&self.context.store, self.context.limits.long);
-        let found = edges::listed(store, since, |a, b| is_longer(a, b, limit));
+        let found = edges::listed(self.team(), store, since, |a, b| is_longer(a, b, limit));
         let dimension = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
-        edges::in_order(&found, |edge| (dimension(&edge.item) + 1) * edges::CLASSES - 1 - u32::from(edge.class))
+        edges::in_order(self.team(), &found, |edge| {
+            (dimension(&edge.item) + 1) * edges::CLASSES - 1 - u32::from(edge.class)
+        })
     }
 
     /// Edges to be collapsed, short ones first.
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
         let (store, limit) = (&self.context.store, self.context.limits.short);
-        let found = edges::listed(store, since, |a, b| is_shorter(a, b, limit));
-        edges::in_order(&found, |edge| u32::from(edge.class))
+        let found = edges::listed(self.team(), store, since, |a, b| is_shorter(a, b, limit));
+        edges::in_order(self.team(), &found, |edge| u32::from(edge.class))
     }
 }

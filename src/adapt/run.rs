@@ -15,7 +15,7 @@ use crate::geometry::discrete::outward_triangles;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::metric::Source;
-use crate::tasks::{Plan, Pool, stage};
+use crate::tasks::{Plan, Pool, Team, stage};
 use std::collections::HashMap;
 
 /// How to adapt.
@@ -67,7 +67,8 @@ pub fn adapt(
     observer: &dyn Observer,
 ) -> Result<Adapted, build::Error> {
     let required = Required::of(mesh);
-    let (Filled { store, waiting, ids }, crowded) = filled(mesh, place, source, &required)?;
+    let team = Team::new(pool, options.plan);
+    let (Filled { store, waiting, ids }, crowded) = filled(team, mesh, place, source, &required)?;
     stage("store filled");
     let mut context = Context::new(store, source, model);
     context.required = required;
@@ -89,24 +90,25 @@ pub fn adapt(
     stage("passes");
     let refs = References {
         faces: face_refs(mesh, place, model),
-        inward: inward_faces(mesh, place, model),
+        inward: inward_faces(team, mesh, place, model),
         edges: edge_refs(mesh, place, model),
     };
-    let extracted = extract::extract(&context, mesh, &refs);
+    let extracted = extract::extract(team, &context, mesh, &refs);
     stage("extracted");
     Ok(Adapted { extracted, work, off_model })
 }
 
 /// The mesh in a store, made coarse on the way where it is crowded, and whether that was so.
 fn filled(
+    team: Team<'_>,
     mesh: &TetMesh,
     place: &Classification,
     source: &Source,
     required: &Required,
 ) -> Result<(Filled, bool), build::Error> {
-    let coarse = coarsen::coarsened(mesh, place, source, required);
+    let coarse = coarsen::coarsened(team, mesh, place, source, required);
     if let Some(coarse) = &coarse
-        && let Ok(mut filled) = build::fill_coarse(coarse, source)
+        && let Ok(mut filled) = build::fill_coarse(team, coarse, source)
     {
         let mut ids = vec![VertexId::NONE; mesh.vertices.len()];
         coarse.origin.iter().zip(&filled.ids).for_each(|(&old, &id)| ids[old as usize] = id);
@@ -114,7 +116,7 @@ fn filled(
         return Ok((filled, true));
     }
     // What is wrong with the mesh is told in its own numbers.
-    Ok((build::fill(mesh, place, source)?, coarse.is_some()))
+    Ok((build::fill(team, mesh, place, source)?, coarse.is_some()))
 }
 
 /// The reference of each model face: that of its first triangle.
@@ -127,9 +129,9 @@ fn face_refs(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<i32> 
 }
 
 /// The faces most of whose triangles look into the domain: the files of some programs have all of them so.
-fn inward_faces(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<bool> {
+fn inward_faces(team: Team<'_>, mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<bool> {
     let mut outward = vec![0i64; model.topology().faces.len()];
-    for ((given, turned), &face) in mesh.triangles.nodes.iter().zip(outward_triangles(mesh)).zip(&place.faces) {
+    for ((given, turned), &face) in mesh.triangles.nodes.iter().zip(outward_triangles(team, mesh)).zip(&place.faces) {
         outward[face as usize] += if *given == turned { 1 } else { -1 };
     }
     outward.into_iter().map(|balance| balance < 0).collect()

@@ -72,6 +72,7 @@ mod tests {
     use crate::mesh::TetMesh;
     use crate::mesh::adjacency::FACES;
     use crate::metric::{Background, Source, Sym3};
+    use crate::tasks::Team;
     use std::collections::BTreeMap;
 
     /// A shallow roof with the ridge a–b over the edge c–d, about which two more tetrahedra reach down to a fifth point; what shedding
@@ -95,10 +96,10 @@ mod tests {
         for faces in sides.into_values().filter(|faces| faces.len() == 1) {
             mesh.triangles.push(faces[0], 1);
         }
-        let (model, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).expect("it has a surface");
+        let (model, place) = Discrete::from_mesh(Team::alone(), &mesh, DEFAULT_RIDGE_ANGLE).expect("it has a surface");
         let background = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), vec![Sym3::ZERO; 5]);
         let (model, source) = (Model::Discrete(model), Source::Background(background));
-        let Filled { store, ids, .. } = build::fill(&mesh, &place, &source).expect("it is valid");
+        let Filled { store, ids, .. } = build::fill(Team::alone(), &mesh, &place, &source).expect("it is valid");
         let context = Context::new(store, &source, &model);
         let store = &context.store;
         let [a, b] = [ids[2], ids[3]];

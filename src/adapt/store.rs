@@ -10,6 +10,7 @@ use super::ids::{TetId, VertexId};
 use crate::geometry::Entity;
 use crate::mesh::vector::Vec3;
 use crate::metric::Sym3;
+use crate::tasks::Team;
 use bytemuck::Zeroable;
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
@@ -85,17 +86,24 @@ fn save<const N: usize>(to: &[AtomicU64; N], values: [f64; N]) {
     }
 }
 
-/// Records that [`rehouse`] moves at a time.
-const MOVED: usize = 1 << 15;
+/// Records that a task of [`rehouse`] moves, and tasks at a time.
+const MOVED: usize = 1 << 13;
+/// See [`MOVED`].
+const AT_ONCE: usize = 16;
 
 /// Moves the used records to an array of another capacity; needs them exclusively, so between sweeps only. They go from the back, and
 /// the old array gives back its memory as it gets shorter, so that they never are there twice.
-fn rehouse<T: Zeroable>(records: &mut Vec<T>, used: usize, capacity: usize) {
+fn rehouse<T: Zeroable + Send>(team: Team<'_>, records: &mut Vec<T>, used: usize, capacity: usize) {
     let mut roomy: Vec<T> = bytemuck::allocation::zeroed_vec(capacity.max(used));
     records.truncate(used);
     while !records.is_empty() {
-        let start = (records.len() - 1) / MOVED * MOVED;
-        roomy[start..].iter_mut().zip(&mut records[start..]).for_each(|(to, from)| std::mem::swap(to, from));
+        let start = (records.len() - 1) / (AT_ONCE * MOVED) * (AT_ONCE * MOVED);
+        let mut pairs: Vec<_> = roomy[start..].chunks_mut(MOVED).zip(records[start..].chunks_mut(MOVED)).collect();
+        team.fill(1, &mut pairs, |_, pairs| {
+            for (to, from) in pairs {
+                to.iter_mut().zip(from.iter_mut()).for_each(|(to, from)| std::mem::swap(to, from));
+            }
+        });
         records.truncate(start);
         records.shrink_to_fit();
     }
@@ -140,15 +148,15 @@ impl Store {
 
     /// Makes room for at least so many more vertices and tetrahedra, and where that takes growth for thrice as many, so that it is
     /// seldom. Between sweeps only.
-    pub fn reserve(&mut self, vertices: usize, tets: usize) {
+    pub fn reserve(&mut self, team: Team<'_>, vertices: usize, tets: usize) {
         let used = self.vertex_bound();
         if used + vertices > self.vertices.len() {
-            rehouse(&mut self.vertices, used, used + 3 * vertices);
-            rehouse(&mut self.places, used, used + 3 * vertices);
+            rehouse(team, &mut self.vertices, used, used + 3 * vertices);
+            rehouse(team, &mut self.places, used, used + 3 * vertices);
         }
         let used = self.tet_bound();
         if used + tets > self.tets.len() {
-            rehouse(&mut self.tets, used, used + 3 * tets);
+            rehouse(team, &mut self.tets, used, used + 3 * tets);
         }
     }
 
@@ -211,6 +219,11 @@ impl Store {
     /// Ids of live vertices. Between sweeps only.
     pub fn live_vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
         (0..self.vertex_bound() as u32).map(VertexId).filter(|&v| self.is_vertex(v))
+    }
+
+    /// As [`Store::live_vertices`], of some ids.
+    pub fn live_vertices_in(&self, ids: std::ops::Range<usize>) -> impl Iterator<Item = VertexId> + '_ {
+        (ids.start as u32..ids.end as u32).map(VertexId).filter(|&v| self.is_vertex(v))
     }
 
     /// As [`Store::live_tets`], of some ids.
@@ -289,6 +302,15 @@ impl Store {
     pub fn set_tet_of(&self, v: VertexId, t: TetId) {
         self.must_hold(v);
         self.vertices[v.index()].tet.store(t.0, Relaxed);
+    }
+
+    /// Tells the vertex of a tetrahedron: it keeps the first of all that it is told of.
+    #[inline]
+    pub fn lower_tet_of(&self, v: VertexId, t: TetId) {
+        let first = &self.vertices[v.index()].tet;
+        if t.0 < first.load(Relaxed) {
+            first.fetch_min(t.0, Relaxed);
+        }
     }
 
     /// Whether the vertex is alive.

@@ -3,6 +3,7 @@ use super::{Outcome, load};
 use crate::geometry::classify::{Associated, Options, Report, associate, classify};
 use crate::geometry::discrete::complete_boundary;
 use crate::mesh::io;
+use crate::tasks::{Plan, Team};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -26,15 +27,17 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
+    let pool = super::pool()?;
+    let team = Team::new(&pool, Plan::default());
     let mut read = io::read_mesh(&arguments.mesh)?;
     let mesh = &mut read.content;
     let model = load::model(&arguments.cad)?;
-    let added = complete_boundary(mesh);
+    let added = complete_boundary(team, mesh);
     if added > 0 {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
     }
     let options = Options { tolerance: arguments.tolerance, ..Options::default() };
-    let (classification, report) = classify(mesh, &model, &options)
+    let (classification, report) = classify(team, mesh, &model, &options)
         .map_err(|error| format!("{} on {}: {error}", arguments.mesh.display(), arguments.cad.display()))?;
     let associated = associate(mesh, &classification);
     io::write_mesh(&arguments.output, mesh)?;

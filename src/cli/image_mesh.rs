@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let domain = Domain::new(&image, arguments.isovalue).map_err(|error| format!("{name}: {error}"))?;
     drop(image);
     stage("image read");
-    let threads = arguments.threads.map_or_else(super::available, usize::from);
+    let threads = arguments.threads.map_or_else(super::cores, usize::from);
     let pool = Pool::new(threads)?;
     pool.prepare(arguments.backend)?;
     let wish =

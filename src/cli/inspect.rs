@@ -8,6 +8,7 @@ use crate::mesh::io::read_mesh;
 use crate::mesh::validity::{self, Validity};
 use crate::mesh::vector::{Vec3, add, scale};
 use crate::metric::{Analytic, Field, Statistics, Sym3};
+use crate::tasks::{Plan, Team};
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -69,14 +70,16 @@ struct Inspection {
 
 /// Runs the subcommand: code 0 for a valid mesh (that fits the model, if one is given), else 1.
 pub fn run(arguments: &Arguments) -> Outcome {
+    let pool = super::pool()?;
+    let team = Team::new(&pool, Plan::default());
     let mesh = read(&arguments.mesh)?;
     let model = arguments.cad.as_deref().map(load::model).transpose()?;
     let statistics = match metrics(arguments, &mesh)? {
-        Some(metrics) => Statistics::in_metric(&mesh, &metrics),
-        None => Statistics::in_space(&mesh),
+        Some(metrics) => Statistics::in_metric(team, &mesh, &metrics),
+        None => Statistics::in_space(team, &mesh),
     };
     let validity = validity::check(&mesh);
-    let cad = model.map(|model| on_model(&mesh, &model));
+    let cad = model.map(|model| on_model(team, &mesh, &model));
     let valid = validity.is_valid() && !matches!(cad, Some(Cad::Off { .. }));
     let worst_tet = worst(&mesh, &statistics);
     let inspection = Inspection { valid, validity, statistics, worst_tet, cad };
@@ -112,11 +115,11 @@ fn metrics(arguments: &Arguments, mesh: &TetMesh) -> Result<Option<Vec<Sym3>>, c
     Ok(arguments.analytic.map(|field| mesh.vertices.iter().map(|&p| field.at(p)).collect()))
 }
 
-fn on_model(mesh: &TetMesh, model: &Model) -> Cad {
-    match classify::classify(mesh, model, &classify::Options::default()) {
+fn on_model(team: Team<'_>, mesh: &TetMesh, model: &Model) -> Cad {
+    match classify::classify(team, mesh, model, &classify::Options::default()) {
         Ok((classification, report)) => {
             show(&report.notices);
-            Cad::On(fidelity::measure(mesh, model, &classification))
+            Cad::On(fidelity::measure(team, mesh, model, &classification))
         }
         Err(error) => Cad::Off { error: error.to_string() },
     }

@@ -1,4 +1,5 @@
 //! The command line: one file a subcommand. Parsing, progress and printing; no algorithm lives here.
+use crate::tasks::Pool;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -57,14 +58,19 @@ pub fn main() -> ExitCode {
     })
 }
 
+/// How many cores this process may use.
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// A thread for each core.
+fn pool() -> Result<Pool, crate::tasks::Error> {
+    Pool::new(cores())
+}
+
 /// Writes to standard output; a closed pipe (`| head`) is no error.
 fn print(text: &str) {
     let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
-}
-
-/// Threads when none are asked for: all cores.
-fn available() -> usize {
-    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
 /// Parses a positive number.

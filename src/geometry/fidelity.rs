@@ -2,9 +2,13 @@
 use super::classify::Classification;
 use super::{Entity, Evaluate, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::{FACES, TriangleIndex};
+use crate::mesh::adjacency::{FACES, Side, TriangleIndex};
 use crate::mesh::vector::{Vec3, add, area2, distance, dot, norm, scale, unit};
+use crate::tasks::{GRAIN, Team};
 use serde::Serialize;
+
+/// Triangles that one task measures.
+const TRIANGLES: usize = 1 << 10;
 
 /// The vertex that is farthest from something.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -48,37 +52,47 @@ pub struct Fidelity {
 }
 
 /// Measures a mesh that was classified on a model.
-pub fn measure(mesh: &TetMesh, model: &Model, classification: &Classification) -> Fidelity {
+pub fn measure(team: Team<'_>, mesh: &TetMesh, model: &Model, classification: &Classification) -> Fidelity {
     let mut fidelity = Fidelity::default();
-    measure_vertices(mesh, model, classification, &mut fidelity);
-    measure_normals(mesh, model, classification, &mut fidelity);
+    measure_vertices(team, mesh, model, classification, &mut fidelity);
+    measure_normals(team, mesh, model, classification, &mut fidelity);
     fidelity
 }
 
-fn measure_vertices(mesh: &TetMesh, model: &Model, classification: &Classification, fidelity: &mut Fidelity) {
+fn measure_vertices(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    model: &Model,
+    classification: &Classification,
+    fidelity: &mut Fidelity,
+) {
     let topology = model.topology();
-    let mut evaluator = model.evaluator();
-    let grow = |farthest: &mut Option<Farthest>, found: Farthest| {
-        if farthest.is_none_or(|known| found.distance > known.distance) {
-            *farthest = Some(found);
+    let mut found = team.collect(GRAIN, mesh.vertices.len(), |range, found| {
+        let mut evaluator = model.evaluator();
+        for vertex in range {
+            let (at, entity) = (mesh.vertices[vertex], classification.entities[vertex]);
+            let [t, v] = classification.parameters[vertex];
+            let distance = match entity {
+                Entity::Vertex(i) => distance(at, topology.vertices[i as usize].point),
+                Entity::Edge(i) => evaluator.closest_on_edge(i, at, Some(t)).distance,
+                Entity::Face(i) => evaluator.closest_on_face(i, at, Some([t, v])).distance,
+                Entity::Interior => continue,
+            };
+            found.push(Farthest { distance, vertex: vertex as u32, entity, at });
         }
-    };
-    for (vertex, &entity) in classification.entities.iter().enumerate() {
-        let at = mesh.vertices[vertex];
-        let [t, v] = classification.parameters[vertex];
-        let distance = match entity {
-            Entity::Vertex(i) => distance(at, topology.vertices[i as usize].point),
-            Entity::Edge(i) => evaluator.closest_on_edge(i, at, Some(t)).distance,
-            Entity::Face(i) => evaluator.closest_on_face(i, at, Some([t, v])).distance,
-            Entity::Interior => continue,
-        };
-        fidelity.vertices += 1;
-        let found = Farthest { distance, vertex: vertex as u32, entity, at };
-        grow(&mut fidelity.from_entity, found);
-        // The model is no farther than the own entity: most vertices need no search.
+    });
+    fidelity.vertices = found.len();
+    team.sort_by(&mut found, |a, b| b.distance.total_cmp(&a.distance).then(a.vertex.cmp(&b.vertex)));
+    fidelity.from_entity = found.first().copied();
+    // The model is no farther than the own entity: most vertices need no search.
+    let mut evaluator = model.evaluator();
+    for near in found {
+        if fidelity.from_model.is_some_and(|known| near.distance <= known.distance) {
+            break;
+        }
+        let distance = distance_from_model(topology, &mut evaluator, near.at, near.distance);
         if fidelity.from_model.is_none_or(|known| distance > known.distance) {
-            let distance = distance_from_model(topology, &mut evaluator, at, distance);
-            grow(&mut fidelity.from_model, Farthest { distance, ..found });
+            fidelity.from_model = Some(Farthest { distance, ..near });
         }
     }
 }
@@ -96,29 +110,35 @@ fn distance_from_model(topology: &Topology, evaluator: &mut impl Evaluate, p: Ve
     least
 }
 
-fn measure_normals(mesh: &TetMesh, model: &Model, classification: &Classification, fidelity: &mut Fidelity) {
-    let mut evaluator = model.evaluator();
-    let sides = sides(mesh);
-    let (mut sum, mut count) = (0.0, 0usize);
-    for (triangle, (nodes, &face)) in mesh.triangles.nodes.iter().zip(&classification.faces).enumerate() {
-        let [a, b, c] = nodes.map(|v| mesh.vertices[v as usize]);
-        let at = scale(add(add(a, b), c), 1.0 / 3.0);
-        let guess = nodes.iter().find_map(|&v| parameters_on(&mut evaluator, classification, v, face));
-        let foot = evaluator.closest_on_face(face, at, guess);
-        let truth = evaluator.face_normal(face, foot.uv);
-        let Some(side) = sides[triangle] else { continue };
-        if dot(truth, truth) == 0.0 {
-            continue;
+fn measure_normals(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    model: &Model,
+    classification: &Classification,
+    fidelity: &mut Fidelity,
+) {
+    let sides = sides(team, mesh);
+    let found = team.collect(TRIANGLES, mesh.triangles.len(), |range, found| {
+        let mut evaluator = model.evaluator();
+        for triangle in range {
+            let (nodes, face) = (mesh.triangles.nodes[triangle], classification.faces[triangle]);
+            let Some(side) = sides[triangle] else { continue };
+            let [a, b, c] = nodes.map(|v| mesh.vertices[v as usize]);
+            let at = scale(add(add(a, b), c), 1.0 / 3.0);
+            let guess = nodes.iter().find_map(|&v| parameters_on(&mut evaluator, classification, v, face));
+            let foot = evaluator.closest_on_face(face, at, guess);
+            let truth = evaluator.face_normal(face, foot.uv);
+            if dot(truth, truth) > 0.0 {
+                let cosine = dot(unit(area2(a, b, c)), truth);
+                let deviation = 1.0 - side.map_or(cosine.abs(), |sign| sign * cosine);
+                found.push(Deviation { deviation, triangle: triangle as u32, face, at });
+            }
         }
-        let cosine = dot(unit(area2(a, b, c)), truth);
-        let deviation = 1.0 - side.map_or(cosine.abs(), |sign| sign * cosine);
-        sum += deviation;
-        count += 1;
-        if fidelity.worst_normal.is_none_or(|known| deviation > known.deviation) {
-            fidelity.worst_normal = Some(Deviation { deviation, triangle: triangle as u32, face, at });
-        }
-    }
-    fidelity.mean_normal_deviation = sum / count.max(1) as f64;
+    });
+    let sum: f64 = found.iter().map(|one| one.deviation).sum();
+    fidelity.mean_normal_deviation = sum / found.len().max(1) as f64;
+    let worse = |a: &Deviation, b: &Deviation| a.deviation.total_cmp(&b.deviation).then(b.triangle.cmp(&a.triangle));
+    fidelity.worst_normal = found.into_iter().max_by(worse);
 }
 
 /// Parameters of a mesh vertex on a face, for a guess.
@@ -138,20 +158,20 @@ fn parameters_on(
 
 /// For each triangle +1 when its normal points out of its only tetrahedron, −1 when into it, no sign between two
 /// tetrahedra; none when it is no face of any.
-fn sides(mesh: &TetMesh) -> Vec<Option<Option<f64>>> {
+fn sides(team: Team<'_>, mesh: &TetMesh) -> Vec<Option<Option<f64>>> {
     let mut sides = vec![None; mesh.triangles.len()];
-    let index = TriangleIndex::new(&mesh.triangles.nodes, mesh.vertices.len());
-    index.for_each_side(&mesh.tets.nodes, |triangle, tet, face| {
+    let index = TriangleIndex::new(team, &mesh.triangles.nodes, mesh.vertices.len());
+    for Side { triangle, tet, face } in index.sides(team, &mesh.tets.nodes) {
         let side = &mut sides[triangle as usize];
         if side.is_some() {
             *side = Some(None);
-            return;
+            continue;
         }
         let nodes = mesh.triangles.nodes[triangle as usize];
-        let outward = FACES[face].map(|i| mesh.tets.nodes[tet as usize][i]);
+        let outward = FACES[face as usize].map(|i| mesh.tets.nodes[tet as usize][i]);
         let turned = (0..3).any(|i| (0..3).all(|j| outward[(i + j) % 3] == nodes[j]));
         *side = Some(Some(if turned { 1.0 } else { -1.0 }));
-    });
+    }
     sides
 }
 
@@ -164,18 +184,18 @@ mod tests {
     #[test]
     fn a_cube_on_its_own_surface() {
         let mut mesh = cube(2);
-        let (model, classification) = Discrete::from_mesh(&mesh, 30.0).unwrap();
+        let (model, classification) = Discrete::from_mesh(Team::alone(), &mesh, 30.0).unwrap();
         let model = Model::Discrete(model);
         // The orientation of the triangles in the file does not matter.
         mesh.triangles.nodes[3].swap(0, 1);
-        let fidelity = measure(&mesh, &model, &classification);
+        let fidelity = measure(Team::alone(), &mesh, &model, &classification);
         assert_eq!(fidelity.vertices, 26);
         assert!(fidelity.from_entity.unwrap().distance < 1e-14 && fidelity.from_model.unwrap().distance < 1e-14);
         assert!(fidelity.worst_normal.unwrap().deviation < 1e-14);
         // A vertex within a side, pushed in: by 0.1 from both, and the triangles around it lean.
         let vertex = mesh.vertices.iter().position(|&p| p == [0.5, 0.5, 0.0]).unwrap();
         mesh.vertices[vertex][2] = 0.1;
-        let fidelity = measure(&mesh, &model, &classification);
+        let fidelity = measure(Team::alone(), &mesh, &model, &classification);
         let (own, all) = (fidelity.from_entity.unwrap(), fidelity.from_model.unwrap());
         assert_eq!((own.vertex, all.vertex), (vertex as u32, vertex as u32));
         assert!((own.distance - 0.1).abs() < 1e-12 && (all.distance - 0.1).abs() < 1e-12);
@@ -184,7 +204,7 @@ mod tests {
         // Slid over a side it leaves its entity, not the model: an edge's vertex here.
         let vertex = mesh.vertices.iter().position(|&p| p == [0.5, 0.0, 1.0]).unwrap();
         mesh.vertices[vertex] = [0.5, 0.2, 1.0];
-        let fidelity = measure(&mesh, &model, &classification);
+        let fidelity = measure(Team::alone(), &mesh, &model, &classification);
         assert!((fidelity.from_entity.unwrap().distance - 0.2).abs() < 1e-12);
         assert!((fidelity.from_model.unwrap().distance - 0.1).abs() < 1e-12);
     }

@@ -1,5 +1,7 @@
 //! Neighbours of tetrahedra, triangles among their faces, and unique edges of a plain mesh.
 pub use super::matched_faces::{Crowd, MatchedFaces};
+use crate::tasks::{Buckets, GRAIN, Team};
+use std::ops::Range;
 
 /// No neighbour: the face is on the boundary.
 pub const NONE: u32 = u32::MAX;
@@ -42,7 +44,7 @@ pub fn sorted_faces(tets: &[[u32; 4]]) -> Vec<FaceKey> {
 /// The neighbour across each face, shape (n, 4); [`NONE`] on the boundary. Of a face of more than two tetrahedra the
 /// first two are neighbours.
 pub fn neighbours(tets: &[[u32; 4]]) -> Vec<[u32; 4]> {
-    MatchedFaces::of(tets).neighbours
+    MatchedFaces::of(Team::alone(), tets).neighbours
 }
 
 /// The triangles of a mesh by their nodes.
@@ -55,12 +57,12 @@ pub struct TriangleIndex {
 
 impl TriangleIndex {
     /// Of triangles on so many vertices.
-    pub fn new(triangles: &[[u32; 3]], vertices: usize) -> Self {
+    pub fn new(team: Team<'_>, triangles: &[[u32; 3]], vertices: usize) -> Self {
         let mut index = Self {
             triangles: triangles.iter().map(|&nodes| sorted3(nodes)).zip(0..).collect(),
             on_surface: vec![false; vertices],
         };
-        index.triangles.sort_unstable();
+        team.sort(&mut index.triangles);
         triangles.iter().flatten().for_each(|&v| index.on_surface[v as usize] = true);
         index
     }
@@ -72,76 +74,81 @@ impl TriangleIndex {
         self.triangles[first..].iter().take_while(move |triangle| triangle.0 == key).map(|triangle| triangle.1)
     }
 
-    /// Calls `f` with each triangle that is a face of a tetrahedron, that tetrahedron and the number of the face there, in the order
-    /// of the tetrahedra.
-    pub fn for_each_side(&self, tets: &[[u32; 4]], mut f: impl FnMut(u32, u32, usize)) {
-        for (t, nodes) in tets.iter().enumerate() {
-            let on = nodes.map(|v| self.on_surface[v as usize]);
-            // Most tetrahedra are far from the surface.
-            if on.into_iter().map(u8::from).sum::<u8>() < 3 {
-                continue;
+    /// The sides of the triangles, in the order of the tetrahedra.
+    pub fn sides(&self, team: Team<'_>, tets: &[[u32; 4]]) -> Vec<Side> {
+        team.collect(GRAIN, tets.len(), |range, sides| {
+            for tet in range {
+                let nodes = tets[tet];
+                let on = nodes.map(|v| self.on_surface[v as usize]);
+                // Most tetrahedra are far from the surface.
+                if on.into_iter().map(u8::from).sum::<u8>() < 3 {
+                    continue;
+                }
+                for (k, face) in FACES.iter().enumerate().filter(|(_, face)| face.iter().all(|&i| on[i])) {
+                    let side = |triangle| Side { triangle, tet: tet as u32, face: k as u32 };
+                    sides.extend(self.find(face.map(|i| nodes[i])).map(side));
+                }
             }
-            for (k, face) in FACES.iter().enumerate().filter(|(_, face)| face.iter().all(|&i| on[i])) {
-                self.find(face.map(|i| nodes[i])).for_each(|triangle| f(triangle, t as u32, k));
-            }
-        }
+        })
     }
+}
+
+/// A triangle as a face of a tetrahedron.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Side {
+    /// The triangle.
+    pub triangle: u32,
+    /// The tetrahedron.
+    pub tet: u32,
+    /// Number of the face there.
+    pub face: u32,
 }
 
 /// The edges of the tetrahedra, each once, lower node first, sorted.
 pub fn unique_edges(tets: &[[u32; 4]]) -> Vec<[u32; 2]> {
-    let mut edges = Vec::new();
-    for_each_edge(tets, |edge| edges.push(edge));
-    edges
+    let edges = Edges::of(Team::alone(), tets);
+    let mut found = Vec::new();
+    edges.for_each(0..edges.nodes(), |edge| found.push(edge));
+    found
 }
 
-/// Parts in which the edges of a mesh are gathered: one after the other, for the memory.
-const PARTS: usize = 4;
+/// The edges of tetrahedra, known by their lower nodes.
+pub struct Edges<'t> {
+    tets: &'t [[u32; 4]],
+    /// For each node the tetrahedra in which it is not the greatest: 12 bytes a tetrahedron.
+    at: Buckets,
+    nodes: usize,
+}
 
-/// Calls `f` with the edges of the tetrahedra, each once, lower node first, in the order of their nodes.
-///
-/// Edges are gathered at their lower node, a part of the nodes at a time: beside 12 bytes a vertex this needs 6 bytes a tetrahedron.
-pub fn for_each_edge(tets: &[[u32; 4]], mut f: impl FnMut([u32; 2])) {
-    let vertices = tets.iter().flatten().max().map_or(0, |&greatest| greatest as usize + 1);
-    let ends = |nodes: &[u32; 4]| EDGES.map(|[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]);
-    let mut counts = vec![0u32; vertices];
-    tets.iter().flat_map(ends).for_each(|[low, _]| counts[low as usize] += 1);
-    let share = (6 * tets.len()).div_ceil(PARTS);
-    let mut seen = vec![u32::MAX; vertices];
-    let (mut upper, mut starts, mut begin) = (Vec::new(), Vec::new(), 0);
-    while begin < vertices {
-        starts.clear();
-        starts.push(0);
-        let (mut end, mut total) = (begin, 0);
-        while end < vertices && (end == begin || total + counts[end] as usize <= share) {
-            total += counts[end] as usize;
-            starts.push(total);
-            end += 1;
+impl<'t> Edges<'t> {
+    /// Of tetrahedra, fewer than 2³⁰.
+    pub fn of(team: Team<'_>, tets: &'t [[u32; 4]]) -> Self {
+        let greatest = |range: Range<usize>| tets[range].iter().flatten().max().copied();
+        let greatest = team.chunks(GRAIN, tets.len(), greatest).into_iter().max().flatten();
+        let nodes = greatest.map_or(0, |greatest| greatest as usize + 1);
+        let at = Buckets::of(team, nodes, tets.len(), |t| {
+            let greatest = tets[t].into_iter().max().unwrap_or(0);
+            tets[t].map(|v| if v < greatest { v } else { Buckets::NOWHERE })
+        });
+        Self { tets, at, nodes }
+    }
+
+    /// The nodes are less than this.
+    pub fn nodes(&self) -> usize {
+        self.nodes
+    }
+
+    /// Calls `f` with the edges whose lower node is in the range, each once, in the order of their nodes.
+    pub fn for_each(&self, range: Range<usize>, mut f: impl FnMut([u32; 2])) {
+        let mut upper = Vec::new();
+        for low in range {
+            let tets = self.at.of_key(low).flat_map(|entry| self.tets[entry as usize / 4]);
+            upper.clear();
+            upper.extend(tets.filter(|&v| v as usize > low));
+            upper.sort_unstable();
+            upper.dedup();
+            upper.iter().for_each(|&high| f([low as u32, high]));
         }
-        upper.resize(total, 0);
-        // From each node's end to its beginning, so that no second list of places is needed.
-        let mut left = counts[begin..end].to_vec();
-        for [low, high] in tets.iter().flat_map(ends) {
-            if let Some(left) = (low as usize).checked_sub(begin).and_then(|at| Some((left.get_mut(at)?, starts[at]))) {
-                *left.0 -= 1;
-                upper[left.1 + *left.0 as usize] = high;
-            }
-        }
-        for (low, bounds) in (begin..end).zip(starts.windows(2)) {
-            let found = &mut upper[bounds[0]..bounds[1]];
-            // Each edge comes once for each of its tetrahedra.
-            let mut count = 0;
-            for at in 0..found.len() {
-                let high = found[at];
-                if std::mem::replace(&mut seen[high as usize], low as u32) != low as u32 {
-                    found[count] = high;
-                    count += 1;
-                }
-            }
-            found[..count].sort_unstable();
-            found[..count].iter().for_each(|&high| f([low as u32, high]));
-        }
-        begin = end;
     }
 }
 

@@ -1,5 +1,6 @@
 //! The Hilbert curve: points that are near each other on it are near each other in space.
 use super::vector::Vec3;
+use crate::tasks::{GRAIN, Team};
 
 /// Bits of each coordinate.
 const BITS: u32 = 20;
@@ -50,16 +51,22 @@ fn spread(bits: u32) -> u64 {
     x
 }
 
-/// The points in the order of the Hilbert curve through their box; those of one cell in the order given.
-pub fn order(points: &[Vec3]) -> Vec<u32> {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for p in points {
-        low = std::array::from_fn(|i| low[i].min(p[i]));
-        high = std::array::from_fn(|i| high[i].max(p[i]));
-    }
-    let mut keys: Vec<(u64, u32)> = points.iter().map(|&p| key(p, low, high)).zip(0..).collect();
-    keys.sort_unstable();
-    keys.into_iter().map(|(_, point)| point).collect()
+/// So many points in the order of the Hilbert curve through their box; those of one cell in the order given.
+pub fn order(team: Team<'_>, count: usize, point: impl Fn(usize) -> Vec3 + Sync) -> Vec<u32> {
+    let [low, high] = box_of(team, count, &point);
+    let mut keys = team.map(GRAIN, count, |i| (key(point(i), low, high), i as u32));
+    team.sort(&mut keys);
+    team.map(GRAIN, count, |i| keys[i].1)
+}
+
+/// The box of points.
+fn box_of(team: Team<'_>, count: usize, point: impl Fn(usize) -> Vec3 + Sync) -> [Vec3; 2] {
+    const NOTHING: [Vec3; 2] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    let join = |[low, high]: [Vec3; 2], [p, q]: [Vec3; 2]| {
+        [std::array::from_fn(|i| low[i].min(p[i])), std::array::from_fn(|i| high[i].max(q[i]))]
+    };
+    let boxes = team.chunks(GRAIN, count, |range| range.map(&point).fold(NOTHING, |all, p| join(all, [p, p])));
+    boxes.into_iter().fold(NOTHING, join)
 }
 
 #[cfg(test)]

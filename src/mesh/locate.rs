@@ -5,6 +5,8 @@ use super::box_tree::BoxTree;
 use super::starts::Starts;
 use super::vector::{Vec3, add, cross, distance, dot, norm, scale, sub, volume6};
 use super::{Elements, TetMesh};
+use crate::tasks::{GRAIN, Team};
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// A barycentric coordinate down to this counts as inside.
@@ -54,19 +56,21 @@ impl Locator {
     /// # Panics
     /// When there is no tetrahedron or an index is out of range.
     pub fn new(vertices: Vec<Vec3>, tets: Vec<[u32; 4]>) -> Self {
-        let faces = MatchedFaces::of(&tets);
+        let faces = MatchedFaces::of(Team::alone(), &tets);
         let tets = Elements { nodes: tets, refs: Vec::new() };
-        Self::on(Arc::new(TetMesh { vertices, tets, ..TetMesh::default() }), faces)
+        Self::on(Team::alone(), Arc::new(TetMesh { vertices, tets, ..TetMesh::default() }), faces)
     }
 
     /// On a mesh that others use too, with its [`MatchedFaces`].
     ///
     /// # Panics
     /// When there is no tetrahedron, an index is out of range, or the faces are those of fewer tetrahedra.
-    pub fn on(mesh: Arc<TetMesh>, faces: MatchedFaces) -> Self {
+    pub fn on(team: Team<'_>, mesh: Arc<TetMesh>, faces: MatchedFaces) -> Self {
         assert!(!mesh.tets.is_empty(), "a mesh without tetrahedra cannot be searched");
         assert_eq!(mesh.tets.len(), faces.neighbours.len(), "one row of neighbours a tetrahedron");
-        assert!(mesh.tets.nodes.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()), "node out of range");
+        let is_inside =
+            |range: Range<usize>| mesh.tets.nodes[range].iter().flatten().all(|&v| (v as usize) < mesh.vertices.len());
+        assert!(!team.chunks(GRAIN, mesh.tets.len(), is_inside).contains(&false), "node out of range");
         Self { mesh, faces, boundary: OnceLock::new(), tree: OnceLock::new(), starts: OnceLock::new() }
     }
 

@@ -1,5 +1,7 @@
 //! Which tetrahedra share a face.
 use super::adjacency::{FACES, NONE, sorted3};
+use crate::tasks::{Buckets, GRAIN, Team};
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// A face of more than two tetrahedra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,73 +26,31 @@ impl MatchedFaces {
     /// Of tetrahedra, fewer than 2³⁰. Faces are gathered at their least node and matched there in a small table: time and memory
     /// (16 bytes a tetrahedron beside the result) grow with the number of tetrahedra only, and little memory is
     /// walked at random where the numbers of near nodes are near.
-    pub fn of(tets: &[[u32; 4]]) -> Self {
-        let (starts, sides) = sides_by_least_node(tets);
-        let mut matched = Self { neighbours: vec![[NONE; 4]; tets.len()], crowded: None };
-        let mut table = Table::default();
-        for (v, bounds) in starts.windows(2).enumerate() {
-            matched.match_at(v as u32, &sides[bounds[0] as usize..bounds[1] as usize], tets, &mut table);
-        }
-        matched
-    }
-
-    /// Matches the faces whose least node is v.
-    fn match_at(&mut self, v: u32, sides: &[u32], tets: &[[u32; 4]], table: &mut Table) {
-        table.clear(sides.len());
-        for &side in sides {
-            let (tet, face) = (side / 4, side as usize % 4);
-            let nodes = tets[tet as usize];
-            let [_, b, c] = sorted3(FACES[face].map(|i| nodes[i]));
-            let slot = table.slot([b, c]);
-            slot.count += 1;
-            match slot.count {
-                1 => (slot.key, slot.side) = ([b, c], side),
-                2 => {
-                    let (other, across) = (slot.side / 4, slot.side as usize % 4);
-                    self.neighbours[tet as usize][face] = other;
-                    self.neighbours[other as usize][across] = tet;
-                }
-                tets => {
-                    let crowd = Crowd { nodes: [v, b, c], tets: tets as usize };
-                    if self.crowded.is_none_or(|known| crowd.nodes <= known.nodes) {
-                        self.crowded = Some(crowd);
-                    }
-                }
-            }
-        }
+    pub fn of(team: Team<'_>, tets: &[[u32; 4]]) -> Self {
+        let sides = sides_by_least_node(team, tets);
+        let neighbours: Vec<_> = (0..tets.len()).map(|_| [NONE; 4].map(AtomicU32::new)).collect();
+        let crowds = team.chunks(GRAIN, sides.keys(), |range| {
+            let mut table = Table::default();
+            // All are matched, whether or not one is crowded.
+            let crowds = range.filter_map(|v| table.match_at(v as u32, &sides, tets, &neighbours));
+            crowds.reduce(|first, _| first)
+        });
+        let neighbours = neighbours.into_iter().map(|across| across.map(AtomicU32::into_inner)).collect();
+        Self { neighbours, crowded: crowds.into_iter().flatten().next() }
     }
 }
 
-/// The sides 4·tet + face in the order of the least node of the face, and where those of each node begin.
-fn sides_by_least_node(tets: &[[u32; 4]]) -> (Vec<u32>, Vec<u32>) {
+/// The sides 4·tet + face at the least node of the face.
+fn sides_by_least_node(team: Team<'_>, tets: &[[u32; 4]]) -> Buckets {
+    let greatest = team.chunks(GRAIN, tets.len(), |range| tets[range].iter().flatten().max().copied());
+    let nodes = greatest.into_iter().max().flatten().map_or(0, |greatest| greatest as usize + 1);
     // Three faces have the least node of the tetrahedron, and the one opposite to it has the second least.
-    let least = |nodes: &[u32; 4]| {
+    Buckets::of::<4>(team, nodes, tets.len(), |t| {
+        let nodes = tets[t];
         let at = (1..4).fold(0, |least, i| if nodes[i] < nodes[least] { i } else { least });
         let second = (0..4).filter(|&i| i != at).map(|i| nodes[i]).min().unwrap_or(nodes[at]);
-        (at, nodes[at], second)
-    };
-    let vertices = tets.iter().flatten().max().map_or(0, |&greatest| greatest as usize + 1);
-    // Counted two places on: while the sides are dealt out, each start moves to the next one's place.
-    let mut starts = vec![0u32; vertices + 2];
-    for nodes in tets {
-        let (_, first, second) = least(nodes);
-        starts[first as usize + 2] += 3;
-        starts[second as usize + 2] += 1;
-    }
-    for v in 2..starts.len() {
-        starts[v] += starts[v - 1];
-    }
-    let mut sides = vec![0u32; 4 * tets.len()];
-    for (t, nodes) in tets.iter().enumerate() {
-        let (at, first, second) = least(nodes);
-        for face in 0..4 {
-            let start = &mut starts[if face == at { second } else { first } as usize + 1];
-            sides[*start as usize] = (4 * t + face) as u32;
-            *start += 1;
-        }
-    }
-    starts.pop();
-    (starts, sides)
+        std::array::from_fn(|face| if face == at { second } else { nodes[at] })
+    })
 }
 
 /// A face at its least node.
@@ -133,6 +93,35 @@ impl Table {
         }
         &mut self.slots[at]
     }
+
+    /// Matches the faces whose least node is v; returns the first one of more than two tetrahedra.
+    fn match_at(&mut self, v: u32, sides: &Buckets, tets: &[[u32; 4]], neighbours: &[[AtomicU32; 4]]) -> Option<Crowd> {
+        let sides = sides.of_key(v as usize);
+        self.clear(sides.len());
+        let mut crowded: Option<Crowd> = None;
+        for side in sides {
+            let (tet, face) = (side as usize / 4, side as usize % 4);
+            let nodes = tets[tet];
+            let [_, b, c] = sorted3(FACES[face].map(|i| nodes[i]));
+            let slot = self.slot([b, c]);
+            slot.count += 1;
+            match slot.count {
+                1 => (slot.key, slot.side) = ([b, c], side),
+                2 => {
+                    let (other, across) = (slot.side as usize / 4, slot.side as usize % 4);
+                    neighbours[tet][face].store(other as u32, Relaxed);
+                    neighbours[other][across].store(tet as u32, Relaxed);
+                }
+                tets => {
+                    let crowd = Crowd { nodes: [v, b, c], tets: tets as usize };
+                    if crowded.is_none_or(|known| crowd.nodes <= known.nodes) {
+                        crowded = Some(crowd);
+                    }
+                }
+            }
+        }
+        crowded
+    }
 }
 
 #[cfg(test)]
@@ -162,11 +151,11 @@ mod tests {
                 crowds.push(Crowd { nodes: same[0].nodes, tets: same.len() });
             }
         }
-        let found = MatchedFaces::of(&tets);
+        let found = MatchedFaces::of(Team::alone(), &tets);
         assert_eq!(found.neighbours, expected);
         assert!(crowds.len() > 3);
         assert_eq!(found.crowded, Some(crowds[0]));
-        assert_eq!(MatchedFaces::of(&cube(2).tets.nodes).crowded, None);
+        assert_eq!(MatchedFaces::of(Team::alone(), &cube(2).tets.nodes).crowded, None);
         assert!(neighbours(&[]).is_empty());
     }
 }

@@ -4,6 +4,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::locate::Locator;
 use crate::mesh::vector::Vec3;
+use crate::tasks::{GRAIN, Team};
 use std::sync::Arc;
 
 /// A mesh with ln M at its vertices. Shared by all threads; every caller keeps its own hint.
@@ -26,9 +27,9 @@ impl Background {
     ///
     /// # Panics
     /// As [`Background::new`].
-    pub fn on(mesh: Arc<TetMesh>, faces: MatchedFaces, logs: Vec<Sym3>) -> Self {
+    pub fn on(team: Team<'_>, mesh: Arc<TetMesh>, faces: MatchedFaces, logs: Vec<Sym3>) -> Self {
         assert_eq!(mesh.vertices.len(), logs.len(), "one ln M a vertex");
-        Self { locator: Locator::on(mesh, faces), logs }
+        Self { locator: Locator::on(team, mesh, faces), logs }
     }
 
     /// ln M at p, log-Euclidean in the tetrahedron that contains p, or in the nearest one at the point nearest to p.
@@ -45,10 +46,10 @@ impl Background {
     }
 
     /// Adds `log_factor` to the diagonal of every ln M: M is scaled by e^log_factor.
-    pub fn scale(&mut self, log_factor: f64) {
-        for log in &mut self.logs {
-            *log = log.plus_identity(log_factor);
-        }
+    pub fn scale(&mut self, team: Team<'_>, log_factor: f64) {
+        team.fill(GRAIN, &mut self.logs, |_, logs| {
+            logs.iter_mut().for_each(|log| *log = log.plus_identity(log_factor));
+        });
     }
 
     /// The mesh, for searches.
@@ -83,7 +84,7 @@ mod tests {
         // Outside: the value at the nearest point.
         let outside = background.log_at([0.3, 1.5, 0.6], &mut hint);
         assert!((outside.0[1] - 2.0).abs() < 1e-14 && (outside.0[0] - 0.3).abs() < 1e-14, "{outside:?}");
-        background.scale(3.0);
+        background.scale(Team::alone(), 3.0);
         assert!((background.log_at([0.25, 0.5, 0.5], &mut hint).0[0] - 3.25).abs() < 1e-14);
     }
 }

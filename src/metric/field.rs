@@ -2,6 +2,7 @@
 use super::{Error, Sym3};
 use crate::mesh::io::{self, FieldKind, Read, Solution, SolutionField};
 use crate::mesh::{TetMesh, vector::volume6};
+use crate::tasks::{GRAIN, Team};
 use std::path::Path;
 
 /// A metric at every vertex of a mesh.
@@ -14,14 +15,14 @@ pub struct Field {
 impl Field {
     /// Reads a .sol or .solb file of a mesh of so many vertices. Every tensor must be positive definite.
     pub fn read(path: &Path, vertices: usize) -> Result<Read<Self>, Error> {
-        let Read { content: metrics, notices } = read_each(path, vertices, |m| m.is_spd().then_some(m))?;
+        let Read { content: metrics, notices } = read_each(Team::alone(), path, vertices, |m| m.is_spd().then_some(m))?;
         Ok(Read { content: Self { metrics }, notices })
     }
 
     /// Reads ln M at every vertex from a .sol or .solb file of M, as [`Field::read`] checks it: the eigenvalues that tell whether a
     /// tensor is positive definite give its logarithm.
-    pub fn read_logs(path: &Path, vertices: usize) -> Result<Read<Vec<Sym3>>, Error> {
-        read_each(path, vertices, |m| {
+    pub fn read_logs(team: Team<'_>, path: &Path, vertices: usize) -> Result<Read<Vec<Sym3>>, Error> {
+        read_each(team, path, vertices, |m| {
             let mut eigen = m.eigen_spd();
             let positive = eigen.values[0] > 0.0;
             eigen.values = eigen.values.map(f64::ln);
@@ -38,21 +39,29 @@ impl Field {
 }
 
 /// What `convert` makes of the tensors of a file; none for one that is not positive definite.
-fn read_each(path: &Path, vertices: usize, convert: impl Fn(Sym3) -> Option<Sym3>) -> Result<Read<Vec<Sym3>>, Error> {
+fn read_each(
+    team: Team<'_>,
+    path: &Path,
+    vertices: usize,
+    convert: impl Fn(Sym3) -> Option<Sym3> + Sync,
+) -> Result<Read<Vec<Sym3>>, Error> {
     let Read { content, notices } = io::read_solution(path)?;
     let tensors = only_tensors(path, &content)?;
     if content.vertices != vertices {
         return Err(Error::Count { path: path.into(), found: content.vertices, expected: vertices });
     }
-    let mut converted = Vec::with_capacity(vertices);
-    for (vertex, &m) in tensors.values.as_chunks().0.iter().enumerate() {
-        let Some(tensor) = convert(Sym3(m)) else {
-            let eigenvalues = Sym3(m).eigen_jacobi().values;
-            return Err(Error::NotPositive { path: path.into(), vertex: vertex + 1, eigenvalues });
-        };
-        converted.push(tensor);
+    let tensors = tensors.values.as_chunks().0;
+    let parts = team.chunks(GRAIN, vertices, |range| {
+        let convert = |vertex: usize| convert(Sym3(tensors[vertex])).ok_or(vertex);
+        range.map(convert).collect::<Result<Vec<Sym3>, usize>>()
+    });
+    match parts.into_iter().collect() {
+        Ok(converted) => Ok(Read { content: team.join(converted), notices }),
+        Err(vertex) => {
+            let eigenvalues = Sym3(tensors[vertex]).eigen_jacobi().values;
+            Err(Error::NotPositive { path: path.into(), vertex: vertex + 1, eigenvalues })
+        }
     }
-    Ok(Read { content: converted, notices })
 }
 
 /// The one tensor field of a solution.
@@ -79,32 +88,37 @@ fn kind_name(kind: FieldKind) -> &'static str {
 
 /// Complexity C = Σ_v √det(M_v)·V_v of a mesh with a metric at every vertex; V_v is a quarter of the volume of the
 /// tetrahedra at v. A unit mesh has about 2C vertices and 12C tetrahedra.
-pub fn complexity(mesh: &TetMesh, metrics: &[Sym3]) -> f64 {
-    weighted_complexity(mesh, metrics.iter().map(Sym3::sqrt_det).collect())
+pub fn complexity(team: Team<'_>, mesh: &TetMesh, metrics: &[Sym3]) -> f64 {
+    weighted_complexity(team, mesh, &team.map(GRAIN, metrics.len(), |v| metrics[v].sqrt_det()))
 }
 
 /// [`complexity`] from ln M: √det M = e^(tr/2).
-pub fn complexity_of_logs(mesh: &TetMesh, logs: &[Sym3]) -> f64 {
-    weighted_complexity(mesh, logs.iter().map(|log| (0.5 * log.trace()).exp()).collect())
+pub fn complexity_of_logs(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 {
+    weighted_complexity(team, mesh, &team.map(GRAIN, logs.len(), |v| (0.5 * logs[v].trace()).exp()))
 }
 
-fn weighted_complexity(mesh: &TetMesh, densities: Vec<f64>) -> f64 {
+fn weighted_complexity(team: Team<'_>, mesh: &TetMesh, densities: &[f64]) -> f64 {
     let of_tet = |tet: &[u32; 4]| {
         let [a, b, c, d] = tet.map(|v| mesh.vertices[v as usize]);
         let density: f64 = tet.iter().map(|&v| densities[v as usize]).sum();
         volume6(a, b, c, d) * density
     };
-    mesh.tets.nodes.iter().map(of_tet).sum::<f64>() / 24.0
+    over_tets(team, mesh, of_tet) / 24.0
 }
 
 /// Complexity ∫ √det M of the log-Euclidean interpolant, exactly: √det M = e^ℓ with ℓ = tr(ln M)/2 linear in a tetrahedron. On a
 /// mesh that does not resolve its metric this, and not [`complexity_of_logs`], is what an adapted mesh will have.
-pub fn complexity_between(mesh: &TetMesh, logs: &[Sym3]) -> f64 {
+pub fn complexity_between(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 {
     let of_tet = |tet: &[u32; 4]| {
         let [a, b, c, d] = tet.map(|v| mesh.vertices[v as usize]);
         volume6(a, b, c, d) / 6.0 * mean_exponential(tet.map(|v| 0.5 * logs[v as usize].trace()))
     };
-    mesh.tets.nodes.iter().map(of_tet).sum()
+    over_tets(team, mesh, of_tet)
+}
+
+/// Sum over the tetrahedra.
+fn over_tets(team: Team<'_>, mesh: &TetMesh, of_tet: impl Fn(&[u32; 4]) -> f64 + Sync) -> f64 {
+    team.sum(GRAIN, mesh.tets.len(), |range| mesh.tets.nodes[range].iter().map(&of_tet).sum())
 }
 
 /// Mean of e^ℓ over a tetrahedron, ℓ linear with these values at its vertices: Σ_k 3!/(k+3)! h_k(ℓ), with h_k the complete
@@ -137,11 +151,9 @@ pub fn complexity_factor(present: f64, target: f64) -> f64 {
 }
 
 /// Scales the metrics to a complexity on this mesh; returns the factor of M.
-pub fn scale_to_complexity(mesh: &TetMesh, metrics: &mut [Sym3], target: f64) -> f64 {
-    let factor = complexity_factor(complexity(mesh, metrics), target);
-    for m in metrics {
-        *m = m.times(factor);
-    }
+pub fn scale_to_complexity(team: Team<'_>, mesh: &TetMesh, metrics: &mut [Sym3], target: f64) -> f64 {
+    let factor = complexity_factor(complexity(team, mesh, metrics), target);
+    team.fill(GRAIN, metrics, |_, metrics| metrics.iter_mut().for_each(|m| *m = m.times(factor)));
     factor
 }
 
@@ -163,12 +175,12 @@ mod tests {
     fn complexity_of_a_constant_metric() {
         let mesh = cube(3);
         let mut metrics = vec![Sym3::diagonal(4.0, 9.0, 25.0); mesh.vertices.len()];
-        assert!((complexity(&mesh, &metrics) - 30.0).abs() < 1e-12);
+        assert!((complexity(Team::alone(), &mesh, &metrics) - 30.0).abs() < 1e-12);
         let logs: Vec<Sym3> = metrics.iter().map(Sym3::ln).collect();
-        assert!((complexity_of_logs(&mesh, &logs) - 30.0).abs() < 1e-12);
-        let factor = scale_to_complexity(&mesh, &mut metrics, 240.0);
+        assert!((complexity_of_logs(Team::alone(), &mesh, &logs) - 30.0).abs() < 1e-12);
+        let factor = scale_to_complexity(Team::alone(), &mesh, &mut metrics, 240.0);
         assert!((factor - 4.0).abs() < 1e-12);
-        assert!((complexity(&mesh, &metrics) - 240.0).abs() < 1e-10);
+        assert!((complexity(Team::alone(), &mesh, &metrics) - 240.0).abs() < 1e-10);
     }
 
     #[test]
@@ -178,9 +190,12 @@ mod tests {
         let log = |p: [f64; 3]| Sym3::diagonal(1.0, 1.0, 0.0).times(p[0] + 8.0 * p[1]);
         let logs: Vec<Sym3> = mesh.vertices.iter().map(|&p| log(p)).collect();
         let exact = (1f64.exp() - 1.0) * (8f64.exp() - 1.0) / 8.0;
-        let found = complexity_between(&mesh, &logs);
+        let found = complexity_between(Team::alone(), &mesh, &logs);
         assert!((found / exact - 1.0).abs() < 1e-13, "{found} {exact}");
-        assert!(complexity_of_logs(&mesh, &logs) > 2.0 * exact, "the sum over the vertices is far off here");
+        assert!(
+            complexity_of_logs(Team::alone(), &mesh, &logs) > 2.0 * exact,
+            "the sum over the vertices is far off here"
+        );
         // Sizes that differ by 1e12: finite, and below the greatest value.
         let steep = mean_exponential([0.0, -3.0, 27.0, 82.9]);
         assert!(steep > 0.0 && steep < 82.9f64.exp(), "{steep}");

@@ -4,6 +4,7 @@ use super::{Analytic, Background, Sym3};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{EDGES, MatchedFaces};
 use crate::mesh::vector::{Vec3, add, distance, lerp, scale, volume6};
+use crate::tasks::{GRAIN, Team};
 
 /// Samples of an analytic field when its complexity is measured, about.
 const SAMPLES: usize = 1 << 20;
@@ -48,22 +49,25 @@ impl Source {
 
     /// Complexity ∫ √det M of the field on a mesh, for the background the mesh it came with. An analytic field is integrated by the
     /// midpoint rule over bisected tetrahedra, since a coarse mesh's vertices do not resolve it.
-    pub fn complexity(&self, mesh: &TetMesh) -> f64 {
+    pub fn complexity(&self, team: Team<'_>, mesh: &TetMesh) -> f64 {
         match self {
-            Self::Background(background) => complexity_between(mesh, background.logs()),
+            Self::Background(background) => complexity_between(team, mesh, background.logs()),
             Self::Analytic { .. } => {
                 let depth = (SAMPLES / mesh.tets.len().max(1)).max(1).ilog2();
                 let corners = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
-                mesh.tets.nodes.iter().map(|tet| self.integrate(corners(tet), depth)).sum()
+                // As many samples a task whatever their depth.
+                team.sum(GRAIN >> depth.min(GRAIN.ilog2()), mesh.tets.len(), |range| {
+                    mesh.tets.nodes[range].iter().map(|tet| self.integrate(corners(tet), depth)).sum()
+                })
             }
         }
     }
 
     /// No less than the complexity, and quickly found, where the field lies on the mesh itself: the exponential function is convex,
     /// so the mean over a tetrahedron is at most that of its vertices.
-    pub fn complexity_bound(&self, mesh: &TetMesh) -> f64 {
+    pub fn complexity_bound(&self, team: Team<'_>, mesh: &TetMesh) -> f64 {
         match self {
-            Self::Background(background) => complexity_of_logs(mesh, background.logs()),
+            Self::Background(background) => complexity_of_logs(team, mesh, background.logs()),
             Self::Analytic { .. } => f64::INFINITY,
         }
     }
@@ -86,10 +90,10 @@ impl Source {
     }
 
     /// Scales M by e^log_factor.
-    pub fn scale(&mut self, log_factor: f64) {
+    pub fn scale(&mut self, team: Team<'_>, log_factor: f64) {
         match self {
             Self::Analytic { log_scale, .. } => *log_scale += log_factor,
-            Self::Background(background) => background.scale(log_factor),
+            Self::Background(background) => background.scale(team, log_factor),
         }
     }
 }

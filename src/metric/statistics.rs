@@ -1,12 +1,14 @@
 //! The figures of a mesh in a metric: edge lengths, mean ratios, complexity.
 use super::quality::edge_length;
 use super::{Sym3, field, mean_ratios};
-use crate::mesh::adjacency::for_each_edge;
+use crate::mesh::adjacency::Edges;
 use crate::mesh::vector::{distance, sub, volume6};
 use crate::mesh::{Elements, TetMesh};
+use crate::tasks::{GRAIN, Team};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+use std::ops::Range;
 
 /// Bounds of the classes of edge lengths in the metric; the last class is open.
 pub const LENGTH_CLASSES: [f64; 11] = [0.0, 0.1, 0.25, 0.5, FRAC_1_SQRT_2, 1.0, SQRT_2, 2.0, 4.0, 10.0, f64::INFINITY];
@@ -55,6 +57,7 @@ impl Distribution {
 }
 
 /// A [`Distribution`] of values that come one by one.
+#[derive(Clone)]
 struct Gathering<'b> {
     bounds: &'b [f64],
     closed_above: bool,
@@ -84,6 +87,18 @@ impl<'b> Gathering<'b> {
             let class = above.clamp(1, found.classes.len()) - 1;
             found.classes[class].count += 1;
         }
+    }
+
+    /// Of what this one and then the other have seen.
+    fn and(mut self, other: Self) -> Self {
+        if other.found.min < self.found.min {
+            (self.found.min, self.found.argmin) = (other.found.min, self.found.count + other.found.argmin);
+        }
+        self.found.max = self.found.max.max(other.found.max);
+        self.found.count += other.found.count;
+        self.sum += other.sum;
+        self.found.classes.iter_mut().zip(&other.found.classes).for_each(|(all, class)| all.count += class.count);
+        self
     }
 
     fn distribution(mut self) -> Distribution {
@@ -135,20 +150,20 @@ pub struct Statistics {
 
 impl Statistics {
     /// Of a mesh with a metric at every vertex.
-    pub fn in_metric(mesh: &TetMesh, metrics: &[Sym3]) -> Self {
-        let logs: Vec<Sym3> = metrics.iter().map(Sym3::ln).collect();
+    pub fn in_metric(team: Team<'_>, mesh: &TetMesh, metrics: &[Sym3]) -> Self {
+        let logs = team.map(GRAIN, metrics.len(), |v| metrics[v].ln());
         let length = |[a, b]: [u32; 2]| {
             let v = sub(mesh.vertices[b as usize], mesh.vertices[a as usize]);
             edge_length(v, &metrics[a as usize], &metrics[b as usize])
         };
-        let mut statistics = Self::of(mesh, length, &LENGTH_CLASSES, |v| logs[v as usize]);
+        let mut statistics = Self::of(team, mesh, length, &LENGTH_CLASSES, |v| logs[v as usize]);
         let classes = &statistics.edge_lengths.classes;
         let unit: usize = classes
             .iter()
             .filter(|class| class.low == Some(FRAC_1_SQRT_2) || class.high == Some(SQRT_2))
             .map(|class| class.count)
             .sum();
-        let complexity = field::complexity_of_logs(mesh, &logs);
+        let complexity = field::complexity_of_logs(team, mesh, &logs);
         statistics.metric = Some(MetricFigures {
             complexity,
             vertices_per_complexity: mesh.vertices.len() as f64 / complexity,
@@ -158,17 +173,28 @@ impl Statistics {
     }
 
     /// Of a mesh alone: lengths and mean ratios in space.
-    pub fn in_space(mesh: &TetMesh) -> Self {
+    pub fn in_space(team: Team<'_>, mesh: &TetMesh) -> Self {
         let length = |[a, b]: [u32; 2]| distance(mesh.vertices[a as usize], mesh.vertices[b as usize]);
-        Self::of(mesh, length, &[], |_| Sym3::ZERO)
+        Self::of(team, mesh, length, &[], |_| Sym3::ZERO)
     }
 
-    fn of(mesh: &TetMesh, length: impl Fn([u32; 2]) -> f64, length_classes: &[f64], log: impl Fn(u32) -> Sym3) -> Self {
-        let mut lengths = Gathering::new(length_classes, false);
-        for_each_edge(&mesh.tets.nodes, |edge| lengths.add(length(edge)));
+    fn of(
+        team: Team<'_>,
+        mesh: &TetMesh,
+        length: impl Fn([u32; 2]) -> f64 + Sync,
+        length_classes: &[f64],
+        log: impl Fn(u32) -> Sym3 + Sync,
+    ) -> Self {
+        let edges = Edges::of(team, &mesh.tets.nodes);
+        let lengths = gathered(team, edges.nodes(), Gathering::new(length_classes, false), |range, lengths| {
+            edges.for_each(range, |edge| lengths.add(length(edge)));
+        });
+        drop(edges);
         let points = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
-        let mut ratios = Gathering::new(&RATIO_CLASSES, true);
-        mean_ratios(mesh.tets.nodes.iter(), |tet| (points(tet), tet.map(&log)), |_, ratio| ratios.add(ratio));
+        let tets = &mesh.tets.nodes;
+        let ratios = gathered(team, tets.len(), Gathering::new(&RATIO_CLASSES, true), |range, ratios| {
+            mean_ratios(tets[range].iter(), |tet| (points(tet), tet.map(&log)), |_, ratio| ratios.add(ratio));
+        });
         let volume = |tet: &[u32; 4]| {
             let [a, b, c, d] = points(tet);
             volume6(a, b, c, d) / 6.0
@@ -178,10 +204,10 @@ impl Statistics {
             tets: mesh.tets.len(),
             triangles: mesh.triangles.len(),
             tagged_edges: mesh.edges.len(),
-            volume: mesh.tets.nodes.iter().map(volume).sum(),
-            regions: by_reference(&mesh.tets),
-            patches: by_reference(&mesh.triangles),
-            curves: by_reference(&mesh.edges),
+            volume: team.sum(GRAIN, tets.len(), |range| tets[range].iter().map(volume).sum()),
+            regions: by_reference(team, &mesh.tets),
+            patches: by_reference(team, &mesh.triangles),
+            curves: by_reference(team, &mesh.edges),
             edge_lengths: lengths.distribution(),
             mean_ratios: ratios.distribution(),
             metric: None,
@@ -189,11 +215,32 @@ impl Statistics {
     }
 }
 
-fn by_reference<const N: usize>(elements: &Elements<N>) -> BTreeMap<i32, usize> {
+/// What `add` sees of chunks of so many items, one after the other.
+fn gathered<'b>(
+    team: Team<'_>,
+    items: usize,
+    nothing: Gathering<'b>,
+    add: impl Fn(Range<usize>, &mut Gathering<'b>) + Sync,
+) -> Gathering<'b> {
+    let parts = team.chunks(GRAIN, items, |range| {
+        let mut part = nothing.clone();
+        add(range, &mut part);
+        part
+    });
+    parts.into_iter().fold(nothing, Gathering::and)
+}
+
+fn by_reference<const N: usize>(team: Team<'_>, elements: &Elements<N>) -> BTreeMap<i32, usize> {
+    let parts = team.chunks(GRAIN, elements.len(), |range| {
+        let mut counts = BTreeMap::new();
+        // Most have that of the one before.
+        for same in elements.refs[range].chunk_by(|a, b| a == b) {
+            *counts.entry(same[0]).or_insert(0) += same.len();
+        }
+        counts
+    });
     let mut counts = BTreeMap::new();
-    for &reference in &elements.refs {
-        *counts.entry(reference).or_insert(0) += 1;
-    }
+    parts.into_iter().flatten().for_each(|(reference, count)| *counts.entry(reference).or_insert(0) += count);
     counts
 }
 
@@ -220,7 +267,7 @@ mod tests {
         let mesh = cube(n);
         // Sizes 1/n: edges of length 1, √2 (face diagonals; in the class above by rounding or not) and √3.
         let metrics = vec![Sym3::IDENTITY.times(f64::from(n * n) * 0.99); mesh.vertices.len()];
-        let statistics = Statistics::in_metric(&mesh, &metrics);
+        let statistics = Statistics::in_metric(Team::alone(), &mesh, &metrics);
         let figures = statistics.metric.clone().unwrap();
         assert!((figures.complexity - (f64::from(n) * 0.99f64.sqrt()).powi(3)).abs() < 1e-9);
         assert!((figures.vertices_per_complexity * figures.complexity - 125.0).abs() < 1e-9);
@@ -233,7 +280,7 @@ mod tests {
         // All tetrahedra are alike.
         let ratios = &statistics.mean_ratios;
         assert!((ratios.min - ratios.max).abs() < 1e-12 && (ratios.min - ratios.mean).abs() < 1e-12);
-        let alone = Statistics::in_space(&mesh);
+        let alone = Statistics::in_space(Team::alone(), &mesh);
         assert!((alone.mean_ratios.mean - ratios.mean).abs() < 1e-12 && alone.metric.is_none());
         assert!((alone.edge_lengths.min - 0.25).abs() < 1e-15 && alone.edge_lengths.classes.is_empty());
     }

@@ -1,7 +1,8 @@
 //! Tasks: work handed to threads without a word of how, and the trace of a run; knows nothing of meshes.
 //!
 //! A [`Pool`] is a number of threads. [`Pool::task_for`] applies a function to chunks of items, [`Pool::scope`] lets tasks be spawned
-//! one by one, also from tasks. How the tasks are made ([`Strategy`], [`Plan::grain`]) and who runs them ([`Backend`]) is said at each call.
+//! one by one, also from tasks. A [`Team`] is a pool with the plan of a run: lists, sums, sorts whose results do not depend on the threads.
+//! How the tasks are made ([`Strategy`], [`Plan::grain`]) and who runs them ([`Backend`]) is said at each call.
 //!
 //! # Rules
 //! - **Thread ids.** A task is told the thread it runs on, in [0, n), for its whole length. Two tasks never have the same id at once,
@@ -18,6 +19,7 @@
 //! - **One thread** makes no task: all runs in place, in order.
 //! - In a task of the rayon back-end, rayon's own parallel calls must not be used: rayon would run other tasks while they wait.
 mod backends;
+mod buckets;
 pub mod claims;
 mod core;
 mod each;
@@ -32,13 +34,17 @@ mod plan;
 mod pool;
 mod scope;
 mod seats;
+mod sort;
 mod stage;
 mod strategy;
+mod team;
 
+pub use buckets::Buckets;
 pub use plan::{Backend, Plan, Strategy};
 pub use pool::{Error, Pool};
 pub use scope::{Scope, Task};
 pub use stage::stage;
+pub use team::{GRAIN, Team};
 
 // The locks of the seats; tests/sleep_protocol.rs has loom's in their place.
 use std::sync;

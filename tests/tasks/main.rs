@@ -6,6 +6,7 @@ mod nesting;
 mod panics;
 mod pools;
 mod scopes;
+mod team;
 
 use geo_adapt::tasks::{Backend, Plan, Pool, Strategy};
 use std::sync::Mutex;

@@ -6,6 +6,7 @@ use crate::mesh::samples::cube;
 use crate::mesh::validity::check;
 use crate::mesh::vector::Vec3;
 use crate::metric::Background;
+use crate::tasks::Team;
 use proptest::prelude::*;
 
 /// The same size everywhere.
@@ -15,7 +16,7 @@ fn of_size(mesh: &TetMesh, size: f64) -> Source {
 }
 
 fn placed(mesh: &TetMesh) -> Classification {
-    Discrete::from_mesh(mesh, DEFAULT_RIDGE_ANGLE).expect("its surface is closed").1
+    Discrete::from_mesh(Team::alone(), mesh, DEFAULT_RIDGE_ANGLE).expect("its surface is closed").1
 }
 
 fn volume(mesh: &TetMesh) -> f64 {
@@ -53,7 +54,7 @@ fn crowded_is_what_has_several_times_the_tetrahedra_asked_for() {
     let place = placed(&mesh);
     // Edges of 0.25 to 0.43: about right for a size of 0.3. A size is a factor of eight in the number.
     for (size, crowded) in [(0.1, false), (0.3, false), (0.7, true), (2.0, true)] {
-        let coarse = coarsened(&mesh, &place, &of_size(&mesh, size), &Required::default());
+        let coarse = coarsened(Team::alone(), &mesh, &place, &of_size(&mesh, size), &Required::default());
         assert_eq!(coarse.is_some(), crowded, "size {size}");
     }
 }
@@ -63,7 +64,7 @@ fn an_inverted_mesh_is_left_to_who_tells_of_it() {
     let mut mesh = cube(4);
     mesh.tets.nodes[17].swap(0, 1);
     let place = placed(&cube(4));
-    assert!(coarsened(&mesh, &place, &of_size(&cube(4), 2.0), &Required::default()).is_none());
+    assert!(coarsened(Team::alone(), &mesh, &place, &of_size(&cube(4), 2.0), &Required::default()).is_none());
 }
 
 proptest! {
@@ -73,9 +74,10 @@ proptest! {
     fn what_is_left_is_the_same_domain(seed: u64, size in 0.25..1.0f64, round: bool) {
         let mesh = if round { rounded(shaken(12, seed)) } else { shaken(12, seed) };
         prop_assert!(check(&mesh).is_valid());
-        // The round one is twice as large.
-        let (place, source) = (placed(&mesh), of_size(&mesh, if round { 2.0 * size } else { size }));
-        let coarse = coarsened(&mesh, &place, &source, &Required::default()).expect("it is crowded");
+        // The ball is twice as wide.
+        let source = of_size(&mesh, if round { 2.0 * size } else { size });
+        let place = placed(&mesh);
+        let coarse = coarsened(Team::alone(), &mesh, &place, &source, &Required::default()).expect("it is crowded");
         prop_assert!(check(&coarse.mesh).is_valid());
         let (before, after) = (volume(&mesh), volume(&coarse.mesh));
         prop_assert!((before - after).abs() < if round { 0.05 * before } else { 1e-12 }, "{} {}", before, after);
@@ -90,7 +92,7 @@ proptest! {
             prop_assert_eq!(coarse.mesh.vertices[v], mesh.vertices[old as usize]);
             prop_assert!(mesh.tets.nodes[coarse.hints[v] as usize].contains(&old));
         }
-        prop_assert!(build::fill_coarse(&coarse, &source).is_ok());
+        prop_assert!(build::fill_coarse(Team::alone(), &coarse, &source).is_ok());
     }
 }
 
@@ -104,7 +106,8 @@ fn what_is_required_stays() {
     mesh.edges.push(edge, 7);
     mesh.required_edges = vec![mesh.edges.len() as u32 - 1];
     mesh.required_vertices = vec![alone];
-    let coarse = coarsened(&mesh, &placed(&mesh), &of_size(&mesh, 2.0), &Required::of(&mesh)).expect("it is crowded");
+    let coarse = coarsened(Team::alone(), &mesh, &placed(&mesh), &of_size(&mesh, 2.0), &Required::of(&mesh))
+        .expect("it is crowded");
     let number = |v: u32| coarse.origin.iter().position(|&old| old == v).expect("it stays") as u32;
     number(alone);
     let ends = edge.map(number);

@@ -14,7 +14,7 @@ use crate::geometry::{Discrete, Geometry, Model};
 use crate::mesh::vector::volume6;
 use crate::mesh::{TetMesh, samples, validity};
 use crate::metric::{Background, Source};
-use crate::tasks::{Plan, Pool};
+use crate::tasks::{Plan, Pool, Team};
 
 struct Silent;
 
@@ -37,7 +37,8 @@ const SKEW: Sym3 = Sym3([4.0, 1.0, 9.25, -2.0, 2.5, 2.0625]);
 /// The cube, its surface as the model, and a constant metric of these sizes along the axes.
 fn cube(n: u32, sizes: Vec3) -> (TetMesh, Classification, Model, Source) {
     let mesh = samples::cube(n);
-    let (model, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).expect("the cube has a surface");
+    let (model, place) =
+        Discrete::from_mesh(Team::alone(), &mesh, DEFAULT_RIDGE_ANGLE).expect("the cube has a surface");
     let [x, y, z] = sizes.map(|h| -2.0 * h.ln());
     let logs = vec![Sym3([x, 0.0, y, 0.0, 0.0, z]); mesh.vertices.len()];
     let background = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs);
@@ -96,7 +97,7 @@ fn refine_inner_tet(longest: f64) -> Result<(), Refusal> {
     let n = 4;
     let size = 3.0_f64.sqrt() / f64::from(n) / longest;
     let (mesh, place, model, source) = cube(n, [size; 3]);
-    let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
+    let Filled { store, .. } = build::fill(Team::alone(), &mesh, &place, &source).expect("the cube is valid");
     let context = Context::new(store, &source, &model);
     let store = &context.store;
     store.tick();
@@ -123,7 +124,7 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         (3, Scheduler::Deterministic),
     ] {
         let (mesh, place, model, source) = cube(2, [0.15; 3]);
-        let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
+        let Filled { store, .. } = build::fill(Team::alone(), &mesh, &place, &source).expect("the cube is valid");
         let context = Context::new(store, &source, &model);
         let pool = Pool::new(threads).expect("a pool");
         let mut states: Vec<_> = (0..threads).map(|_| State::new(&context)).collect();
@@ -131,7 +132,7 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let count =
             |dimension| context.store.live_vertices().filter(|&v| context.store.dimension(v) == dimension).count();
         let before = [1, 2, 3].map(count);
-        let items = active_tets(&context);
+        let items = active_tets(Team::alone(), &context);
         assert_eq!(items.len(), mesh.tets.len());
         let crew = Crew { pool: &pool, scheduler, plan: Plan::default() };
         let counts = schedule::run(&Create, &items, &context, &mut states, crew, &|_| {});
@@ -142,7 +143,7 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let edges = vec![1; topology.edges.len()];
         let faces = vec![1; topology.faces.len()];
         let refs = extract::References { inward: vec![false; faces.len()], faces, edges };
-        let extracted = extract::extract(&context, &mesh, &refs);
+        let extracted = extract::extract(Team::alone(), &context, &mesh, &refs);
         assert_valid_cube(&extracted.mesh);
     }
 }
@@ -190,13 +191,13 @@ fn a_sweep_along_eigenvectors_leaves_a_valid_mesh_with_more_vertices_inside() {
         let pool = Pool::new(threads).expect("a pool");
         let mut states: Vec<_> = (0..threads).map(|_| State::new(&context)).collect();
         let before = context.store.live_vertices().count();
-        let items = active_vertices(&context);
+        let items = active_vertices(Team::alone(), &context);
         assert_eq!(items.len(), before);
         let dimension = |&v: &VertexId| context.store.dimension(v);
         assert!(items.is_sorted_by_key(dimension));
         for _ in 0..3 {
             context.store.tick();
-            let items = active_vertices(&context);
+            let items = active_vertices(Team::alone(), &context);
             let crew = Crew { pool: &pool, scheduler: Scheduler::Speculative, plan: Plan::default() };
             schedule::run(&Extend, &items, &context, &mut states, crew, &|_| {});
             check(&context).unwrap();
@@ -218,7 +219,8 @@ fn a_cube_refined_in_any_way_is_a_valid_mesh_with_edges_of_unit_length() {
         let refined = &adapted.extracted.mesh;
         assert_valid_cube(refined);
         assert_eq!(adapted.off_model, 0);
-        let statistics = crate::metric::statistics::Statistics::in_metric(refined, &adapted.extracted.metrics);
+        let statistics =
+            crate::metric::statistics::Statistics::in_metric(Team::alone(), refined, &adapted.extracted.metrics);
         let unit = statistics.metric.expect("there is a metric").unit_edges;
         assert!(unit > 0.85, "{unit}");
     }

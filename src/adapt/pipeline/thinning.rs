@@ -1,9 +1,9 @@
 //! What coarsening left of a crowded mesh is thinned before the passes: they would list and judge each of its edges again and again.
 use super::{LITTLE, Pipeline, size_limits};
 use crate::adapt::context::Limits;
-use crate::adapt::ids::VertexId;
 use crate::adapt::schedule::Thin;
 use crate::adapt::work::Kind;
+use crate::tasks::GRAIN;
 
 /// The store is renumbered when it has shrunk by this factor: by 2 costs as much as it saves.
 const SHRUNK: usize = 4;
@@ -35,11 +35,10 @@ impl Pipeline<'_, '_> {
         let mut since = 0;
         loop {
             let store = &self.context.store;
-            let mut live = 0;
-            let changed = store.live_vertices().inspect(|_| live += 1);
-            let changed = changed.filter(|&v| store.stamp(store.tet_of(v)) >= since);
-            let items: Vec<VertexId> = changed.collect();
-            since = store.clock() + 1;
+            let count = |range| store.live_vertices_in(range).count();
+            let live: usize = self.team().chunks(GRAIN, store.vertex_bound(), count).into_iter().sum();
+            let items = self.vertices(|store, v| store.stamp(store.tet_of(v)) >= since);
+            since = self.context.store.clock() + 1;
             let done = if self.observer.stop() { 0 } else { self.sweep(Kind::Collapse, &Thin, &items).done as usize };
             if (done as f64) < LITTLE * items.len() as f64 {
                 break;

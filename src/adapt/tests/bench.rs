@@ -16,7 +16,7 @@ use crate::geometry::{Discrete, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, lerp, norm, volume6};
 use crate::metric::{Background, Source, Sym3};
-use crate::tasks::{Plan, Pool};
+use crate::tasks::{Plan, Pool, Team};
 
 /// Numbers that repeat from run to run (splitmix64).
 pub struct Random(pub u64);
@@ -81,8 +81,8 @@ pub fn sample(shape: Shape, n: u32, size: f64) -> Sample {
             mesh.tets.refs[t] = if middle < 2.0 { 1 } else { 2 };
         }
     }
-    complete_boundary(&mut mesh);
-    let (model, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).unwrap();
+    complete_boundary(Team::alone(), &mut mesh);
+    let (model, place) = Discrete::from_mesh(Team::alone(), &mesh, DEFAULT_RIDGE_ANGLE).unwrap();
     let logs = mesh.vertices.iter().map(|p| {
         let off = (p[0] + 0.5 * p[1] - 0.3 * p[2] - 0.6).abs();
         let thin = size * (0.2 + 0.6 * off).min(0.5);
@@ -139,7 +139,8 @@ impl<'m> Bench<'m> {
     /// A bench with so many threads. Limits are lax, so that much is done: edges of any length are split and collapsed, and bad
     /// elements come of it.
     pub fn new(sample: &'m Sample, threads: usize, seed: u64) -> Self {
-        let Filled { store, waiting, .. } = build::fill(&sample.mesh, &sample.place, &sample.source).unwrap();
+        let Filled { store, waiting, .. } =
+            build::fill(Team::alone(), &sample.mesh, &sample.place, &sample.source).unwrap();
         assert!(waiting.is_empty(), "the samples lie on their models");
         let mut context = Context::new(store, &sample.source, &sample.model);
         context.limits = Limits { insert_floor: 0.02, collapse_floor: 0.02, ..Limits::default() };
@@ -271,6 +272,6 @@ impl<'m> Bench<'m> {
                 store.set_position(v, from);
             }
         }
-        build::measure(store);
+        build::measure(Team::alone(), store);
     }
 }

@@ -1,5 +1,6 @@
 //! After every sweep of every kind the whole mesh is valid, and there was something to do.
 use super::bench::{Bench, Shape, Task, sample};
+use crate::tasks::Team;
 
 /// Rounds of all kinds of sweeps; returns how often each was carried out.
 fn rounds(shape: Shape, n: u32, size: f64, rounds: usize) -> [u64; 10] {
@@ -74,7 +75,7 @@ fn renumbering_leaves_a_valid_mesh_without_dead_records() {
             places
         };
         let before = places(&bench);
-        let number = bench.context.reorder();
+        let number = bench.context.reorder(Team::alone());
         bench.states[0].supply.clear();
         bench.check("renumbering");
         let store = &bench.context.store;
@@ -84,10 +85,10 @@ fn renumbering_leaves_a_valid_mesh_without_dead_records() {
         assert!(store.live_tets().is_sorted_by_key(|t| store.vertices(t).into_iter().min()));
         assert!(places(&bench) == before);
         // At once again nothing changes, and work can go on.
-        assert!(bench.context.reorder().into_iter().zip(0..).all(|(v, old)| v.0 == old));
-        bench.context.store.reserve(1000, 6000);
+        assert!(bench.context.reorder(Team::alone()).into_iter().zip(0..).all(|(v, old)| v.0 == old));
+        bench.context.store.reserve(Team::alone(), 1000, 6000);
         bench.context.store.trim();
-        bench.context.store.reserve(1000, 6000);
+        bench.context.store.reserve(Team::alone(), 1000, 6000);
         bench.sweep(Task::Split);
         bench.sweep(Task::Smooth);
     }

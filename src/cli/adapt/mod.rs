@@ -11,7 +11,7 @@ use crate::geometry::{Discrete, Model};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, io};
 use crate::metric::{Analytic, Background, Field, Source, field};
-use crate::tasks::{Backend, Plan, Pool, Strategy, stage};
+use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
 use progress::Progress;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -89,38 +89,39 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     files::check(arguments)?;
     let stop = progress::stop_on_interrupt();
+    let threads = arguments.threads.map_or_else(super::cores, usize::from);
+    let pool = Pool::new(threads)?;
+    pool.prepare(arguments.backend)?;
+    let plan = Plan { backend: arguments.backend, strategy: arguments.strategy, ..Plan::default() };
+    let team = Team::new(&pool, plan);
     stage("start");
     let mut read = io::read_mesh(&arguments.mesh)?;
     stage("mesh read");
-    let faces = MatchedFaces::of(&read.content.tets.nodes);
-    let added = complete_matched(&mut read.content, &faces);
+    let faces = MatchedFaces::of(team, &read.content.tets.nodes);
+    let added = complete_matched(team, &mut read.content, &faces);
     stage("boundary complete");
     if added > 0 {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
     }
     let mesh = Arc::new(read.content);
-    let mut source = source(arguments, &mesh, faces, &mut read.notices)?;
+    let mut source = source(team, arguments, &mesh, faces, &mut read.notices)?;
     stage("metric ready");
-    let (model, place) = place(arguments, &mesh, &mut read.notices)?;
+    let (model, place) = place(team, arguments, &mesh, &mut read.notices)?;
     stage("classified");
-    scale(arguments, &mesh, &mut source)?;
+    scale(team, arguments, &mesh, &mut source)?;
     stage("complexity");
     let progress = Progress::new(!arguments.quiet, stop);
     for notice in read.notices.iter().filter(|_| !arguments.quiet) {
         eprintln!("geo-adapt: note: {notice}");
     }
-    let threads = arguments.threads.map_or_else(super::available, usize::from);
-    let pool = Pool::new(threads)?;
     let prepared = start.elapsed();
-    pool.prepare(arguments.backend)?;
     let scheduler = if arguments.deterministic { Scheduler::Deterministic } else { arguments.scheduler };
-    let plan = Plan { backend: arguments.backend, strategy: arguments.strategy, ..Plan::default() };
     let options = Options { criterion: arguments.criterion, points: arguments.points, scheduler, plan };
     let adapted = adapt::adapt(&mesh, &place, &model, &source, &options, &pool, &progress)
         .map_err(|error| format!("{}: {error}", arguments.mesh.display()))?;
     progress.finish();
     let finished = start.elapsed();
-    let report = report::Report::new(arguments, &mesh, &model, adapted, threads);
+    let report = report::Report::new(team, arguments, &mesh, &model, adapted, threads);
     stage("report");
     let report = files::write(arguments, report, [prepared, finished, start.elapsed()])?;
     stage("written");
@@ -132,6 +133,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
 
 /// The metric's source: the analytic field, or the input mesh with the file's metric as background.
 fn source(
+    team: Team<'_>,
     arguments: &Arguments,
     mesh: &Arc<TetMesh>,
     faces: MatchedFaces,
@@ -141,22 +143,22 @@ fn source(
         return Ok(Source::Analytic { field, log_scale: 0.0 });
     }
     let path = arguments.field.metric.as_ref().ok_or("neither --metric nor --analytic")?;
-    let read = Field::read_logs(path, mesh.vertices.len())?;
+    let read = Field::read_logs(team, path, mesh.vertices.len())?;
     notices.extend(read.notices);
     if mesh.tets.is_empty() {
         return Err(format!("{}: {}", arguments.mesh.display(), adapt::Error::Empty).into());
     }
-    Ok(Source::Background(Background::on(Arc::clone(mesh), faces, read.content)))
+    Ok(Source::Background(Background::on(team, Arc::clone(mesh), faces, read.content)))
 }
 
 /// Scales the source to the complexity that is asked for, and refuses one that no mesh can have.
-fn scale(arguments: &Arguments, mesh: &TetMesh, source: &mut Source) -> Result<(), String> {
-    if arguments.complexity.is_none() && source.complexity_bound(mesh) <= GREATEST_COMPLEXITY {
+fn scale(team: Team<'_>, arguments: &Arguments, mesh: &TetMesh, source: &mut Source) -> Result<(), String> {
+    if arguments.complexity.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
         return Ok(());
     }
-    let own = source.complexity(mesh);
+    let own = source.complexity(team, mesh);
     if let Some(target) = arguments.complexity {
-        source.scale(field::complexity_factor(own, target).ln());
+        source.scale(team, field::complexity_factor(own, target).ln());
     }
     let complexity = arguments.complexity.unwrap_or(own);
     if complexity <= GREATEST_COMPLEXITY {
@@ -175,6 +177,7 @@ fn scale(arguments: &Arguments, mesh: &TetMesh, source: &mut Source) -> Result<(
 
 /// The model, and where the mesh lies on it.
 fn place(
+    team: Team<'_>,
     arguments: &Arguments,
     mesh: &TetMesh,
     notices: &mut Vec<String>,
@@ -182,13 +185,13 @@ fn place(
     let name = arguments.mesh.display();
     let Some(path) = &arguments.cad else {
         let (model, place) =
-            Discrete::from_mesh(mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
+            Discrete::from_mesh(team, mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
         return Ok((Model::Discrete(model), place));
     };
     let model = load::model(path)?;
     let options = classify::Options { tolerance: arguments.tolerance, ..classify::Options::default() };
-    let (place, report) =
-        classify::classify(mesh, &model, &options).map_err(|error| format!("{name} on {}: {error}", path.display()))?;
+    let (place, report) = classify::classify(team, mesh, &model, &options)
+        .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
     notices.extend(report.notices);
     Ok((model, place))
 }

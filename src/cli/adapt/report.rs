@@ -9,6 +9,7 @@ use crate::geometry::fidelity::{self, Fidelity};
 use crate::mesh::TetMesh;
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
+use crate::tasks::Team;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -59,7 +60,14 @@ pub struct Report {
 
 impl Report {
     /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it.
-    pub fn new(arguments: &Arguments, input: &TetMesh, model: &Model, adapted: Adapted, threads: usize) -> Self {
+    pub fn new(
+        team: Team<'_>,
+        arguments: &Arguments,
+        input: &TetMesh,
+        model: &Model,
+        adapted: Adapted,
+        threads: usize,
+    ) -> Self {
         let extracted = adapted.extracted;
         let mut mesh = extracted.mesh;
         match model {
@@ -69,7 +77,7 @@ impl Report {
                 associate(&mut mesh, &extracted.classification);
             }
         }
-        let fidelity = fidelity::measure(&mesh, model, &extracted.classification);
+        let fidelity = fidelity::measure(team, &mesh, model, &extracted.classification);
         Self {
             version: env!("CARGO_PKG_VERSION"),
             input: arguments.mesh.clone(),
@@ -78,7 +86,7 @@ impl Report {
             complexity_wanted: arguments.complexity,
             input_vertices: input.vertices.len(),
             input_tets: input.tets.len(),
-            statistics: Statistics::in_metric(&mesh, &extracted.metrics),
+            statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
             fidelity,
             off_model: adapted.off_model,
             operations: operations(&adapted.work),

@@ -4,6 +4,7 @@ use super::{Classification, Error, Report, corners, coverage, entities, patches,
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, Features};
 use crate::geometry::{Entity, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
+use crate::tasks::Team;
 
 /// Part of the model's diagonal that a vertex may be off by default: what single precision leaves, with room.
 const TOLERANCE: f64 = 1e-6;
@@ -39,17 +40,23 @@ impl Default for Options {
 ///
 /// # Errors
 /// [`Error`], if the mesh does not fit so: which, where, how far.
-pub fn classify(mesh: &TetMesh, model: &Model, options: &Options) -> Result<(Classification, Report), Error> {
+pub fn classify(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    model: &Model,
+    options: &Options,
+) -> Result<(Classification, Report), Error> {
     if mesh.triangles.is_empty() {
         return Err(Error::NoTriangles);
     }
     let topology = model.topology();
     units::check(mesh, topology)?;
     let fit = Fit {
+        team,
         mesh,
         model,
         topology,
-        features: Features::detect(mesh, options.ridge_angle_deg),
+        features: Features::detect(team, mesh, options.ridge_angle_deg),
         hints: Hints::new(mesh, topology),
         tolerance: options.tolerance.unwrap_or(TOLERANCE * topology.diagonal()),
         given: options.tolerance.is_some(),
@@ -64,6 +71,7 @@ pub fn classify(mesh: &TetMesh, model: &Model, options: &Options) -> Result<(Cla
 
 /// What all steps share.
 pub(super) struct Fit<'a> {
+    pub team: Team<'a>,
     pub mesh: &'a TetMesh,
     pub model: &'a Model,
     pub topology: &'a Topology,

@@ -3,13 +3,15 @@ use super::fit::Fit;
 use super::landing::{box_reaches, land_patch, misfit};
 use super::{Error, triangles};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, OnSurface};
-use rayon::prelude::*;
 
 /// Not yet found.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Vertices of a patch that are tried on every face, and triangles that decide between faces.
 const SAMPLES: usize = 8;
+
+/// Tasks at most that the patches are shared out among; each makes an evaluator.
+const TASKS: usize = 64;
 
 /// Triangles on their faces.
 pub(super) struct Faces {
@@ -31,17 +33,18 @@ struct Match {
 pub(super) fn match_faces(fit: &Fit) -> Result<Faces, Error> {
     let members = fit.features.members();
     let on_ridge = ridge_vertices(fit);
-    let matches: Vec<Option<Match>> = members
-        .par_iter()
-        .map_init(|| fit.model.evaluator(), |evaluator, patch| match_patch(fit, evaluator, patch, &on_ridge))
-        .collect();
+    let matches = fit.team.chunks(members.len().div_ceil(TASKS), members.len(), |range| {
+        let mut evaluator = fit.model.evaluator();
+        let found = members[range].iter().map(|patch| match_patch(fit, &mut evaluator, patch, &on_ridge));
+        found.collect::<Vec<_>>()
+    });
     let mut faces = Faces {
         of_triangle: vec![NONE; fit.mesh.triangles.len()],
         landings: vec![None; fit.mesh.vertices.len()],
         notices: Vec::new(),
     };
     let mut rest = Vec::new();
-    for (patch, found) in members.into_iter().zip(matches) {
+    for (patch, found) in members.into_iter().zip(matches.into_iter().flatten()) {
         let Some(found) = found else {
             rest.push(patch);
             continue;

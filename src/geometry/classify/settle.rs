@@ -5,12 +5,10 @@ use super::ridges::Ridges;
 use super::{Classification, Error, Report};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry};
 use crate::mesh::vector::{Vec3, distance};
-use rayon::prelude::*;
-
-/// Vertices that one task settles.
-const CHUNK: usize = 4096;
+use crate::tasks::GRAIN;
 
 /// Where a vertex is on its entity.
+#[derive(Clone, Copy)]
 struct Settled {
     parameters: [f64; 2],
     point: Vec3,
@@ -27,31 +25,26 @@ pub(super) fn settle(
     ridges: Ridges,
     entities: Vec<Entity>,
 ) -> Result<(Classification, Report), Error> {
-    let vertices: Vec<u32> = (0..entities.len() as u32).collect();
-    let settled: Vec<Settled> = vertices
-        .par_chunks(CHUNK)
-        .flat_map_iter(|chunk| {
-            let mut evaluator = fit.model.evaluator();
-            let settle = |&v: &u32| settle_vertex(fit, &mut evaluator, &faces, &ridges, v, entities[v as usize]);
-            chunk.iter().map(settle).collect::<Vec<_>>()
-        })
-        .collect();
-    let off = (0..entities.len()).filter(|&v| {
-        let on = settled[v].distance <= fit.allowed(entities[v]);
-        entities[v] != Entity::Interior && !on
+    let settled = fit.team.collect(GRAIN, entities.len(), |range, settled| {
+        let mut evaluator = fit.model.evaluator();
+        settled.extend(range.map(|v| settle_vertex(fit, &mut evaluator, &faces, &ridges, v as u32, entities[v])));
     });
-    let off = off.map(|v| (v as u32, entities[v], settled[v].distance)).collect();
+    let off = fit.team.collect(GRAIN, entities.len(), |range, off| {
+        let is_on = |v: usize| settled[v].distance <= fit.allowed(entities[v]);
+        let is_off = |&v: &usize| entities[v] != Entity::Interior && !is_on(v);
+        off.extend(range.filter(is_off).map(|v| (v as u32, entities[v], settled[v].distance)));
+    });
     if let Some(error) = fit.vertex_off(off) {
         return Err(error);
     }
     let result = Classification {
         entities,
-        parameters: settled.iter().map(|s| s.parameters).collect(),
-        projected: settled.iter().map(|s| s.point).collect(),
+        parameters: fit.team.map(GRAIN, settled.len(), |v| settled[v].parameters),
+        projected: fit.team.map(GRAIN, settled.len(), |v| settled[v].point),
         ridges: ridges.list,
         faces: faces.of_triangle,
     };
-    let distances: Vec<f64> = settled.iter().map(|s| s.distance).collect();
+    let distances: Vec<f64> = fit.team.map(GRAIN, settled.len(), |v| settled[v].distance);
     let report = report(fit, &result, &distances, faces.notices);
     Ok((result, report))
 }

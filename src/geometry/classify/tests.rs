@@ -5,21 +5,22 @@ use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
 use crate::geometry::{Discrete, Entity, Geometry, Model};
 use crate::mesh::vector::distance;
 use crate::mesh::{Elements, TetMesh};
+use crate::tasks::Team;
 
 /// A cube of n³ cells with its boundary.
 fn closed_cube(n: u32) -> TetMesh {
     let mut mesh = cube(n);
-    complete_boundary(&mut mesh);
+    complete_boundary(Team::alone(), &mut mesh);
     mesh
 }
 
 /// The unit cube as a model: twelve edges, six faces, exact.
 fn cube_model() -> Model {
-    Model::Discrete(Discrete::from_mesh(&closed_cube(2), DEFAULT_RIDGE_ANGLE).unwrap().0)
+    Model::Discrete(Discrete::from_mesh(Team::alone(), &closed_cube(2), DEFAULT_RIDGE_ANGLE).unwrap().0)
 }
 
 fn fit(mesh: &TetMesh, model: &Model) -> Result<(Classification, Report), Error> {
-    classify(mesh, model, &Options::default())
+    classify(Team::alone(), mesh, model, &Options::default())
 }
 
 fn counts(result: &Classification) -> [usize; 4] {
@@ -51,7 +52,7 @@ fn faces_that_no_ridge_separates_are_told_apart_triangle_by_triangle() {
     // With a limit of 100 degrees the whole cube is one patch.
     let options = Options { ridge_angle_deg: 100.0, ..Options::default() };
     let (mesh, model) = (closed_cube(4), cube_model());
-    let (result, _) = classify(&mesh, &model, &options).unwrap();
+    let (result, _) = classify(Team::alone(), &mesh, &model, &options).unwrap();
     let (expected, _) = fit(&mesh, &model).unwrap();
     assert_eq!(result.faces, expected.faces);
     assert_eq!(result.entities, expected.entities);
@@ -134,7 +135,7 @@ fn a_vertex_off_its_face_edge_or_corner_is_named() {
         );
         let far = Options { tolerance: Some(0.15), ..Options::default() };
         if at != [0.0, 0.0, 1.0] {
-            let (result, report) = classify(&mesh, &model, &far).unwrap();
+            let (result, report) = classify(Team::alone(), &mesh, &model, &far).unwrap();
             assert_eq!(report.worst[0].vertex, v as u32);
             assert!((report.worst[0].distance - distance(at, to)).abs() < 1e-12);
             assert!(distance(result.projected[v], at) < 1e-12);
@@ -201,7 +202,7 @@ fn a_mesh_that_cuts_a_corner_is_an_error() {
 fn a_closed_surface_without_ridges_lies_on_one_face() {
     let mut mesh = sphere(6);
     mesh.triangles.refs.fill(0);
-    let model = Model::Discrete(Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).unwrap().0);
+    let model = Model::Discrete(Discrete::from_mesh(Team::alone(), &mesh, DEFAULT_RIDGE_ANGLE).unwrap().0);
     let (result, report) = fit(&mesh, &model).unwrap();
     assert!(result.ridges.is_empty() && result.faces.iter().all(|&f| f == 0));
     let on_surface = result.entities.iter().filter(|e| **e == Entity::Face(0)).count();
@@ -236,7 +237,7 @@ fn a_sphere_has_no_ridge_along_its_seam_and_no_corner_at_its_poles() {
     mesh.triangles.refs.extend(&inner.triangles.refs);
     // Boxes are found within a gap, so the radius is only that good.
     let options = Options { tolerance: Some(1e-4), ..Options::default() };
-    let (result, _) = classify(&mesh, &model, &options).unwrap();
+    let (result, _) = classify(Team::alone(), &mesh, &model, &options).unwrap();
     assert_eq!(result.ridges.len(), 36, "the box's edges alone");
     assert_eq!(counts(&result)[..2], [8, 24]);
     for &v in inner.triangles.nodes.iter().flatten() {

@@ -5,7 +5,6 @@ use super::fit::Fit;
 use super::landing::{box_reaches, centroid, misfit};
 use super::patches::{Faces, spread};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, OnSurface};
-use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Vertices that one task puts on faces.
@@ -22,13 +21,11 @@ pub(super) fn match_triangles(fit: &Fit, patches: &[Vec<u32>], faces: &mut Faces
     let mut vertices: Vec<u32> = patches.iter().flatten().flat_map(|&t| fit.mesh.triangles.nodes[t as usize]).collect();
     vertices.sort_unstable();
     vertices.dedup();
-    let near: HashMap<u32, Near> = vertices
-        .par_chunks(CHUNK)
-        .flat_map_iter(|chunk| {
-            let mut evaluator = fit.model.evaluator();
-            chunk.iter().map(|&v| (v, near(fit, &mut evaluator, v))).collect::<Vec<_>>()
-        })
-        .collect();
+    let near = fit.team.chunks(CHUNK, vertices.len(), |range| {
+        let mut evaluator = fit.model.evaluator();
+        vertices[range].iter().map(|&v| (v, near(fit, &mut evaluator, v))).collect::<Vec<_>>()
+    });
+    let near: HashMap<u32, Near> = near.into_iter().flatten().collect();
     if let Some(error) = off(fit, patches, &near) {
         return Err(error);
     }

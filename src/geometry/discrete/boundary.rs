@@ -1,17 +1,19 @@
 //! The boundary of a tetrahedral mesh: its outward side, and triangles that the file left out.
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, TriangleIndex, sorted3};
+use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, Side, TriangleIndex, sorted3};
 use crate::mesh::vector::volume6;
+use crate::tasks::{GRAIN, Team};
 use std::collections::{BTreeMap, HashSet};
 
 /// Nodes of the mesh's triangles, turned so that the right-hand normal leaves the tetrahedra; between two regions
 /// it leaves the one with the smaller reference. A triangle without a tetrahedron, or inside one region, stays as it is.
-pub fn outward_triangles(mesh: &TetMesh) -> Vec<[u32; 3]> {
+pub fn outward_triangles(team: Team<'_>, mesh: &TetMesh) -> Vec<[u32; 3]> {
     let mut triangles = mesh.triangles.nodes.clone();
     // Per triangle the least region beside it with that tetrahedron's fourth vertex, and whether all regions agree.
     let mut inner: Vec<Option<(i32, u32, u8)>> = vec![None; triangles.len()];
-    TriangleIndex::new(&triangles, mesh.vertices.len()).for_each_side(&mesh.tets.nodes, |triangle, tet, k| {
-        let (apex, region) = (mesh.tets.nodes[tet as usize][k], mesh.tets.refs[tet as usize]);
+    let index = TriangleIndex::new(team, &triangles, mesh.vertices.len());
+    for Side { triangle, tet, face } in index.sides(team, &mesh.tets.nodes) {
+        let (apex, region) = (mesh.tets.nodes[tet as usize][face as usize], mesh.tets.refs[tet as usize]);
         let inner = &mut inner[triangle as usize];
         *inner = Some(match *inner {
             None => (region, apex, 1),
@@ -19,7 +21,7 @@ pub fn outward_triangles(mesh: &TetMesh) -> Vec<[u32; 3]> {
             Some((other, ..)) if region < other => (region, apex, 1),
             Some((other, apex, _)) => (other, apex, 2),
         });
-    });
+    }
     for (nodes, inner) in triangles.iter_mut().zip(inner) {
         let Some((_, apex, 1)) = inner else { continue };
         let [a, b, c, d] = [nodes[0], nodes[1], nodes[2], apex].map(|v| mesh.vertices[v as usize]);
@@ -33,20 +35,16 @@ pub fn outward_triangles(mesh: &TetMesh) -> Vec<[u32; 3]> {
 /// Adds the triangles that the mesh lacks on the boundary of its tetrahedra and between its regions, normals outward (of
 /// the smaller region). New ones take references that the mesh does not use: one for the boundary of each region,
 /// one for each pair of regions. Returns how many were added.
-pub fn complete_boundary(mesh: &mut TetMesh) -> usize {
-    let faces = MatchedFaces::of(&mesh.tets.nodes);
-    complete_matched(mesh, &faces)
+pub fn complete_boundary(team: Team<'_>, mesh: &mut TetMesh) -> usize {
+    let faces = MatchedFaces::of(team, &mesh.tets.nodes);
+    complete_matched(team, mesh, &faces)
 }
 
 /// [`complete_boundary`] of a mesh whose faces have been matched.
-pub fn complete_matched(mesh: &mut TetMesh, faces: &MatchedFaces) -> usize {
+pub fn complete_matched(team: Team<'_>, mesh: &mut TetMesh, faces: &MatchedFaces) -> usize {
     let known: HashSet<[u32; 3]> = mesh.triangles.nodes.iter().map(|n| sorted3(*n)).collect();
-    let mut missing: Vec<([u32; 3], [i32; 2])> = Vec::new();
-    for_each_interface(mesh, faces, |face, regions| {
-        if !known.contains(&sorted3(face)) {
-            missing.push((face, regions));
-        }
-    });
+    let mut missing = interfaces(team, mesh, faces);
+    missing.retain(|(face, _)| !known.contains(&sorted3(*face)));
     missing.sort_unstable_by_key(|(face, _)| sorted3(*face));
     let mut fresh = BTreeMap::new();
     for (_, regions) in &missing {
@@ -65,17 +63,20 @@ pub fn complete_matched(mesh: &mut TetMesh, faces: &MatchedFaces) -> usize {
 /// Marks the side of a face without a tetrahedron.
 const OUTSIDE: i32 = i32::MAX;
 
-/// Calls f with each face on the boundary or between regions, once, and the regions of its two sides, the smaller first; the face's
-/// normal leaves that one.
-fn for_each_interface(mesh: &TetMesh, faces: &MatchedFaces, mut f: impl FnMut([u32; 3], [i32; 2])) {
-    for (t, (&neighbours, &region)) in faces.neighbours.iter().zip(&mesh.tets.refs).enumerate() {
-        for (k, &n) in neighbours.iter().enumerate() {
-            let beyond = if n == NONE { OUTSIDE } else { mesh.tets.refs[n as usize] };
-            if region < beyond {
-                f(outward_face(mesh, (4 * t + k) as u32), [region, beyond]);
+/// Each face on the boundary or between regions, once, and the regions of its two sides, the smaller first; the face's normal leaves
+/// that one.
+fn interfaces(team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces) -> Vec<([u32; 3], [i32; 2])> {
+    team.collect(GRAIN, mesh.tets.len(), |range, found| {
+        for t in range {
+            let region = mesh.tets.refs[t];
+            for (k, &n) in faces.neighbours[t].iter().enumerate() {
+                let beyond = if n == NONE { OUTSIDE } else { mesh.tets.refs[n as usize] };
+                if region < beyond {
+                    found.push((outward_face(mesh, (4 * t + k) as u32), [region, beyond]));
+                }
             }
         }
-    }
+    })
 }
 
 /// Nodes of a tetrahedron's face, normal outward also if the tetrahedron is listed inside out.

@@ -9,6 +9,7 @@ use crate::geometry::{
 };
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance, dot, sub, unit};
+use crate::tasks::{GRAIN, Team};
 
 /// Dihedral angle in degrees beyond which an edge is a ridge by default.
 pub const DEFAULT_RIDGE_ANGLE: f64 = 45.0;
@@ -39,11 +40,11 @@ impl Discrete {
     ///
     /// # Errors
     /// If the mesh has no triangles; see [`super::complete_boundary`].
-    pub fn from_mesh(mesh: &TetMesh, ridge_angle_deg: f64) -> Result<(Self, Classification), Error> {
+    pub fn from_mesh(team: Team<'_>, mesh: &TetMesh, ridge_angle_deg: f64) -> Result<(Self, Classification), Error> {
         if mesh.triangles.is_empty() {
             return Err(Unfit::NoTriangles.into());
         }
-        let builder = Builder::new(mesh, ridge_angle_deg);
+        let builder = Builder::new(team, mesh, ridge_angle_deg);
         let model = builder.model();
         let classification = builder.classification(&model);
         Ok((model, classification))
@@ -52,6 +53,7 @@ impl Discrete {
 
 /// Features of the mesh and their numbering.
 struct Builder<'a> {
+    team: Team<'a>,
     mesh: &'a TetMesh,
     features: Features,
     /// Ridges as indices into the features' edges.
@@ -62,8 +64,8 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(mesh: &'a TetMesh, ridge_angle_deg: f64) -> Self {
-        let features = Features::detect(mesh, ridge_angle_deg);
+    fn new(team: Team<'a>, mesh: &'a TetMesh, ridge_angle_deg: f64) -> Self {
+        let features = Features::detect(team, mesh, ridge_angle_deg);
         let ridges: Vec<u32> = (0..features.edges.len() as u32).filter(|&e| features.ridge[e as usize]).collect();
         let is_corner = find_corners(mesh, &features, &ridges, ridge_angle_deg);
         let nodes: Vec<[u32; 2]> = ridges.iter().map(|&e| features.edges.nodes[e as usize]).collect();
@@ -76,11 +78,11 @@ impl<'a> Builder<'a> {
             })
         };
         let corners = is_corner.into_iter().map(&mut number).collect();
-        Self { mesh, features, ridges, chains, corners }
+        Self { team, mesh, features, ridges, chains, corners }
     }
 
     fn model(&self) -> Discrete {
-        let triangles = outward_triangles(self.mesh);
+        let triangles = outward_triangles(self.team, self.mesh);
         let members = self.features.members();
         let bounds = box_of(self.mesh.triangles.nodes.iter().flatten().map(|&v| self.mesh.vertices[v as usize]));
         let flat = FLAT * distance(bounds[0], bounds[1]);
@@ -205,17 +207,25 @@ impl<'a> Builder<'a> {
                 result.entities[v] = Entity::Vertex(corner);
             }
         }
-        let mut evaluator = model.evaluator();
-        for v in 0..count {
-            let point = self.mesh.vertices[v];
-            match result.entities[v] {
-                Entity::Edge(edge) => result.parameters[v][0] = evaluator.closest_on_edge(edge, point, None).t,
-                Entity::Face(face) => {
-                    let on = evaluator.closest_on_face(face, point, None);
-                    (result.parameters[v], result.projected[v]) = (on.uv, on.point);
+        let entities = &result.entities;
+        let landed = self.team.collect(GRAIN, count, |range, landed| {
+            let mut evaluator = model.evaluator();
+            for v in range {
+                let point = self.mesh.vertices[v];
+                match entities[v] {
+                    Entity::Edge(edge) => {
+                        landed.push((v, [evaluator.closest_on_edge(edge, point, None).t, 0.0], point));
+                    }
+                    Entity::Face(face) => {
+                        let on = evaluator.closest_on_face(face, point, None);
+                        landed.push((v, on.uv, on.point));
+                    }
+                    Entity::Vertex(_) | Entity::Interior => {}
                 }
-                Entity::Vertex(_) | Entity::Interior => {}
             }
+        });
+        for (v, parameters, point) in landed {
+            (result.parameters[v], result.projected[v]) = (parameters, point);
         }
         result
     }

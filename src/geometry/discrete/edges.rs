@@ -1,5 +1,5 @@
 //! The edges of a set of triangles, each once, with the triangles around it.
-use rayon::slice::ParallelSliceMut;
+use crate::tasks::Team;
 
 /// Edges of triangles. Side s = 3·t + k is the edge from corner k to corner k + 1 of triangle t.
 pub(crate) struct EdgeTable {
@@ -13,7 +13,7 @@ pub(crate) struct EdgeTable {
 
 impl EdgeTable {
     /// Collects the edges of the triangles.
-    pub fn new(triangles: &[[u32; 3]]) -> Self {
+    pub fn new(team: Team<'_>, triangles: &[[u32; 3]]) -> Self {
         let mut keys: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * triangles.len());
         for (t, nodes) in triangles.iter().enumerate() {
             for k in 0..3 {
@@ -21,7 +21,7 @@ impl EdgeTable {
                 keys.push((a.min(b), a.max(b), (3 * t + k) as u32));
             }
         }
-        keys.par_sort_unstable();
+        team.sort(&mut keys);
         let mut table = Self {
             nodes: Vec::with_capacity(keys.len() / 2),
             of_side: vec![0; keys.len()],

@@ -2,6 +2,7 @@
 use super::EdgeTable;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, area2, dot, unit};
+use crate::tasks::Team;
 
 /// Edges that are features, and the patches between them.
 pub(crate) struct Features {
@@ -20,9 +21,9 @@ pub(crate) struct Features {
 impl Features {
     /// Finds the ridges: listed edges, edges between references, borders and non-manifold edges, and edges at
     /// which the normals turn by more than the angle; then the patches that they enclose.
-    pub fn detect(mesh: &TetMesh, ridge_angle_deg: f64) -> Self {
+    pub fn detect(team: Team<'_>, mesh: &TetMesh, ridge_angle_deg: f64) -> Self {
         let triangles = &mesh.triangles;
-        let edges = EdgeTable::new(&triangles.nodes);
+        let edges = EdgeTable::new(team, &triangles.nodes);
         let mut listed = vec![None; edges.len()];
         for (nodes, reference) in mesh.edges.iter() {
             if let Some(edge) = edges.find(nodes[0], nodes[1]) {

@@ -2,6 +2,7 @@
 use super::complete_boundary;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{sub, unit};
+use crate::tasks::Team;
 
 /// The unit cube, n³ cells of six tetrahedra around their diagonal; no triangles.
 pub(crate) fn cube(n: u32) -> TetMesh {
@@ -37,7 +38,7 @@ pub(crate) fn cube(n: u32) -> TetMesh {
 /// The sphere of radius 2 about the origin: a cube's surface blown up, triangles only.
 pub(crate) fn sphere(n: u32) -> TetMesh {
     let mut mesh = cube(n);
-    complete_boundary(&mut mesh);
+    complete_boundary(Team::alone(), &mut mesh);
     for p in &mut mesh.vertices {
         *p = unit(sub(*p, [0.5; 3])).map(|x| 2.0 * x);
     }

@@ -5,9 +5,10 @@ use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Geometry};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, area2, distance, dot, norm, sub, unit};
+use crate::tasks::Team;
 
 fn discrete(mesh: &TetMesh) -> (Discrete, Classification) {
-    Discrete::from_mesh(mesh, DEFAULT_RIDGE_ANGLE).unwrap()
+    Discrete::from_mesh(Team::alone(), mesh, DEFAULT_RIDGE_ANGLE).unwrap()
 }
 
 fn count(classification: &Classification, dimension: u32) -> usize {
@@ -17,8 +18,8 @@ fn count(classification: &Classification, dimension: u32) -> usize {
 #[test]
 fn a_cube_has_its_corners_edges_and_faces_with_normals_outward() {
     let mut mesh = cube(4);
-    assert_eq!(complete_boundary(&mut mesh), 6 * 4 * 4 * 2);
-    assert_eq!(complete_boundary(&mut mesh), 0, "a second time there is nothing to add");
+    assert_eq!(complete_boundary(Team::alone(), &mut mesh), 6 * 4 * 4 * 2);
+    assert_eq!(complete_boundary(Team::alone(), &mut mesh), 0, "a second time there is nothing to add");
     // Triangles may be listed either way round.
     mesh.triangles.nodes.iter_mut().step_by(3).for_each(|nodes| nodes.swap(0, 1));
     let (model, classification) = discrete(&mesh);
@@ -47,7 +48,7 @@ fn a_cube_has_its_corners_edges_and_faces_with_normals_outward() {
 fn parameters_give_back_the_points_of_the_classification() {
     for mesh in [sphere(6), {
         let mut mesh = cube(3);
-        complete_boundary(&mut mesh);
+        complete_boundary(Team::alone(), &mut mesh);
         mesh
     }] {
         let (model, classification) = discrete(&mesh);
@@ -180,7 +181,7 @@ fn regions_get_an_interface_that_belongs_to_both() {
     let mut mesh = cube(4);
     let high = |tet: &[u32; 4], mesh: &TetMesh| tet.iter().any(|&v| mesh.vertices[v as usize][2] > 0.5 + 1e-9);
     mesh.tets.refs = mesh.tets.nodes.iter().map(|tet| if high(tet, &mesh) { 2 } else { 1 }).collect();
-    assert_eq!(complete_boundary(&mut mesh), 6 * 32 + 32);
+    assert_eq!(complete_boundary(Team::alone(), &mut mesh), 6 * 32 + 32);
     let mut refs = mesh.triangles.refs.clone();
     refs.sort_unstable();
     refs.dedup();
@@ -200,23 +201,23 @@ fn regions_get_an_interface_that_belongs_to_both() {
 #[test]
 fn outward_triangles_do_not_depend_on_the_order_of_a_tetrahedron() {
     let mut mesh = cube(2);
-    complete_boundary(&mut mesh);
+    complete_boundary(Team::alone(), &mut mesh);
     let expected = mesh.triangles.nodes.clone();
     mesh.triangles.nodes.iter_mut().step_by(2).for_each(|nodes| nodes.swap(1, 2));
     mesh.tets.nodes.iter_mut().step_by(2).for_each(|nodes| nodes.swap(1, 2));
-    assert_eq!(outward_triangles(&mesh), expected);
+    assert_eq!(outward_triangles(Team::alone(), &mesh), expected);
 }
 
 #[test]
 fn a_mesh_without_triangles_is_an_error() {
-    let error = Discrete::from_mesh(&cube(1), DEFAULT_RIDGE_ANGLE).err().unwrap();
+    let error = Discrete::from_mesh(Team::alone(), &cube(1), DEFAULT_RIDGE_ANGLE).err().unwrap();
     assert!(error.to_string().contains("no boundary triangles"), "{error}");
 }
 
 #[test]
 fn features_come_back_with_their_references() {
     let mut mesh = cube(2);
-    complete_boundary(&mut mesh);
+    complete_boundary(Team::alone(), &mut mesh);
     let at = |mesh: &TetMesh, p: Vec3| mesh.vertices.iter().position(|&q| q == p).unwrap() as u32;
     let (a, b, c) = (at(&mesh, [0.0; 3]), at(&mesh, [0.5, 0.0, 0.0]), at(&mesh, [1.0, 0.0, 0.0]));
     for (t, nodes) in mesh.triangles.nodes.iter().enumerate() {
