@@ -151,7 +151,7 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
 /// What becomes of the vertex in the middle of a cube with cells of 1/4, and where it has new vertices then.
 fn extend_middle(sizes: Vec3) -> (Result<(), Refusal>, Vec<Vec3>) {
     let (mesh, place, model, source) = cube(4, sizes);
-    let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
+    let Filled { store, .. } = build::fill(Team::alone(), &mesh, &place, &source).expect("the cube is valid");
     let context = Context::new(store, &source, &model);
     let store = &context.store;
     let old = store.vertex_bound() as u32;
@@ -186,7 +186,7 @@ fn points_along_eigenvectors_near_to_vertices_or_beyond_them_are_dropped() {
 fn a_sweep_along_eigenvectors_leaves_a_valid_mesh_with_more_vertices_inside() {
     for threads in [1, 3] {
         let (mesh, place, model, source) = cube(4, [0.13, 0.1, 0.12]);
-        let Filled { store, .. } = build::fill(&mesh, &place, &source).expect("the cube is valid");
+        let Filled { store, .. } = build::fill(Team::alone(), &mesh, &place, &source).expect("the cube is valid");
         let context = Context::new(store, &source, &model);
         let pool = Pool::new(threads).expect("a pool");
         let mut states: Vec<_> = (0..threads).map(|_| State::new(&context)).collect();

@@ -11,6 +11,7 @@ use crate::geometry::{Discrete, Model};
 use crate::mesh::samples::with_boundary;
 use crate::mesh::vector::{Vec3, add, norm};
 use crate::metric::{Background, Source, Sym3};
+use crate::tasks::Team;
 use proptest::prelude::*;
 
 /// A polygon about the axis: angle in degrees and radius of each corner, in the order of the angles.
@@ -30,11 +31,13 @@ fn on_pyramids<T>(
     vertices.extend([[0.0, 0.0, up], [0.0, 0.0, -down]]);
     let tets = cut.iter().flat_map(|&[x, y, z]| [[x, y, z, tip], [x, z, y, tip + 1]]).collect();
     let mesh = with_boundary(vertices, tets);
-    let (model, place) = Discrete::from_mesh(&mesh, DEFAULT_RIDGE_ANGLE).expect("the pyramids have a surface");
+    let (model, place) =
+        Discrete::from_mesh(Team::alone(), &mesh, DEFAULT_RIDGE_ANGLE).expect("the pyramids have a surface");
     let logs = vec![Sym3::ZERO; mesh.vertices.len()];
     let background = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs);
     let (source, model) = (Source::Background(background), Model::Discrete(model));
-    let Filled { store, ids, .. } = build::fill(&mesh, &place, &source).expect("the pyramids are a mesh");
+    let Filled { store, ids, .. } =
+        build::fill(Team::alone(), &mesh, &place, &source).expect("the pyramids are a mesh");
     let context = Context::new(store, &source, &model);
     check(&context).unwrap();
     let mut state = State::new(&context);
