@@ -31,8 +31,8 @@ fn at_share(share: f64, la: f64, lb: f64) -> f64 {
     if growth.abs() < 1e-3 { share } else { ((share * growth).ln_1p() / growth.ln_1p()).clamp(0.1, 0.9) }
 }
 
-/// The share of an edge that is cut off: a third where three pieces come nearest to unit length, in the sense of their ratio, else half. Halves of
-/// edges of length three would be halved again, and be too short then.
+/// The share of an edge that is cut off: a third from √6, where three pieces come nearer to unit length than two, up to √18, where three
+/// would be too long; else half. Halves of edges of length three would be halved again, and be too short then.
 fn cut_off(length: f64) -> f64 {
     if length * length > 6.0 && length * length < 18.0 { 1.0 / 3.0 } else { 0.5 }
 }
