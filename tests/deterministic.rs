@@ -65,6 +65,22 @@ fn coarsened_by_a_field_at_the_vertices() {
     same_on_any_threads(&work, &path, &["--metric", &metric]);
 }
 
+/// Two cycles in one process write what two runs write, of which the second reads what the first wrote.
+#[test]
+fn cycles_in_one_process_or_in_several() {
+    let work = Workplace::new();
+    let mesh: TetMesh = cube(6);
+    let metric = work.metric(&mesh, |p| Sym3::diagonal(1.0, 4.0, 2.0).times(30.0 + 200.0 * p[2]));
+    let path = work.mesh(&mesh);
+    let at_once = written(&work, &path, &["--metric", &metric, "--complexity", "1500", "--cycles", "2"], "2");
+    written(&work, &path, &["--metric", &metric, "--complexity", "1500"], "1");
+    let [first, size] = ["first.meshb", "first.solb"].map(|name| work.path(name));
+    std::fs::rename(work.path("out.meshb"), &first).unwrap();
+    std::fs::rename(work.path("out.solb"), &size).unwrap();
+    let second = written(&work, &first, &["--metric", &text(&size), "--complexity", "1500"], "3");
+    assert!(second.files == at_once.files, "two processes write other bytes");
+}
+
 #[cfg(feature = "occt")]
 #[test]
 fn refined_on_a_model() {

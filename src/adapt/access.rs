@@ -4,7 +4,7 @@
 //! tetrahedron at that vertex hold still, because whoever replaces a tetrahedron must hold all four of its vertices.
 //! With [`Exclusive`] a claim is nothing and the compiler removes it; with [`Speculative`] it takes the vertex's lock word,
 //! and a word held by another thread ends the operation with a conflict: everything is released, the item is tried again later.
-//! With [`Owned`] the words are written before the round: a part of the mesh belongs to whoever works on it, and a claim only looks.
+//! With [`Owned`] whose each vertex is has been written before the round: a part of the mesh belongs to whoever works on it, and a claim only looks.
 use super::discipline;
 use super::ids::VertexId;
 use super::outcome::Refusal;
@@ -87,21 +87,21 @@ impl Drop for Speculative {
 /// A part of the mesh that is one thread's for a whole round: the lock words say whose each vertex is, and do not change.
 pub struct Owned {
     /// Not 0.
-    owner: u32,
+    owner: u8,
 }
 
 impl Owned {
     /// The access of part `part`, counted from 0.
-    pub fn new(part: u32) -> Self {
+    pub fn new(part: usize) -> Self {
         let owner = Self::word(part);
-        discipline::work_as(owner);
+        discipline::work_as(u32::from(owner));
         Self { owner }
     }
 
-    /// What the lock word of a vertex of that part says; 0 stands for nobody's.
+    /// What a vertex of that part says; 0 stands for nobody's.
     #[inline(always)]
-    pub fn word(part: u32) -> u32 {
-        part + 1
+    pub fn word(part: usize) -> u8 {
+        part as u8 + 1
     }
 }
 
@@ -110,12 +110,12 @@ impl Access for Owned {
 
     #[inline(always)]
     fn claim(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal> {
-        if store.lock(v).load(Relaxed) == self.owner { Ok(()) } else { Err(Refusal::Conflict) }
+        if store.owner(v).load(Relaxed) == self.owner { Ok(()) } else { Err(Refusal::Conflict) }
     }
 
     #[inline]
     fn adopt(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal> {
-        store.lock(v).store(self.owner, Relaxed);
+        store.owner(v).store(self.owner, Relaxed);
         Ok(())
     }
 

@@ -10,9 +10,10 @@ use super::extract::{self, References};
 use super::ids::{EDGE, TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::{Counts, Refusal};
-use super::schedule::{self, Collapse, Crew, Operation, Reconnect, Scheduler, Smooth, Split};
+use super::schedule::{self, Collapse, Crew, Grains, Operation, Reconnect, Scheduler, Smooth, Split};
 use super::shape::{is_longer, is_shorter};
 use super::star::{Bounds, Seed};
+use super::work::Kind;
 use super::worker::{State, Worker};
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
@@ -182,8 +183,13 @@ impl<'m> Workbench<'m> {
     }
 
     fn run<O: Operation>(&mut self, operation: &O, items: &[O::Item]) -> Counts {
-        let crew = Crew { pool: &self.pool, scheduler: Scheduler::Sequential, plan: Plan::default() };
-        schedule::run(operation, items, &self.context, &mut self.states, crew, &|_| {})
+        let crew = Crew {
+            pool: &self.pool,
+            scheduler: Scheduler::Sequential,
+            plan: Plan::default(),
+            grains: Grains::default(),
+        };
+        schedule::run(operation, items, &self.context, &mut self.states, (crew, Kind::Split), &|_| {})
     }
 
     /// Lists and carries out some sweeps, one after the other.

@@ -108,6 +108,7 @@ fn balls(store: &Store) -> BTreeMap<VertexId, Vec<TetId>> {
 /// The vertex is free, knows a tetrahedron of its own, and from there all others are found.
 fn check_vertex(store: &Store, v: VertexId, ball: &[TetId]) -> Result<(), String> {
     ensure!(store.lock(v).load(Relaxed) == 0, "{v:?} is still locked");
+    ensure!(store.owner(v).load(Relaxed) == 0, "{v:?} is still a part's");
     let first = store.tet_of(v);
     ensure!(ball.contains(&first), "{v:?} points to {first:?}, which has it not");
     let mut found = vec![first];

@@ -101,7 +101,7 @@ mod watch {
     /// Whether this thread may touch the vertex.
     pub fn holds(store: &Store, v: VertexId) -> bool {
         let owner = OWNER.get();
-        owner == 0 || store.lock(v).load(Relaxed) == owner
+        owner == 0 || store.lock(v).load(Relaxed) == owner || u32::from(store.owner(v).load(Relaxed)) == owner
     }
 
     /// Whether this thread works beside others.

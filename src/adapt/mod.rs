@@ -54,5 +54,5 @@ pub use criteria::Criterion;
 pub use extract::Extracted;
 pub use outcome::{Counts, Refusal};
 pub use run::{Adapted, Options, adapt};
-pub use schedule::Scheduler;
+pub use schedule::{Grains, Scheduler};
 pub use work::{KINDS, Kind, Observer, Work};

@@ -415,7 +415,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let start = Instant::now();
         self.observer.begin(kind, self.pass, items.len());
         let advance = |n: usize| self.observer.advance(n);
-        let counts = schedule::run(operation, items, self.context, &mut self.states, self.crew, &advance);
+        let counts = schedule::run(operation, items, self.context, &mut self.states, (self.crew, kind), &advance);
         self.observer.end(&counts);
         let work = &mut self.work[kind as usize];
         work.counts.add(&counts);

@@ -8,7 +8,7 @@ use super::extract::{self, Extracted, References};
 use super::ids::VertexId;
 use super::pipeline::Pipeline;
 use super::required::Required;
-use super::schedule::{Crew, Scheduler};
+use super::schedule::{Crew, Grains, Scheduler};
 use super::work::{KINDS, Observer, Work};
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::outward_triangles;
@@ -29,6 +29,8 @@ pub struct Options {
     pub scheduler: Scheduler,
     /// Who runs their tasks, and how they are made.
     pub plan: Plan,
+    /// Items a task, by kind of operation.
+    pub grains: Grains,
 }
 
 impl Default for Options {
@@ -38,6 +40,7 @@ impl Default for Options {
             points: PointCreation::default(),
             scheduler: Scheduler::default(),
             plan: Plan::default(),
+            grains: Grains::default(),
         }
     }
 }
@@ -76,7 +79,7 @@ pub fn adapt(
     context.ids = ids;
     let mut pipeline = Pipeline::new(
         &mut context,
-        Crew { pool, scheduler: options.scheduler, plan: options.plan },
+        Crew { pool, scheduler: options.scheduler, plan: options.plan, grains: options.grains },
         observer,
         options.criterion,
         waiting,

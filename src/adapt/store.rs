@@ -12,7 +12,7 @@ use crate::mesh::vector::Vec3;
 use crate::metric::Sym3;
 use crate::tasks::Team;
 use bytemuck::Zeroable;
-use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
 /// Vertices that there is room for beside those of a small mesh; tetrahedra six times as many. Room that is not used costs no
 /// memory.
@@ -63,6 +63,8 @@ pub struct CornerRidge {
 /// The mesh store.
 pub struct Store {
     vertices: Vec<VertexRecord>,
+    /// Whose each vertex is in a round of the deterministic scheduler: bytes, close together, since a claim asks for nothing else.
+    owners: Vec<AtomicU8>,
     places: Vec<PlaceRecord>,
     tets: Vec<TetRecord>,
     corners: Vec<Vec<CornerRidge>>,
@@ -136,6 +138,7 @@ impl Store {
     pub fn with_capacity(vertices: usize, tets: usize) -> Self {
         Self {
             vertices: bytemuck::allocation::zeroed_vec(vertices),
+            owners: bytemuck::allocation::zeroed_vec(vertices),
             places: bytemuck::allocation::zeroed_vec(vertices),
             tets: bytemuck::allocation::zeroed_vec(tets),
             corners: Vec::new(),
@@ -152,6 +155,7 @@ impl Store {
         let used = self.vertex_bound();
         if used + vertices > self.vertices.len() {
             rehouse(team, &mut self.vertices, used, used + 3 * vertices);
+            self.owners = bytemuck::allocation::zeroed_vec(self.vertices.len());
             rehouse(team, &mut self.places, used, used + 3 * vertices);
         }
         let used = self.tet_bound();
@@ -165,6 +169,8 @@ impl Store {
         let (vertices, tets) = (self.vertex_bound(), self.tet_bound());
         self.vertices.truncate(vertices);
         self.vertices.shrink_to_fit();
+        self.owners.truncate(vertices);
+        self.owners.shrink_to_fit();
         self.places.truncate(vertices);
         self.places.shrink_to_fit();
         self.tets.truncate(tets);
@@ -282,6 +288,12 @@ impl Store {
         self.must_hold(v);
         save(&self.vertices[v.index()].log, log.0);
         save(&self.vertices[v.index()].metric, metric.0);
+    }
+
+    /// Whose the vertex is in this round, 0 when it is nobody's.
+    #[inline(always)]
+    pub fn owner(&self, v: VertexId) -> &AtomicU8 {
+        &self.owners[v.index()]
     }
 
     /// The lock word, 0 when free.

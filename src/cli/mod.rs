@@ -10,6 +10,7 @@ mod inspect;
 mod load;
 mod model;
 mod table;
+mod tune;
 
 /// Adapts tetrahedral meshes to a metric, on the real CAD model.
 #[derive(Parser)]
@@ -31,6 +32,8 @@ enum Command {
     Inspect(inspect::Arguments),
     /// List the entities of a CAD model
     Model(model::Arguments),
+    /// Measure which back-end, strategy and grain are the fastest on a case
+    Tune(tune::Arguments),
 }
 
 /// What a subcommand returns: its exit code, or an error that ends the program with code 2.
@@ -51,6 +54,7 @@ pub fn main() -> ExitCode {
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
+        Command::Tune(arguments) => tune::run(&arguments),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("geo-adapt: error: {error}");

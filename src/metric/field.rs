@@ -22,12 +22,15 @@ impl Field {
     /// Reads ln M at every vertex from a .sol or .solb file of M, as [`Field::read`] checks it: the eigenvalues that tell whether a
     /// tensor is positive definite give its logarithm.
     pub fn read_logs(team: Team<'_>, path: &Path, vertices: usize) -> Result<Read<Vec<Sym3>>, Error> {
-        read_each(team, path, vertices, |m| {
-            let mut eigen = m.eigen_spd();
-            let positive = eigen.values[0] > 0.0;
-            eigen.values = eigen.values.map(f64::ln);
-            positive.then(|| Sym3::from_eigen(&eigen))
-        })
+        read_each(team, path, vertices, log_of)
+    }
+
+    /// ln M of metrics as [`Field::read_logs`] has it, to the last bit.
+    ///
+    /// # Panics
+    /// When one is not positive definite.
+    pub fn logs_of(team: Team<'_>, metrics: &[Sym3]) -> Vec<Sym3> {
+        team.map(GRAIN, metrics.len(), |i| log_of(metrics[i]).expect("a positive definite tensor"))
     }
 
     /// Writes .sol or .solb by the extension.
@@ -36,6 +39,14 @@ impl Field {
         let field = SolutionField { kind: FieldKind::SymmetricTensor, values };
         Ok(io::write_solution(path, &Solution { vertices: self.metrics.len(), fields: vec![field] })?)
     }
+}
+
+/// The logarithm of a tensor; none of one that is not positive definite.
+fn log_of(m: Sym3) -> Option<Sym3> {
+    let mut eigen = m.eigen_spd();
+    let positive = eigen.values[0] > 0.0;
+    eigen.values = eigen.values.map(f64::ln);
+    positive.then(|| Sym3::from_eigen(&eigen))
 }
 
 /// What `convert` makes of the tensors of a file; none for one that is not positive definite.

@@ -3,7 +3,7 @@ use super::super::access::Exclusive;
 use super::super::build::{self, Filled};
 use super::super::check::check;
 use super::super::extend::active_vertices;
-use super::super::schedule::{self, Create, Crew, Extend, Scheduler};
+use super::super::schedule::{self, Create, Crew, Extend, Grains, Scheduler};
 use super::super::work::{Kind, Observer};
 use super::super::worker::State;
 use super::super::{Counts, Options, adapt, extract};
@@ -134,8 +134,8 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let before = [1, 2, 3].map(count);
         let items = active_tets(Team::alone(), &context);
         assert_eq!(items.len(), mesh.tets.len());
-        let crew = Crew { pool: &pool, scheduler, plan: Plan::default() };
-        let counts = schedule::run(&Create, &items, &context, &mut states, crew, &|_| {});
+        let crew = Crew { pool: &pool, scheduler, plan: Plan::default(), grains: Grains::default() };
+        let counts = schedule::run(&Create, &items, &context, &mut states, (crew, Kind::Split), &|_| {});
         assert!(counts.done > 0);
         let after = [1, 2, 3].map(count);
         assert!((0..3).all(|k| after[k] > before[k]), "{before:?} {after:?}");
@@ -198,8 +198,13 @@ fn a_sweep_along_eigenvectors_leaves_a_valid_mesh_with_more_vertices_inside() {
         for _ in 0..3 {
             context.store.tick();
             let items = active_vertices(Team::alone(), &context);
-            let crew = Crew { pool: &pool, scheduler: Scheduler::Speculative, plan: Plan::default() };
-            schedule::run(&Extend, &items, &context, &mut states, crew, &|_| {});
+            let crew = Crew {
+                pool: &pool,
+                scheduler: Scheduler::Speculative,
+                plan: Plan::default(),
+                grains: Grains::default(),
+            };
+            schedule::run(&Extend, &items, &context, &mut states, (crew, Kind::Split), &|_| {});
             check(&context).unwrap();
         }
         let after = context.store.live_vertices().count();

@@ -3,7 +3,7 @@
 //! In each round the mesh is in parts that depend on nothing but the mesh and the items. Each part is one thread's until the round
 //! ends: its items are done in their order, with ids of its own, and what would touch another part waits for the next round, whose parts
 //! are cut elsewhere. A tetrahedron with vertices in two parts stands still, and so does whatever a part can see of another; so it makes no
-//! difference which part comes first. No lock is taken: a claim is a look at a word that does not change.
+//! difference which part comes first. No lock is taken: a claim is a look at a byte that does not change.
 use super::parts::Parts;
 use super::{Advance, Item, Operation, sequential};
 use crate::adapt::access::Owned;
@@ -23,13 +23,16 @@ pub const MOST_PARTS: usize = 64;
 
 /// Items a part, at least.
 /// Few in the unit tests, whose meshes are small.
-const ITEMS: usize = if cfg!(test) { 6 } else { 1024 };
+const ITEMS: usize = if cfg!(test) { 6 } else { 4096 };
 
 /// What is left is one thread's when it is less than this part of all items.
 const LITTLE: f64 = 0.02;
 
 /// Vertices or tetrahedra that are looked at in one task.
 const GRAIN: usize = 1 << 13;
+
+/// Vertices whose parts are found at once.
+const AT_ONCE: usize = 8;
 
 /// Where an item is done.
 const WAITS: u32 = u32::MAX;
@@ -76,8 +79,14 @@ pub fn run<'m, O: Operation>(
 /// All vertices are nobody's again.
 fn give_back(store: &Store, (pool, plan): (&Pool, Plan)) {
     pool.task_for(Plan { grain: GRAIN, ..plan }, store.vertex_bound(), |_, range| {
-        range.for_each(|i| store.lock(VertexId(i as u32)).store(0, Relaxed));
+        range.for_each(|i| store.owner(VertexId(i as u32)).store(0, Relaxed));
     });
+}
+
+/// Whose a vertex is, 0 when it is nobody's.
+#[inline(always)]
+fn owner(store: &Store, v: VertexId) -> u8 {
+    store.owner(v).load(Relaxed)
 }
 
 fn parts_for(items: usize) -> usize {
@@ -104,8 +113,8 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     /// Does what can be done; returns what is left.
     fn run(&mut self, states: &mut [State<'m>], counts: &mut Counts, advance: Advance<'_>) -> Vec<u32> {
         let store = &self.context.store;
-        let owners = self.give_out(&Parts::of(store, self.left.iter().map(|&i| self.item(i)), self.parts));
-        let seats = self.seats(&owners);
+        self.give_out(&Parts::of(store, self.left.iter().map(|&i| self.item(i)), self.parts));
+        let seats = self.seats();
         let (sorted, starts, mut again) = self.sorted(&seats, counts);
         let supplies = states[0].supply.deal(store, self.parts);
         let part = |supply| Part { supply, waiting: Vec::new(), counts: Counts::default(), again: Vec::new() };
@@ -132,34 +141,33 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         again
     }
 
-    /// Writes into the lock words whose each vertex is; returns the same, close together.
-    fn give_out(&self, parts: &Parts) -> Vec<u8> {
+    /// Writes whose each vertex is. The dead are nobody's: their ids may become anybody's.
+    fn give_out(&self, parts: &Parts) {
         let store = &self.context.store;
-        let mut owners = vec![0; store.vertex_bound()];
-        self.pool.for_each_chunk_mut(Plan { grain: GRAIN, ..self.plan }, &mut owners, |_, start, chunk| {
-            for (owner, v) in chunk.iter_mut().zip(start as u32..).map(|(owner, v)| (owner, VertexId(v))) {
-                // The dead are nobody's: their ids may become anybody's.
-                let word = if store.is_vertex(v) { Owned::word(parts.holds(store.position(v))) } else { 0 };
-                store.lock(v).store(word, Relaxed);
-                *owner = word as u8;
+        self.pool.task_for(Plan { grain: GRAIN, ..self.plan }, store.vertex_bound(), |_, range| {
+            for start in range.clone().step_by(AT_ONCE) {
+                let vertices = std::array::from_fn(|i| VertexId((start + i).min(range.end - 1) as u32));
+                let held = parts.hold::<AT_ONCE>(vertices.map(|v| store.position(v)));
+                for (v, part) in vertices.into_iter().zip(held) {
+                    store.owner(v).store(if store.is_vertex(v) { Owned::word(part) } else { 0 }, Relaxed);
+                }
             }
         });
-        owners
     }
 
     /// The part in which each item can be done.
-    fn seats(&self, owners: &[u8]) -> Vec<u32> {
+    fn seats(&self) -> Vec<u32> {
         let store = &self.context.store;
-        let between = if O::WHOLE_BALLS { self.between(owners) } else { Vec::new() };
+        let between = if O::WHOLE_BALLS { self.between() } else { Vec::new() };
         let seat = |number: &u32| {
             let vertices = self.item(*number).vertices(store);
-            if vertices.iter().any(|&v| !v.is_some() || owners[v.index()] == 0) {
+            if vertices.iter().any(|&v| !v.is_some() || owner(store, v) == 0) {
                 return GONE;
             }
-            let owner = owners[vertices[0].index()];
+            let part = owner(store, vertices[0]);
             let is_between = |v: &VertexId| between.get(v.index()).is_some_and(|flag| flag.load(Relaxed));
-            let waits = vertices.iter().any(|v| owners[v.index()] != owner || is_between(v));
-            if waits { WAITS } else { u32::from(owner) - 1 }
+            let waits = vertices.iter().any(|v| owner(store, *v) != part || is_between(v));
+            if waits { WAITS } else { u32::from(part - Owned::word(0)) }
         };
         self.pool.collect(Plan { grain: GRAIN, ..self.plan }, self.left.len(), |_, range, found| {
             found.extend(self.left[range].iter().map(seat));
@@ -167,14 +175,14 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     }
 
     /// Whether a vertex has a neighbour in another part.
-    fn between(&self, owners: &[u8]) -> Vec<AtomicBool> {
+    fn between(&self) -> Vec<AtomicBool> {
         let store = &self.context.store;
         let mut between = Vec::new();
-        between.resize_with(owners.len(), AtomicBool::default);
+        between.resize_with(store.vertex_bound(), AtomicBool::default);
         self.pool.task_for(Plan { grain: GRAIN, ..self.plan }, store.tet_bound(), |_, range| {
             for t in store.live_tets_in(range) {
                 let vertices = store.vertices(t);
-                let [a, b, c, d] = vertices.map(|v| owners[v.index()]);
+                let [a, b, c, d] = vertices.map(|v| owner(store, v));
                 if (a ^ b) | (a ^ c) | (a ^ d) != 0 {
                     vertices.iter().for_each(|v| between[v.index()].store(true, Relaxed));
                 }
@@ -209,7 +217,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     fn work(&self, numbers: &[u32], index: usize, part: &mut Part, state: &mut State<'m>) {
         let own = std::mem::take(&mut state.waiting);
         std::mem::swap(&mut state.supply, &mut part.supply);
-        let mut worker = Worker::new(self.context, state, Owned::new(index as u32));
+        let mut worker = Worker::new(self.context, state, Owned::new(index));
         for &number in numbers {
             let result = self.operation.attempt(&mut worker, self.item(number));
             part.counts.record(result);

@@ -1,5 +1,6 @@
 //! Who runs what, when: an operation is applied to a list of items by one thread or by several.
 pub mod deterministic;
+mod grains;
 mod parts;
 mod sequential;
 mod speculative;
@@ -11,10 +12,13 @@ use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
 use super::outcome::{Counts, Refusal};
 use super::store::Store;
+use super::work::Kind;
 use super::worker::{State, Worker};
 use crate::tasks::{Plan, Pool};
 use clap::ValueEnum;
 use serde::Serialize;
+
+pub use grains::Grains;
 
 /// Who does what, when.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
@@ -36,8 +40,10 @@ pub struct Crew<'c> {
     pub pool: &'c Pool,
     /// Who does what.
     pub scheduler: Scheduler,
-    /// Who runs the tasks, and how they are made; the grain is each operation's own.
+    /// Who runs the tasks, and how they are made.
     pub plan: Plan,
+    /// Items a task, by kind of operation.
+    pub grains: Grains,
 }
 
 /// Something an operation is done to.
@@ -85,15 +91,14 @@ pub fn run<'m, O: Operation>(
     items: &[O::Item],
     context: &Context<'m>,
     states: &mut [State<'m>],
-    crew: Crew<'_>,
+    (crew, kind): (Crew<'_>, Kind),
     advance: Advance<'_>,
 ) -> Counts {
+    let tasks = (crew.pool, Plan { grain: crew.grains.of(kind), ..crew.plan });
     match crew.scheduler {
         Scheduler::Sequential => sequential::run(operation, items, context, &mut states[0], advance),
-        Scheduler::Speculative => speculative::run(operation, items, context, states, crew.pool, advance),
-        Scheduler::Deterministic => {
-            deterministic::run(operation, items, context, states, (crew.pool, crew.plan), advance)
-        }
+        Scheduler::Speculative => speculative::run(operation, items, context, states, tasks, advance),
+        Scheduler::Deterministic => deterministic::run(operation, items, context, states, tasks, advance),
     }
 }
 

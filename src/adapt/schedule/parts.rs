@@ -65,14 +65,17 @@ impl Parts {
         Self { cuts }
     }
 
-    /// The part a point lies in.
+    /// The part each point lies in: several at a time, which do not wait for each other.
     #[inline]
-    pub fn holds(&self, p: Vec3) -> u32 {
-        let mut node = 0;
-        while let Some(cut) = self.cuts.get(node) {
-            node = 2 * node + 1 + usize::from(dot(p, DIRECTIONS[cut.direction]) > cut.offset);
+    pub fn hold<const N: usize>(&self, points: [Vec3; N]) -> [usize; N] {
+        let mut nodes = [0; N];
+        for _ in 0..(self.cuts.len() + 1).ilog2() {
+            for (node, p) in nodes.iter_mut().zip(points) {
+                let cut = self.cuts[*node];
+                *node = 2 * *node + 1 + usize::from(dot(p, DIRECTIONS[cut.direction]) > cut.offset);
+            }
         }
-        (node - self.cuts.len()) as u32
+        nodes.map(|node| node - self.cuts.len())
     }
 }
 

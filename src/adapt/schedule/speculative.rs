@@ -1,96 +1,89 @@
-//! Several threads, each taking the next bucket of items; what ends in a conflict is tried again in the next round
-//! (Tsolakis 2021, 3.4). The last round is one thread's, so no item is lost.
-use super::{Advance, Operation};
+//! Several threads, each taking tasks of some items; what ends in a conflict is tried again at the end of its task, when the other thread
+//! has most likely moved on, and then in the next round (Tsolakis 2021, 3.4). The last round is one thread's, so no item is lost.
+//!
+//! One thread alone meets nobody, so it claims nothing: it is the sequential scheduler.
+use super::{Advance, Operation, sequential};
 use crate::adapt::access::{Access, Speculative};
 use crate::adapt::context::Context;
 use crate::adapt::outcome::{Counts, Refusal};
 use crate::adapt::worker::{State, Worker};
-use crate::tasks::Pool;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use crate::tasks::{Plan, Pool};
 
-/// Items in a bucket, at most.
-const BUCKET: usize = 150;
-
-/// Buckets a thread, at least: short lists are shared out too.
+/// Tasks a thread, at least: short lists are shared out too.
 const SHARES: usize = 8;
 
 /// Rounds that all threads share; then one thread takes what is left.
 const ROUNDS: usize = 6;
 
-/// Applies the operation to the items on all threads of the pool, one state each.
+/// What a thread has in a round, and what comes of it.
+struct Seat<'s, 'm, I> {
+    state: &'s mut State<'m>,
+    counts: Counts,
+    again: Vec<I>,
+}
+
+/// Applies the operation to all items on all threads of the pool, one state each; a task has `plan.grain` items at most.
 pub fn run<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
     context: &Context<'m>,
     states: &mut [State<'m>],
-    pool: &Pool,
+    (pool, plan): (&Pool, Plan),
     advance: Advance<'_>,
 ) -> Counts {
+    if pool.threads() == 1 {
+        return sequential::run(operation, items, context, &mut states[0], advance);
+    }
     let mut counts = Counts::default();
     let mut left: Option<Vec<O::Item>> = None;
-    for round in 0..=ROUNDS {
+    for _ in 0..ROUNDS {
         let work = left.as_deref().unwrap_or(items);
         if work.is_empty() {
-            break;
+            return counts;
         }
-        let threads = if round == ROUNDS { 1 } else { states.len() };
-        let (next, size) = (AtomicUsize::new(0), (work.len() / (SHARES * threads)).clamp(1, BUCKET));
-        let slots: Vec<_> = states[..threads].iter_mut().map(|state| Mutex::new((state, Outcome::default()))).collect();
-        let turn = |thread: usize| {
-            if let Some(slot) = slots.get(thread) {
-                let (state, outcome) = &mut *slot.lock().expect("each slot belongs to one thread");
-                take_buckets(operation, work, (&next, size), context, state, thread, outcome, advance);
-            }
-        };
-        pool.on_each_thread(&turn);
+        let grain = plan.grain.min(work.len() / (SHARES * pool.threads())).max(1);
+        let seat = |state| Seat { state, counts: Counts::default(), again: Vec::new() };
+        let mut seats: Vec<_> = states.iter_mut().map(seat).collect();
+        pool.task_for_with(Plan { grain, ..plan }, work.len(), &mut seats, |seat, thread, range| {
+            let done = range.len();
+            seat.work(operation, context, thread, &work[range]);
+            advance(done);
+        });
         let mut again = Vec::new();
-        for slot in slots {
-            let (_, outcome) = slot.into_inner().expect("each slot belongs to one thread");
-            counts.add(&outcome.counts);
-            again.extend(outcome.again);
+        for seat in seats {
+            counts.add(&seat.counts);
+            again.extend(seat.again);
         }
         left = Some(again);
     }
+    let rest = left.unwrap_or_default();
+    counts.add(&sequential::run(operation, &rest, context, &mut states[0], advance));
     counts
 }
 
-struct Outcome<I> {
-    counts: Counts,
-    again: Vec<I>,
-}
-
-impl<I> Default for Outcome<I> {
-    fn default() -> Self {
-        Self { counts: Counts::default(), again: Vec::new() }
-    }
-}
-
-#[allow(clippy::too_many_arguments)]
-fn take_buckets<'m, O: Operation>(
-    operation: &O,
-    items: &[O::Item],
-    (next, size): (&AtomicUsize, usize),
-    context: &Context<'m>,
-    state: &mut State<'m>,
-    thread: usize,
-    outcome: &mut Outcome<O::Item>,
-    advance: Advance<'_>,
-) {
-    let mut worker = Worker::new(context, state, Speculative::new(thread));
-    loop {
-        let start = next.fetch_add(size, Relaxed);
-        let Some(bucket) = items.get(start..items.len().min(start + size)).filter(|bucket| !bucket.is_empty()) else {
-            return;
-        };
-        for &item in bucket {
+impl<'m, I: super::Item> Seat<'_, 'm, I> {
+    /// Does the items of one task.
+    fn work<O>(&mut self, operation: &O, context: &Context<'m>, thread: usize, items: &[I])
+    where
+        O: Operation<Item = I>,
+    {
+        let mut worker = Worker::new(context, self.state, Speculative::new(thread));
+        let first = self.again.len();
+        let mut attempt = |item| {
             let result = operation.attempt(&mut worker, item);
             worker.access.release(worker.store);
-            outcome.counts.record(result);
-            if result == Err(Refusal::Conflict) {
-                outcome.again.push(item);
+            self.counts.record(result);
+            result == Err(Refusal::Conflict)
+        };
+        self.again.extend(items.iter().copied().filter(|&item| attempt(item)));
+        let mut kept = first;
+        for index in first..self.again.len() {
+            let item = self.again[index];
+            if attempt(item) {
+                self.again[kept] = item;
+                kept += 1;
             }
         }
-        advance(bucket.len());
+        self.again.truncate(kept);
     }
 }

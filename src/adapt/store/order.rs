@@ -70,6 +70,7 @@ impl Store {
             }
         });
         self.vertices = vertices;
+        self.owners = zeroed_vec(room);
         let mut places: Vec<PlaceRecord> = zeroed_vec(room);
         team.fill(GRAIN, &mut places[..order.len()], |start, chunk| {
             for (to, &old) in chunk.iter_mut().zip(&order[start..]) {

@@ -7,8 +7,9 @@ use crate::adapt::ids::{EDGE, TetId, VertexId};
 use crate::adapt::insert::EdgeItem;
 use crate::adapt::outcome::Counts;
 use crate::adapt::schedule::{
-    self, Collapse, Crew, Mend, Operation, Project, Reconnect, Retire, Scheduler, Smooth, Split, Thin,
+    self, Collapse, Crew, Grains, Mend, Operation, Project, Reconnect, Retire, Scheduler, Smooth, Split, Thin,
 };
+use crate::adapt::work::Kind;
 use crate::adapt::worker::State;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary, samples};
@@ -216,8 +217,8 @@ impl<'m> Bench<'m> {
 
     fn run<O: Operation>(&mut self, operation: &O, mut items: Vec<O::Item>) -> Counts {
         self.random.shuffle(&mut items);
-        let crew = Crew { pool: &self.pool, scheduler: self.scheduler, plan: self.plan };
-        schedule::run(operation, &items, &self.context, &mut self.states, crew, &|_| {})
+        let crew = Crew { pool: &self.pool, scheduler: self.scheduler, plan: self.plan, grains: Grains::uniform(8) };
+        schedule::run(operation, &items, &self.context, &mut self.states, (crew, Kind::Split), &|_| {})
     }
 
     /// All edges; some are listed twice, with another tetrahedron.

@@ -23,7 +23,8 @@ pub fn check(arguments: &Arguments) -> Result<(), String> {
     if let Some(report) = arguments.report.as_ref().filter(|&report| report == output || *report == metric) {
         return Err(format!("{}: is also the mesh's or its metric's file; give another --report", report.display()));
     }
-    let inputs = [Some(&arguments.mesh), arguments.cad.as_ref(), arguments.field.metric.as_ref()];
+    let given = &arguments.input;
+    let inputs = [Some(&given.mesh), given.cad.as_ref(), given.field.metric.as_ref()];
     for written in outputs.into_iter().flatten() {
         let folder = written.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
@@ -49,9 +50,10 @@ pub fn write(
     mut report: Report,
     times: [Duration; 3],
 ) -> Result<Report, Box<dyn std::error::Error>> {
-    let metrics = std::mem::take(&mut report.metrics);
     io::write_mesh(&arguments.output, &report.mesh)?;
-    Field { metrics }.write(&metric_path(arguments))?;
+    let field = Field { metrics: std::mem::take(&mut report.metrics) };
+    field.write(&metric_path(arguments))?;
+    report.metrics = field.metrics;
     let [prepared, finished, measured] = times.map(|time| time.as_secs_f64());
     report.seconds.read_and_classify = prepared;
     report.seconds.adapt = finished - prepared;

@@ -1,54 +1,39 @@
 //! `geo-adapt adapt`.
 mod files;
+pub mod input;
 mod progress;
 mod report;
 
-use super::{Outcome, load};
-use crate::adapt::{self, Criterion, Options, PointCreation, Scheduler};
-use crate::geometry::classify::{self, Classification};
-use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
-use crate::geometry::{Discrete, Model};
-use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::{TetMesh, io};
-use crate::metric::{Analytic, Background, Field, Source, field};
+use super::Outcome;
+use crate::adapt::{self, Criterion, Grains, Options, PointCreation, Scheduler};
+use crate::metric::Field;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
+use input::{Given, Input, InputArguments};
 use progress::Progress;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::time::Instant;
 
 /// Exit code after an interrupt: 128 + SIGINT, as shells have it. The last valid mesh is written all the same.
 const INTERRUPTED: u8 = 130;
 
-/// Twelve tetrahedra for each unit of complexity, numbered with 32 bits; some numbers lie idle.
-const GREATEST_COMPLEXITY: f64 = 2e8;
-
 /// Arguments of `geo-adapt adapt`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb
-    mesh: PathBuf,
+    #[command(flatten)]
+    input: InputArguments,
     /// Where the adapted mesh goes; its metric is written beside it as .solb
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     output: PathBuf,
-    /// The CAD model the boundary lies on: .step, .stp, .iges, .igs, .brep or .egads. Without it the surface of the input mesh
-    #[arg(long, value_name = "MODEL")]
-    cad: Option<PathBuf>,
-    #[command(flatten)]
-    field: FieldArguments,
-    /// Scale the metric to this complexity: about half the number of vertices
-    #[arg(long, value_name = "C", value_parser = super::positive, allow_negative_numbers = true)]
-    complexity: Option<f64>,
     /// Threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     threads: Option<u16>,
     /// Write what was done as JSON
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
-    /// How far a vertex of the input may be from the model, in its units
-    #[arg(long, value_name = "T", value_parser = super::positive, allow_negative_numbers = true)]
-    tolerance: Option<f64>,
+    /// Adapts so many times, each time what came of the last: as so many runs from the written files
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000), allow_negative_numbers = true)]
+    cycles: u16,
     /// Criterion of the flips that follow each sweep of insertion
     #[arg(long, value_enum, default_value_t = Criterion::MeanRatio)]
     criterion: Criterion,
@@ -67,21 +52,12 @@ pub struct Arguments {
     /// In which order the tasks are made
     #[arg(long, value_enum, default_value_t = Strategy::default())]
     strategy: Strategy,
+    /// Items a task of the speculative scheduler: one number, or insertion=N,reconnection=N,…; `geo-adapt tune` finds the best
+    #[arg(long, value_name = "GRAIN", default_value_t = Grains::default(), hide_default_value = true)]
+    grain: Grains,
     /// No progress and no table; errors only
     #[arg(short, long)]
     quiet: bool,
-}
-
-/// The metric: exactly one of the two.
-#[derive(clap::Args)]
-#[group(required = true, multiple = false)]
-struct FieldArguments {
-    /// The metric at the vertices of the mesh: .sol or .solb
-    #[arg(long, value_name = "FILE")]
-    metric: Option<PathBuf>,
-    /// An analytic metric: linear, polar-1 or polar-2
-    #[arg(long, value_name = "NAME")]
-    analytic: Option<Analytic>,
 }
 
 /// Runs the subcommand.
@@ -95,103 +71,45 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let plan = Plan { backend: arguments.backend, strategy: arguments.strategy, ..Plan::default() };
     let team = Team::new(&pool, plan);
     stage("start");
-    let mut read = io::read_mesh(&arguments.mesh)?;
-    stage("mesh read");
-    let faces = MatchedFaces::of(team, &read.content.tets.nodes);
-    let added = complete_matched(team, &mut read.content, &faces);
-    stage("boundary complete");
-    if added > 0 {
-        read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
+    let mut notices = Vec::new();
+    let mut given = arguments.input.read(team, &mut notices)?;
+    let (mut cad, mut start) = (None, Some(start));
+    for cycle in 1..=arguments.cycles {
+        let start = start.take().unwrap_or_else(Instant::now);
+        let input = arguments.input.prepare(team, given, cad.take(), &mut notices)?;
+        for notice in notices.drain(..).filter(|_| !arguments.quiet) {
+            eprintln!("geo-adapt: note: {notice}");
+        }
+        let prepared = start.elapsed();
+        let progress = Progress::new(!arguments.quiet, stop.clone());
+        let Input { mesh, place, model, source } = &input;
+        let adapted = adapt::adapt(mesh, place, model, source, &arguments.options(plan), &pool, &progress)
+            .map_err(|error| format!("{}: {error}", arguments.input.mesh.display()))?;
+        progress.finish();
+        let finished = start.elapsed();
+        let report = report::Report::new(team, arguments, &input, adapted, threads);
+        stage("report");
+        let mut report = files::write(arguments, report, [prepared, finished, start.elapsed()])?;
+        stage("written");
+        if !arguments.quiet {
+            if arguments.cycles > 1 {
+                super::print(&format!("cycle {cycle} of {}\n", arguments.cycles));
+            }
+            super::print(&report.text(arguments));
+        }
+        if progress.interrupted() {
+            return Ok(ExitCode::from(INTERRUPTED));
+        }
+        let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
+        given = Given { mesh: std::mem::take(&mut report.mesh), logs };
+        cad = arguments.input.cad.is_some().then_some(input.model);
     }
-    let mesh = Arc::new(read.content);
-    let mut source = source(team, arguments, &mesh, faces, &mut read.notices)?;
-    stage("metric ready");
-    let (model, place) = place(team, arguments, &mesh, &mut read.notices)?;
-    stage("classified");
-    scale(team, arguments, &mesh, &mut source)?;
-    stage("complexity");
-    let progress = Progress::new(!arguments.quiet, stop);
-    for notice in read.notices.iter().filter(|_| !arguments.quiet) {
-        eprintln!("geo-adapt: note: {notice}");
-    }
-    let prepared = start.elapsed();
-    let scheduler = if arguments.deterministic { Scheduler::Deterministic } else { arguments.scheduler };
-    let options = Options { criterion: arguments.criterion, points: arguments.points, scheduler, plan };
-    let adapted = adapt::adapt(&mesh, &place, &model, &source, &options, &pool, &progress)
-        .map_err(|error| format!("{}: {error}", arguments.mesh.display()))?;
-    progress.finish();
-    let finished = start.elapsed();
-    let report = report::Report::new(team, arguments, &mesh, &model, adapted, threads);
-    stage("report");
-    let report = files::write(arguments, report, [prepared, finished, start.elapsed()])?;
-    stage("written");
-    if !arguments.quiet {
-        super::print(&report.text(arguments));
-    }
-    Ok(if progress.interrupted() { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+    Ok(ExitCode::SUCCESS)
 }
 
-/// The metric's source: the analytic field, or the input mesh with the file's metric as background.
-fn source(
-    team: Team<'_>,
-    arguments: &Arguments,
-    mesh: &Arc<TetMesh>,
-    faces: MatchedFaces,
-    notices: &mut Vec<String>,
-) -> Result<Source, Box<dyn std::error::Error>> {
-    if let Some(field) = arguments.field.analytic {
-        return Ok(Source::Analytic { field, log_scale: 0.0 });
+impl Arguments {
+    fn options(&self, plan: Plan) -> Options {
+        let scheduler = if self.deterministic { Scheduler::Deterministic } else { self.scheduler };
+        Options { criterion: self.criterion, points: self.points, scheduler, plan, grains: self.grain }
     }
-    let path = arguments.field.metric.as_ref().ok_or("neither --metric nor --analytic")?;
-    let read = Field::read_logs(team, path, mesh.vertices.len())?;
-    notices.extend(read.notices);
-    if mesh.tets.is_empty() {
-        return Err(format!("{}: {}", arguments.mesh.display(), adapt::Error::Empty).into());
-    }
-    Ok(Source::Background(Background::on(team, Arc::clone(mesh), faces, read.content)))
-}
-
-/// Scales the source to the complexity that is asked for, and refuses one that no mesh can have.
-fn scale(team: Team<'_>, arguments: &Arguments, mesh: &TetMesh, source: &mut Source) -> Result<(), String> {
-    if arguments.complexity.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
-        return Ok(());
-    }
-    let own = source.complexity(team, mesh);
-    if let Some(target) = arguments.complexity {
-        source.scale(team, field::complexity_factor(own, target).ln());
-    }
-    let complexity = arguments.complexity.unwrap_or(own);
-    if complexity <= GREATEST_COMPLEXITY {
-        return Ok(());
-    }
-    let remedy = match arguments.complexity {
-        Some(_) => "give a smaller --complexity",
-        None => "are mesh and metric in the same units? else give a --complexity",
-    };
-    let [vertices, most] = [2.0 * complexity, 2.0 * GREATEST_COMPLEXITY];
-    Err(format!(
-        "{}: the metric asks for about {vertices:.0e} vertices, more than the {most:.0e} of the largest mesh; {remedy}",
-        arguments.mesh.display()
-    ))
-}
-
-/// The model, and where the mesh lies on it.
-fn place(
-    team: Team<'_>,
-    arguments: &Arguments,
-    mesh: &TetMesh,
-    notices: &mut Vec<String>,
-) -> Result<(Model, Classification), Box<dyn std::error::Error>> {
-    let name = arguments.mesh.display();
-    let Some(path) = &arguments.cad else {
-        let (model, place) =
-            Discrete::from_mesh(team, mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
-        return Ok((Model::Discrete(model), place));
-    };
-    let model = load::model(path)?;
-    let options = classify::Options { tolerance: arguments.tolerance, ..classify::Options::default() };
-    let (place, report) = classify::classify(team, mesh, &model, &options)
-        .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
-    notices.extend(report.notices);
-    Ok((model, place))
 }

@@ -1,4 +1,5 @@
 //! What was done: the table on the terminal and the JSON.
+use super::input::Input;
 use super::{Arguments, files};
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
 use crate::cli::table::Table;
@@ -60,16 +61,9 @@ pub struct Report {
 
 impl Report {
     /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it.
-    pub fn new(
-        team: Team<'_>,
-        arguments: &Arguments,
-        input: &TetMesh,
-        model: &Model,
-        adapted: Adapted,
-        threads: usize,
-    ) -> Self {
+    pub fn new(team: Team<'_>, arguments: &Arguments, input: &Input, adapted: Adapted, threads: usize) -> Self {
         let extracted = adapted.extracted;
-        let mut mesh = extracted.mesh;
+        let (mut mesh, model) = (extracted.mesh, &input.model);
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &extracted.classification),
             #[cfg(feature = "occt")]
@@ -80,12 +74,12 @@ impl Report {
         let fidelity = fidelity::measure(team, &mesh, model, &extracted.classification);
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            input: arguments.mesh.clone(),
+            input: arguments.input.mesh.clone(),
             output: arguments.output.clone(),
             threads,
-            complexity_wanted: arguments.complexity,
-            input_vertices: input.vertices.len(),
-            input_tets: input.tets.len(),
+            complexity_wanted: arguments.input.complexity,
+            input_vertices: input.mesh.vertices.len(),
+            input_tets: input.mesh.tets.len(),
             statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
             fidelity,
             off_model: adapted.off_model,

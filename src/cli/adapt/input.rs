@@ -1,0 +1,161 @@
+//! What a run begins with: the mesh, where it lies on its model, and the metric.
+use super::super::load;
+use crate::adapt;
+use crate::geometry::classify::{self, Classification};
+use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
+use crate::geometry::{Discrete, Model};
+use crate::mesh::adjacency::MatchedFaces;
+use crate::mesh::{TetMesh, io};
+use crate::metric::{Analytic, Background, Field, Source, Sym3, field};
+use crate::tasks::{Team, stage};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Twelve tetrahedra for each unit of complexity, numbered with 32 bits; some numbers lie idle.
+const GREATEST_COMPLEXITY: f64 = 2e8;
+
+/// The inputs of a run.
+#[derive(clap::Args)]
+pub struct InputArguments {
+    /// The mesh: .mesh or .meshb
+    pub mesh: PathBuf,
+    /// The CAD model the boundary lies on: .step, .stp, .iges, .igs, .brep or .egads. Without it the surface of the input mesh
+    #[arg(long, value_name = "MODEL")]
+    pub cad: Option<PathBuf>,
+    #[command(flatten)]
+    pub field: FieldArguments,
+    /// Scale the metric to this complexity: about half the number of vertices
+    #[arg(long, value_name = "C", value_parser = crate::cli::positive, allow_negative_numbers = true)]
+    pub complexity: Option<f64>,
+    /// How far a vertex of the input may be from the model, in its units
+    #[arg(long, value_name = "T", value_parser = crate::cli::positive, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+}
+
+/// The metric: exactly one of the two.
+#[derive(clap::Args)]
+#[group(required = true, multiple = false)]
+pub struct FieldArguments {
+    /// The metric at the vertices of the mesh: .sol or .solb
+    #[arg(long, value_name = "FILE")]
+    pub metric: Option<PathBuf>,
+    /// An analytic metric: linear, polar-1 or polar-2
+    #[arg(long, value_name = "NAME")]
+    analytic: Option<Analytic>,
+}
+
+/// A mesh with the metric at its vertices, if that is what the metric is known by.
+pub struct Given {
+    /// The mesh.
+    pub mesh: TetMesh,
+    /// ln M at its vertices.
+    pub logs: Option<Vec<Sym3>>,
+}
+
+/// All that the adapter needs.
+pub struct Input {
+    /// The mesh, its boundary complete.
+    pub mesh: Arc<TetMesh>,
+    /// Where it lies on the model.
+    pub place: Classification,
+    /// The model.
+    pub model: Model,
+    /// The metric, of the complexity that is asked for.
+    pub source: Source,
+}
+
+type Error = Box<dyn std::error::Error>;
+
+impl InputArguments {
+    /// Reads the mesh and, if it comes from a file, its metric. What the user should know is added to `notices`.
+    pub fn read(&self, team: Team<'_>, notices: &mut Vec<String>) -> Result<Given, Error> {
+        let read = io::read_mesh(&self.mesh)?;
+        stage("mesh read");
+        notices.extend(read.notices);
+        let mesh = read.content;
+        let Some(path) = &self.field.metric else { return Ok(Given { mesh, logs: None }) };
+        let read = Field::read_logs(team, path, mesh.vertices.len())?;
+        notices.extend(read.notices);
+        stage("metric read");
+        Ok(Given { mesh, logs: Some(read.content) })
+    }
+
+    /// Completes the boundary, puts the mesh on its model, and brings the metric to its complexity.
+    /// `cad` is the CAD model, when it is there already.
+    pub fn prepare(
+        &self,
+        team: Team<'_>,
+        given: Given,
+        cad: Option<Model>,
+        notices: &mut Vec<String>,
+    ) -> Result<Input, Error> {
+        let Given { mut mesh, logs } = given;
+        let faces = MatchedFaces::of(team, &mesh.tets.nodes);
+        let added = complete_matched(team, &mut mesh, &faces);
+        stage("boundary complete");
+        if added > 0 {
+            notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
+        }
+        let mesh = Arc::new(mesh);
+        let mut source = match (self.field.analytic, logs) {
+            (Some(field), _) => Source::Analytic { field, log_scale: 0.0 },
+            (None, Some(_)) if mesh.tets.is_empty() => {
+                return Err(format!("{}: {}", self.mesh.display(), adapt::Error::Empty).into());
+            }
+            (None, Some(logs)) => Source::Background(Background::on(team, Arc::clone(&mesh), faces, logs)),
+            (None, None) => return Err("neither --metric nor --analytic".into()),
+        };
+        stage("metric ready");
+        let (model, place) = self.place(team, &mesh, cad, notices)?;
+        stage("classified");
+        self.scale(team, &mesh, &mut source)?;
+        stage("complexity");
+        Ok(Input { mesh, place, model, source })
+    }
+
+    /// Scales the source to the complexity that is asked for, and refuses one that no mesh can have.
+    fn scale(&self, team: Team<'_>, mesh: &TetMesh, source: &mut Source) -> Result<(), String> {
+        if self.complexity.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
+            return Ok(());
+        }
+        let own = source.complexity(team, mesh);
+        if let Some(target) = self.complexity {
+            source.scale(team, field::complexity_factor(own, target).ln());
+        }
+        let complexity = self.complexity.unwrap_or(own);
+        if complexity <= GREATEST_COMPLEXITY {
+            return Ok(());
+        }
+        let remedy = match self.complexity {
+            Some(_) => "give a smaller --complexity",
+            None => "are mesh and metric in the same units? else give a --complexity",
+        };
+        let [vertices, most] = [2.0 * complexity, 2.0 * GREATEST_COMPLEXITY];
+        Err(format!(
+            "{}: the metric asks for about {vertices:.0e} vertices, more than the {most:.0e} of the largest mesh; {remedy}",
+            self.mesh.display()
+        ))
+    }
+
+    /// The model, and where the mesh lies on it.
+    fn place(
+        &self,
+        team: Team<'_>,
+        mesh: &TetMesh,
+        cad: Option<Model>,
+        notices: &mut Vec<String>,
+    ) -> Result<(Model, Classification), Error> {
+        let name = self.mesh.display();
+        let Some(path) = &self.cad else {
+            let (model, place) =
+                Discrete::from_mesh(team, mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
+            return Ok((Model::Discrete(model), place));
+        };
+        let model = cad.map_or_else(|| load::model(path), Ok)?;
+        let options = classify::Options { tolerance: self.tolerance, ..classify::Options::default() };
+        let (place, report) = classify::classify(team, mesh, &model, &options)
+            .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
+        notices.extend(report.notices);
+        Ok((model, place))
+    }
+}
