@@ -8,6 +8,7 @@ use crate::adapt::context::Context;
 use crate::adapt::outcome::{Counts, Refusal};
 use crate::adapt::worker::{State, Worker};
 use crate::tasks::{Plan, Pool};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Tasks a thread, at least: short lists are shared out too.
 const SHARES: usize = 8;
@@ -44,10 +45,15 @@ pub fn run<'m, O: Operation>(
         let grain = plan.grain.min(work.len() / (SHARES * pool.threads())).max(1);
         let seat = |state| Seat { state, counts: Counts::default(), again: Vec::new() };
         let mut seats: Vec<_> = states.iter_mut().map(seat).collect();
-        pool.task_for_with(Plan { grain, ..plan }, work.len(), &mut seats, |seat, thread, range| {
-            let done = range.len();
-            seat.work(operation, context, thread, &work[range]);
-            advance(done);
+        // Each task takes what is next in the list, in whatever order tasks are run: lists have their most urgent items first.
+        let next = AtomicUsize::new(0);
+        pool.task_for_with(Plan { grain: 1, ..plan }, work.len().div_ceil(grain), &mut seats, |seat, thread, range| {
+            for _ in range {
+                let start = next.fetch_add(grain, Relaxed);
+                let bucket = &work[start..work.len().min(start + grain)];
+                seat.work(operation, context, thread, bucket);
+                advance(bucket.len());
+            }
         });
         let mut again = Vec::new();
         for seat in seats {
