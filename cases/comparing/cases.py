@@ -12,6 +12,7 @@ from .uniform import uniform_cube
 
 OUT = cycles.ROOT / "out" / "compare"
 CUBE_CYLINDER = cycles.ROOT / "geometry" / "cube-cylinder.step"
+OWN_START = cycles.ROOT / "cases" / "cube-cylinder" / "start.meshb"
 CUBE = cycles.ROOT / "geometry" / "cube.step"
 
 
@@ -38,7 +39,7 @@ def ugawg_or_own(_):
     if (shared / "cube-cylinder.meshb").is_file():
         return shared / "cube-cylinder.meshb", shared / "cube-cylinder.step"
     cycles.say(f"the UGAWG files are not at {shared} (GEO_ADAPT_SHARED names their place): own start mesh")
-    return cycles.ROOT / "cases/cube-cylinder/start.meshb", CUBE_CYLINDER
+    return OWN_START, CUBE_CYLINDER
 
 
 def coarse_cube(_):
@@ -65,7 +66,7 @@ def _written(name, count):
 @functools.cache
 def natural(ours):
     """Our own mesh of polar-2 at its natural complexity (4 322): four cycles from the project's start mesh."""
-    current, log = cycles.ROOT / "cases/cube-cylinder/start.meshb", OUT / "natural.log"
+    current, log = OWN_START, OUT / "natural.log"
     log.unlink(missing_ok=True)
     for cycle in range(1, 5):
         target = OUT / f"natural-{cycle}.meshb"

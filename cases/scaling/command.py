@@ -4,6 +4,9 @@ Prints for each scheduler and number of threads: seconds by operation, speed-up 
 conflicts, the quality with its histogram, and the checksum of the mesh. Exit code: 0 when the deterministic meshes are all the same file
 and the quality does not depend on the threads (unit edges within 0.3 points, least ratio not below 0.9 of one sequential thread's), 1 else.
 Everything lies under out/threads.
+
+With --repetitions the deterministic scheduler runs so many times on each number of threads and with each of --backends, on this case and on
+polar-1 (four cycles in one process), and nothing else is done: exit code 0 when all meshes of a case are the same file.
 """
 
 import argparse
@@ -15,7 +18,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from comparing.adapters import GeoAdapt  # noqa: E402
-from comparing.cases import CUBE_CYLINDER, natural  # noqa: E402
+from comparing.cases import CUBE_CYLINDER, OWN_START, natural  # noqa: E402
 from judging import cycles  # noqa: E402
 
 OUT = cycles.ROOT / "out" / "threads"
@@ -30,6 +33,8 @@ def arguments():
     parser.add_argument("--complexity", type=float, default=100_000, help="default: 100 000")
     parser.add_argument("--threads", type=int, nargs="+", help="default: powers of two up to all cores, and twice as many")
     parser.add_argument("--program", type=Path, required=True, help="a geo-adapt that is built (default: it is built, release)")
+    parser.add_argument("--repetitions", type=int, metavar="N", help="only whether the same mesh comes N times from each")
+    parser.add_argument("--backends", nargs="+", default=["stealing", "rayon"], help="those of --repetitions (default: stealing rayon)")
     options = parser.parse_args()
     if not options.program.is_file():
         parser.error(f"{options.program} is not there")
@@ -71,6 +76,38 @@ def one_run(program, start, complexity, scheduler, threads):
     }
 
 
+def digest_of(program, name, words):
+    """The checksum of what one run writes."""
+    mesh, log = OUT / f"{name}.meshb", OUT / f"{name}.log"
+    ran = cycles.measured([program, "adapt", *words, "-o", mesh, "--quiet"], log)
+    if ran.code != 0:
+        raise RuntimeError(f"{name}: geo-adapt ended with {ran.code} ({log}):\n{cycles.tail(log)}")
+    return hashlib.sha256(mesh.read_bytes() + mesh.with_suffix(".solb").read_bytes()).hexdigest()
+
+
+def repeat(options, start):
+    """Whether the same meshes come from each number of threads and back-end, each time."""
+    model = ["--cad", CUBE_CYLINDER, "--deterministic"]
+    cases = {
+        "polar-1": [OWN_START, *model, "--analytic", "polar-1", "--cycles", 4],
+        "large": [start, *model, "--analytic", "polar-2", "--complexity", options.complexity],
+    }
+    same = True
+    for case, words in cases.items():
+        seen = {}
+        for backend in options.backends:
+            for threads in options.threads or [1, 2, 3, 8, 16]:
+                for _ in range(options.repetitions):
+                    digest = digest_of(options.program, "repeated", [*words, "--threads", threads, "--backend", backend])
+                    seen.setdefault(digest, []).append(f"{backend} on {threads}")
+        runs = sum(map(len, seen.values()))
+        cycles.say(f"{case}: {runs} runs, {len(seen)} checksum{'s' * (len(seen) > 1)}: " + "; ".join(digest[:16] for digest in seen))
+        for digest, names in list(seen.items())[1:]:
+            cycles.say(f"LOST  {case}: another mesh ({digest[:16]}) from {', '.join(names)}")
+            same = False
+    return 0 if same else 1
+
+
 def line(run, first):
     """A row of the table; `first` is the same scheduler on one thread."""
     def share(now, then):
@@ -101,6 +138,8 @@ def main():
     options = arguments()
     OUT.mkdir(parents=True, exist_ok=True)
     start, _ = natural(GeoAdapt(options.program))
+    if options.repetitions:
+        return repeat(options, start)
     cycles.say(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; behind seconds the speed-up, then the efficiency on the cores that there are")
     cycles.say(f"{'scheduler':<14}{'thr':>3}  {'adapting':<21}  " + "  ".join(f"{kind:<14}" for kind in OPERATIONS)
                + "  conflicts  unit edges, least and mean ratio, checksum")
