@@ -305,3 +305,33 @@ fn triangles_look_to_the_side_that_they_looked_to() {
         assert_eq!(same, if inward { 0 } else { outward.len() });
     }
 }
+
+/// A cube in two halves, the regions 1 and 2.
+fn in_halves(n: u32) -> TetMesh {
+    let mut mesh = one(n);
+    for (nodes, region) in mesh.tets.nodes.iter().zip(&mut mesh.tets.refs) {
+        *region = if nodes.iter().map(|&v| mesh.vertices[v as usize][0]).sum::<f64>() < 2.0 { 1 } else { 2 };
+    }
+    mesh
+}
+
+fn of_reference<const N: usize>(mesh: &TetMesh, elements: &Elements<N>, wanted: i32) -> BTreeSet<Vec<String>> {
+    let listed: Vec<u32> =
+        elements.refs.iter().zip(0..).filter(|&(&reference, _)| reference == wanted).map(|(_, e)| e).collect();
+    positions(mesh, elements, &listed)
+}
+
+#[test]
+fn what_is_frozen_stays_when_everything_around_it_changes() {
+    let work = Workplace::new();
+    let input = in_halves(6);
+    for size in [0.6, 0.09] {
+        let metric = work.metric(&input, |_| isotropic(size));
+        let mesh = work.adapt(&work.mesh(&input), &["--metric", &metric, "--freeze", "6,region:2"]).mesh;
+        assert_eq!(of_reference(&mesh, &mesh.triangles, 6), of_reference(&input, &input.triangles, 6));
+        assert_eq!(of_reference(&mesh, &mesh.tets, 2), of_reference(&input, &input.tets, 2));
+        let count = |mesh: &TetMesh| mesh.tets.refs.iter().filter(|&&region| region == 1).count();
+        let [before, after] = [count(&input), count(&mesh)];
+        assert!(if size > 0.5 { after < before } else { after > 3 * before }, "{before} tetrahedra, {after} after");
+    }
+}

@@ -204,3 +204,15 @@ fn an_error_is_all_that_quiet_lets_through() {
     assert_says(&complaint(&run), &["none.solb"]);
     assert_eq!(stderr(&run).lines().count(), 1);
 }
+
+#[test]
+fn what_cannot_be_frozen_is_refused() {
+    let (work, _, input, metric) = prepared();
+    let refused =
+        |freeze: &str| complaint(&work.command(&input, &["--metric", &metric, "--freeze", freeze]).output().unwrap());
+    assert_says(&refused("77"), &["in.meshb", "no surface with reference 77", "1"]);
+    assert_says(&refused("region:5"), &["in.meshb", "no region with reference 5"]);
+    let run = work.command(&input, &["--metric", &metric, "--freeze", "wing"]).output().unwrap();
+    assert_eq!(run.status.code(), Some(2));
+    assert_says(&stderr(&run), &["`wing` is no reference", "region:2"]);
+}

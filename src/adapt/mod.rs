@@ -53,6 +53,7 @@ pub use create::PointCreation;
 pub use criteria::Criterion;
 pub use extract::Extracted;
 pub use outcome::{Counts, Refusal};
+pub use required::Freeze;
 pub use run::{Adapted, Options, adapt};
 pub use schedule::{Grains, Scheduler};
 pub use work::{KINDS, Kind, Observer, Work};

@@ -1,7 +1,7 @@
-//! What the input says must stay: vertices, edges, triangles.
+//! What must stay: the vertices, edges and triangles that the input says, the surfaces and regions that the user freezes.
 //!
 //! The ends of required edges and the corners of required triangles neither move nor go, so their ids last and an edge is known by
-//! them. A surface triangle stays as long as its three edges do. All this is looked after in one place, the commit of a cavity.
+//! them. A surface triangle stays as long as its three edges do. Nothing replaces a tetrahedron of a frozen region. All this is looked after in one place, the commit of a cavity.
 use super::access::Access;
 use super::ids::{EDGE, VertexId};
 use super::outcome::Refusal;
@@ -9,26 +9,43 @@ use super::worker::Worker;
 use crate::mesh::TetMesh;
 use std::collections::HashSet;
 
-/// Vertices and edges that stay.
+/// What must not change in a run, by reference.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Freeze {
+    /// References of triangles.
+    pub surfaces: Vec<i32>,
+    /// References of tetrahedra.
+    pub regions: Vec<i32>,
+}
+
+/// Vertices, edges and regions that stay.
 #[derive(Default)]
 pub struct Required {
     /// By vertex id; ids beyond were given out later.
     frozen: Vec<bool>,
     edges: HashSet<[VertexId; 2]>,
+    /// By the store's numbers.
+    regions: Vec<u32>,
 }
 
 impl Required {
-    /// What a mesh requires; its vertices have their indices as ids.
-    pub fn of(mesh: &TetMesh) -> Self {
-        let mut required = Self { frozen: vec![false; mesh.vertices.len()], edges: HashSet::new() };
+    /// What a mesh requires, and what is frozen of it; its vertices have their indices as ids.
+    pub fn of(mesh: &TetMesh, freeze: &Freeze) -> Self {
+        let regions = freeze.regions.iter().map(|&region| region as u32).collect();
+        let mut required = Self { frozen: vec![false; mesh.vertices.len()], edges: HashSet::new(), regions };
         let edges = mesh.required_edges.iter().map(|&e| mesh.edges.nodes[e as usize]);
         let triangles = mesh.required_triangles.iter().map(|&t| mesh.triangles.nodes[t as usize]);
+        let surfaces = mesh.triangles.iter().filter(|(_, reference)| freeze.surfaces.contains(reference));
+        let triangles = triangles.chain(surfaces.map(|(nodes, _)| nodes));
         for [a, b] in edges.chain(triangles.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]])) {
             required.frozen[a as usize] = true;
             required.frozen[b as usize] = true;
             required.edges.insert(key(VertexId(a), VertexId(b)));
         }
         mesh.required_vertices.iter().for_each(|&v| required.frozen[v as usize] = true);
+        for (nodes, _) in mesh.tets.iter().filter(|(_, region)| freeze.regions.contains(region)) {
+            nodes.iter().for_each(|&v| required.frozen[v as usize] = true);
+        }
         if !required.frozen.contains(&true) {
             required.frozen.clear();
         }
@@ -89,7 +106,7 @@ fn key(a: VertexId, b: VertexId) -> [VertexId; 2] {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Refuses a replacement without a required vertex or edge that was there before.
+    /// Refuses a replacement without a required vertex or edge that was there before, and any in a frozen region.
     pub fn check_required(&self) -> Result<(), Refusal> {
         let required = &self.context.required;
         let replacement = &self.state.replacement;
@@ -100,6 +117,9 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Geometry);
         }
         for &t in &replacement.old {
+            if required.regions.contains(&self.store.region(t)) {
+                return Err(Refusal::Geometry);
+            }
             let v = self.store.vertices(t);
             for [a, b] in EDGE.map(|ends| ends.map(|i| v[i])) {
                 let stays = || replacement.new.iter().any(|tet| tet.vertices.contains(&a) && tet.vertices.contains(&b));

@@ -7,7 +7,7 @@ use super::criteria::Criterion;
 use super::extract::{self, Extracted, References};
 use super::ids::VertexId;
 use super::pipeline::Pipeline;
-use super::required::Required;
+use super::required::{Freeze, Required};
 use super::schedule::{Crew, Grains, Scheduler};
 use super::work::{KINDS, Observer, Work};
 use crate::geometry::classify::Classification;
@@ -19,7 +19,7 @@ use crate::tasks::{Plan, Pool, Team, stage};
 use std::collections::HashMap;
 
 /// How to adapt.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// Criterion of the flips that follow each sweep of insertion.
     pub criterion: Criterion,
@@ -31,6 +31,8 @@ pub struct Options {
     pub plan: Plan,
     /// Items a task, by kind of operation.
     pub grains: Grains,
+    /// What must not change.
+    pub freeze: Freeze,
 }
 
 impl Default for Options {
@@ -41,6 +43,7 @@ impl Default for Options {
             scheduler: Scheduler::default(),
             plan: Plan::default(),
             grains: Grains::default(),
+            freeze: Freeze::default(),
         }
     }
 }
@@ -69,7 +72,7 @@ pub fn adapt(
     pool: &Pool,
     observer: &dyn Observer,
 ) -> Result<Adapted, build::Error> {
-    let required = Required::of(mesh);
+    let required = Required::of(mesh, &options.freeze);
     let team = Team::new(pool, options.plan);
     let (Filled { store, waiting, ids }, crowded) = filled(team, mesh, place, source, &required)?;
     stage("store filled");

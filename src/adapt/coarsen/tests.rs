@@ -1,4 +1,5 @@
 use super::*;
+use crate::adapt::Freeze;
 use crate::adapt::build;
 use crate::geometry::Discrete;
 use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
@@ -106,8 +107,9 @@ fn what_is_required_stays() {
     mesh.edges.push(edge, 7);
     mesh.required_edges = vec![mesh.edges.len() as u32 - 1];
     mesh.required_vertices = vec![alone];
-    let coarse = coarsened(Team::alone(), &mesh, &placed(&mesh), &of_size(&mesh, 2.0), &Required::of(&mesh))
-        .expect("it is crowded");
+    let coarse =
+        coarsened(Team::alone(), &mesh, &placed(&mesh), &of_size(&mesh, 2.0), &Required::of(&mesh, &Freeze::default()))
+            .expect("it is crowded");
     let number = |v: u32| coarse.origin.iter().position(|&old| old == v).expect("it stays") as u32;
     number(alone);
     let ends = edge.map(number);

@@ -1,11 +1,12 @@
 //! `geo-adapt adapt`.
 mod files;
+mod freeze;
 pub mod input;
 mod progress;
 mod report;
 
 use super::Outcome;
-use crate::adapt::{self, Criterion, Grains, Options, PointCreation, Scheduler};
+use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler};
 use crate::metric::Field;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
 use input::{Given, Input, InputArguments};
@@ -40,6 +41,9 @@ pub struct Arguments {
     /// Where refinement puts new vertices
     #[arg(long, value_enum, default_value_t = PointCreation::Edge)]
     points: PointCreation,
+    /// Surfaces and regions that stay as they are, by reference: 3 or surface:3, region:2
+    #[arg(long, value_name = "REF,…", value_delimiter = ',', allow_negative_numbers = true)]
+    freeze: Vec<freeze::Part>,
     /// How the threads share the work
     #[arg(long, value_enum, default_value_t = Scheduler::default())]
     scheduler: Scheduler,
@@ -83,8 +87,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let prepared = start.elapsed();
         let progress = Progress::new(!arguments.quiet, stop.clone());
         let Input { mesh, place, model, source } = &input;
-        let adapted = adapt::adapt(mesh, place, model, source, &arguments.options(plan), &pool, &progress)
-            .map_err(|error| format!("{}: {error}", arguments.input.mesh.display()))?;
+        let named = |error| format!("{}: {error}", arguments.input.mesh.display());
+        let options = arguments.options(plan, freeze::frozen(&arguments.freeze, mesh).map_err(named)?);
+        let adapted = adapt::adapt(mesh, place, model, source, &options, &pool, &progress)
+            .map_err(|error| named(error.to_string()))?;
         progress.finish();
         let finished = start.elapsed();
         let report = report::Report::new(team, arguments, &input, adapted, threads);
@@ -108,8 +114,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
-    fn options(&self, plan: Plan) -> Options {
+    fn options(&self, plan: Plan, freeze: Freeze) -> Options {
         let scheduler = if self.deterministic { Scheduler::Deterministic } else { self.scheduler };
-        Options { criterion: self.criterion, points: self.points, scheduler, plan, grains: self.grain }
+        Options { criterion: self.criterion, points: self.points, scheduler, plan, grains: self.grain, freeze }
     }
 }
