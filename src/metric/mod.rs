@@ -11,6 +11,7 @@ pub mod quality;
 #[cfg(test)]
 mod random;
 mod ratios;
+pub mod recovery;
 mod source;
 pub mod statistics;
 pub mod tensor;
