@@ -7,12 +7,14 @@ mod error;
 mod exponential;
 pub mod field;
 pub mod lanes;
+mod limit;
 pub mod quality;
 #[cfg(test)]
 mod random;
 mod ratios;
 mod source;
 pub mod statistics;
+pub mod summary;
 pub mod tensor;
 #[cfg(test)]
 mod tests;
@@ -22,6 +24,7 @@ pub use background::Background;
 pub use eigen::{Eigen, plane_basis};
 pub use error::Error;
 pub use field::Field;
+pub use limit::Limits;
 pub use ratios::mean_ratios;
 pub use source::Source;
 pub use statistics::{Distribution, Statistics};
