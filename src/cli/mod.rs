@@ -8,6 +8,7 @@ mod classify;
 mod image_mesh;
 mod inspect;
 mod load;
+mod metric;
 mod model;
 mod table;
 
@@ -29,6 +30,8 @@ enum Command {
     ImageMesh(image_mesh::Arguments),
     /// Check a mesh and measure it in a metric
     Inspect(inspect::Arguments),
+    /// Make, combine and measure metrics
+    Metric(metric::Arguments),
     /// List the entities of a CAD model
     Model(model::Arguments),
 }
@@ -50,6 +53,7 @@ pub fn main() -> ExitCode {
         Command::Classify(arguments) => classify::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
     };
     outcome.unwrap_or_else(|error| {

@@ -7,6 +7,7 @@ mod error;
 mod exponential;
 pub mod field;
 pub mod lanes;
+mod limit;
 pub mod quality;
 #[cfg(test)]
 mod random;
@@ -14,6 +15,7 @@ mod ratios;
 pub mod recovery;
 mod source;
 pub mod statistics;
+pub mod summary;
 pub mod tensor;
 #[cfg(test)]
 mod tests;
@@ -23,6 +25,7 @@ pub use background::Background;
 pub use eigen::{Eigen, plane_basis};
 pub use error::Error;
 pub use field::Field;
+pub use limit::Limits;
 pub use ratios::mean_ratios;
 pub use source::Source;
 pub use statistics::{Distribution, Statistics};

@@ -1,0 +1,26 @@
+//! `geo-adapt metric`: metric fields made, combined and measured; one file a subcommand.
+mod common;
+mod show;
+
+use super::Outcome;
+use clap::Subcommand;
+
+/// Arguments of `geo-adapt metric`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Measure a metric: complexity, sizes, aspect ratios, how fast sizes grow
+    Show(show::Arguments),
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    match &arguments.command {
+        Command::Show(arguments) => show::run(arguments),
+    }
+}

@@ -1,0 +1,66 @@
+//! `geo-adapt metric show`.
+use super::common::{self, RunArguments};
+use crate::cli::Outcome;
+use crate::cli::table::{Table, figure};
+use crate::metric::summary::{Percentiles, Summary};
+use crate::tasks::{Plan, Team};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Arguments of `geo-adapt metric show`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The mesh: .mesh or .meshb
+    mesh: PathBuf,
+    /// The metric at its vertices: .sol or .solb
+    metric: PathBuf,
+    /// Write the figures as JSON
+    #[arg(long, value_name = "FILE.json")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    if let Some(json) = &arguments.json {
+        common::check_output(json, &["json"], &[&arguments.mesh, &arguments.metric])?;
+    }
+    let pool = arguments.run.pool()?;
+    let team = Team::new(&pool, Plan::default());
+    let mesh = common::mesh(&arguments.run, &arguments.mesh)?;
+    let logs = common::logs(&arguments.run, team, &arguments.metric, mesh.vertices.len())?;
+    let summary = Summary::of(team, &mesh, &logs);
+    if let Some(json) = &arguments.json {
+        common::write_json(json, &summary)?;
+    }
+    arguments.run.print(&describe(&summary));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The text for people.
+fn describe(summary: &Summary) -> String {
+    let mut table = Table::new();
+    table.row("vertices", summary.vertices);
+    table.row("complexity", figure(summary.complexity));
+    table.row("complexity, interpolated", figure(summary.complexity_between));
+    table.line(&format!(
+        "{:<26} {}",
+        "",
+        row(["least", "1 %", "10 %", "50 %", "90 %", "99 %", "greatest"].map(String::from))
+    ));
+    let rows = [
+        ("least size", &summary.least_size),
+        ("greatest size", &summary.greatest_size),
+        ("aspect ratio", &summary.aspect_ratio),
+        ("anisotropic quotient", &summary.anisotropic_quotient),
+    ];
+    for (name, Percentiles { least, p1, p10, median, p90, p99, greatest }) in rows {
+        table.row(name, row([least, p1, p10, median, p90, p99, greatest].map(|&x| figure(x))));
+    }
+    table.text().into()
+}
+
+fn row(cells: [String; 7]) -> String {
+    cells.map(|cell| format!("{cell:>10}")).join(" ")
+}
