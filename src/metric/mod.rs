@@ -8,6 +8,7 @@ mod exponential;
 pub mod field;
 pub mod lanes;
 mod limit;
+pub mod multiscale;
 pub mod quality;
 #[cfg(test)]
 mod random;

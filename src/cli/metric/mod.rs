@@ -1,5 +1,7 @@
 //! `geo-adapt metric`: metric fields made, combined and measured; one file a subcommand.
 mod common;
+pub(super) mod fields;
+mod multiscale;
 mod show;
 
 use super::Outcome;
@@ -14,6 +16,8 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Make the metric that resolves a field best for its complexity: L^p multiscale
+    Multiscale(multiscale::Arguments),
     /// Measure a metric: complexity, sizes, aspect ratios, how fast sizes grow
     Show(show::Arguments),
 }
@@ -21,6 +25,7 @@ enum Command {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     match &arguments.command {
+        Command::Multiscale(arguments) => multiscale::run(arguments),
         Command::Show(arguments) => show::run(arguments),
     }
 }

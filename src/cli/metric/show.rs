@@ -44,6 +44,12 @@ fn describe(summary: &Summary) -> String {
     table.row("vertices", summary.vertices);
     table.row("complexity", figure(summary.complexity));
     table.row("complexity, interpolated", figure(summary.complexity_between));
+    rows(&mut table, summary);
+    table.text().into()
+}
+
+/// Sizes and their ratios, a row each, below a head.
+pub fn rows(table: &mut Table, summary: &Summary) {
     table.line(&format!(
         "{:<26} {}",
         "",
@@ -58,7 +64,6 @@ fn describe(summary: &Summary) -> String {
     for (name, Percentiles { least, p1, p10, median, p90, p99, greatest }) in rows {
         table.row(name, row([least, p1, p10, median, p90, p99, greatest].map(|&x| figure(x))));
     }
-    table.text().into()
 }
 
 fn row(cells: [String; 7]) -> String {
