@@ -22,10 +22,13 @@ pub struct Unreachable {
 /// The logarithm of the scale at which `complexity`, which grows with it, is `target`, to [`TOLERANCE`]; and how often it was asked. The
 /// last call is at the scale that is returned.
 ///
-/// Secants within a bracket: an evaluation with gradation costs much, and the curve is nearly straight.
+/// Secants, since an evaluation with gradation costs much and the curve is nearly straight; and halves of the bracket when two of them
+/// did not halve it.
 pub fn reach(target: f64, mut complexity: impl FnMut(f64) -> f64) -> Result<(f64, u32), Unreachable> {
     let (mut scale, mut slope, mut last) = (0.0f64, FREE_SLOPE, None::<(f64, f64)>);
     let (mut below, mut above) = (f64::NEG_INFINITY, f64::INFINITY);
+    // How wide the bracket was when it was last halved, and how often not since.
+    let (mut width, mut patience) = (f64::INFINITY, 0);
     let mut nearest = (f64::INFINITY, 0.0);
     for asked in 1..=60 {
         let found = complexity(scale);
@@ -37,26 +40,26 @@ pub fn reach(target: f64, mut complexity: impl FnMut(f64) -> f64) -> Result<(f64
             nearest = (miss.abs(), found);
         }
         if miss < 0.0 {
-            below = below.max(scale)
+            below = scale;
         } else {
-            above = above.min(scale)
+            above = scale;
         }
         if let Some((scale_before, miss_before)) = last {
             slope = (miss - miss_before) / (scale - scale_before);
         }
         last = Some((scale, miss));
-        // Flatter than any metric whose complexity a scale can still change: a long step tells whether it can.
-        let step = if slope > 0.05 {
-            (-miss / slope).clamp(-LONGEST_STEP, LONGEST_STEP)
+        (width, patience) = if above - below <= 0.5 * width { (above - below, 2) } else { (width, patience - 1) };
+        // Where it is flat a long step tells whether a scale can still change it.
+        let step = if slope > 0.05 { -miss / slope } else { f64::INFINITY.copysign(-miss) };
+        let next = scale + step.clamp(-LONGEST_STEP, LONGEST_STEP);
+        let is_bracketed = below.is_finite() && above.is_finite();
+        scale = if is_bracketed && (patience < 0 || !(below < next && next < above)) {
+            0.5 * (below + above)
         } else {
-            LONGEST_STEP.copysign(-miss)
+            next
         };
-        let next = scale + step;
-        let is_inside = next > below && next < above;
-        scale = if is_inside { next } else { 0.5 * (below + above) };
-        // A bracket closed to rounding, or a NaN from a complexity that is none.
-        let is_over = !(above - below > 1e-9 && scale.abs() <= FARTHEST);
-        if is_over {
+        // Closed to rounding: a jump. Far away: a bound. Neither: a complexity that is no number.
+        if above - below < 1e-9 || !(scale.abs() <= FARTHEST) {
             break;
         }
     }
