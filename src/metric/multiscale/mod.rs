@@ -23,8 +23,11 @@ use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
 use optimal::Spectrum;
-use reach::{Unreachable, reach};
+use reach::{Unreachable, reach, reach_nearly};
 use serde::Serialize;
+
+/// Logarithm of the scale with which a metric of the complexity wanted has it after gradation too, as a first guess.
+const USUAL_SCALE: f64 = -0.27;
 
 /// Which metric is made.
 #[derive(Clone, Copy, Debug)]
@@ -150,22 +153,55 @@ pub fn multiscale(
         }
     }
     drop(rings);
-    let (mut logs, mut before, mut after, mut limited) = (Vec::new(), 0.0, 0.0, 0);
-    let reached = reach(options.complexity, |scale| {
+    let (logs, summary) = bounded(team, mesh, &raw, &limits, options)?;
+    Ok((logs, Summary { unfitted, ..summary }))
+}
+
+/// The metric within limits and graded, at the scale at which it has the complexity wanted.
+///
+/// Gradation costs most of all. So a metric whose complexity is a little too small is taken, and scaled up afterwards: smaller sizes may grow
+/// faster, so that it stays graded.
+fn bounded(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    raw: &[Sym3],
+    limits: &Limits,
+    options: &Options,
+) -> Result<(Vec<Sym3>, Summary), Error> {
+    let target = options.complexity;
+    let mut logs = Vec::new();
+    let mut summary = Summary { complexity_before_gradation: 0.0, complexity: 0.0, limited: 0, unfitted: 0, rounds: 0 };
+    let mut at = |scale: f64, gradation: Option<f64>| {
         logs = team.map(GRAIN, raw.len(), |v| raw[v].plus_identity(scale));
-        limited = limits.apply(team, &mut logs);
-        before = options.measure.of(team, mesh, &logs);
-        after = before;
-        if let Some(ratio) = options.gradation {
-            gradation::grade(team, mesh, &mut logs, ratio);
-            after = options.measure.of(team, mesh, &logs);
-            stage("graded");
-        }
-        after
-    });
-    let (_, rounds) =
-        reached.map_err(|Unreachable { nearest }| Error::Unreachable { target: options.complexity, nearest })?;
-    Ok((logs, Summary { complexity_before_gradation: before, complexity: after, limited, unfitted, rounds }))
+        summary.limited = limits.apply(team, &mut logs);
+        summary.complexity_before_gradation = options.measure.of(team, mesh, &logs);
+        summary.complexity = match gradation {
+            None => summary.complexity_before_gradation,
+            Some(ratio) => {
+                gradation::grade(team, mesh, &mut logs, ratio);
+                stage("graded");
+                options.measure.of(team, mesh, &logs)
+            }
+        };
+        summary.complexity
+    };
+    let reached = match options.gradation {
+        None => reach(target, |scale| at(scale, None)),
+        Some(_) => reach_nearly(target, USUAL_SCALE, |scale| at(scale, options.gradation)),
+    };
+    let (_, rounds) = reached.map_err(|Unreachable { nearest }| Error::Unreachable { target, nearest })?;
+    summary.rounds = rounds;
+    if options.gradation.is_some() {
+        let graded = std::mem::take(&mut logs);
+        let lifted = reach(target, |scale| {
+            logs = team.map(GRAIN, graded.len(), |v| graded[v].plus_identity(scale));
+            limits.apply(team, &mut logs);
+            summary.complexity = options.measure.of(team, mesh, &logs);
+            summary.complexity
+        });
+        lifted.map_err(|Unreachable { nearest }| Error::Unreachable { target, nearest })?;
+    }
+    Ok((logs, summary))
 }
 
 /// ln M of the optimal metric of a sensor at the complexity wanted, without other bounds than `hmax`.
