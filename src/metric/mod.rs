@@ -3,10 +3,12 @@ mod analytic;
 mod background;
 pub mod batch;
 mod eigen;
+mod ellipsoid;
 mod error;
 mod exponential;
 pub mod field;
 mod frame;
+pub mod from_points;
 pub mod gradation;
 pub mod implied;
 mod intersection;
@@ -24,6 +26,7 @@ pub mod summary;
 pub mod tensor;
 #[cfg(test)]
 mod tests;
+pub mod transfer;
 
 pub use analytic::Analytic;
 pub use background::Background;

@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let mut table = Table::new();
     report.multiscale.rows(&mut table);
-    super::show::rows(&mut table, &report.metric);
+    super::show::rows(&mut table, &report.metric, None);
     table.row("written", arguments.output.output.display());
     arguments.run.print(table.text());
     Ok(ExitCode::SUCCESS)
