@@ -23,7 +23,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
 use optimal::Spectrum;
-use reach::{Unreachable, reach, reach_nearly};
+use reach::{Unreachable, reach, reach_within};
 use serde::Serialize;
 
 /// Logarithm of the scale with which a metric of the complexity wanted has it after gradation too, as a first guess.
@@ -159,8 +159,8 @@ pub fn multiscale(
 
 /// The metric within limits and graded, at the scale at which it has the complexity wanted.
 ///
-/// Gradation costs most of all. So a metric whose complexity is a little too small is taken, and scaled up afterwards: smaller sizes may grow
-/// faster, so that it stays graded.
+/// Gradation costs most of all. So a metric whose complexity is nearly right is taken, and scaled afterwards. What was graded by a ratio r^k
+/// is graded by r when its sizes are multiplied by 1/k or less: in the bound on growth ln r stands beside |e|/h only.
 fn bounded(
     team: Team<'_>,
     mesh: &TetMesh,
@@ -178,7 +178,7 @@ fn bounded(
         summary.complexity = match gradation {
             None => summary.complexity_before_gradation,
             Some(ratio) => {
-                gradation::grade(team, mesh, &mut logs, ratio);
+                gradation::grade(team, mesh, &mut logs, ratio.powf(1.0 - reach::NEARLY / 3.0));
                 stage("graded");
                 options.measure.of(team, mesh, &logs)
             }
@@ -187,7 +187,7 @@ fn bounded(
     };
     let reached = match options.gradation {
         None => reach(target, |scale| at(scale, None)),
-        Some(_) => reach_nearly(target, USUAL_SCALE, |scale| at(scale, options.gradation)),
+        Some(_) => reach_within(reach::NEARLY, target, USUAL_SCALE, |scale| at(scale, options.gradation)),
     };
     let (_, rounds) = reached.map_err(|Unreachable { nearest }| Error::Unreachable { target, nearest })?;
     summary.rounds = rounds;

@@ -3,11 +3,8 @@
 /// Complexities that differ by less than this share are equal.
 const TOLERANCE: f64 = 2e-3;
 
-/// Where a metric may be scaled up after it was made, one is taken whose complexity is below the target by no more than this share,
-const LIFT: f64 = 0.06;
-
-/// and this one is aimed at.
-const AIM: f64 = 0.02;
+/// Where a metric may still be scaled after it was made, its complexity may differ from the target by this share.
+pub const NEARLY: f64 = 0.09;
 
 /// ln C grows by 3/2 of ln M where nothing bounds the sizes.
 const FREE_SLOPE: f64 = 1.5;
@@ -31,22 +28,16 @@ pub struct Unreachable {
 /// Secants, since an evaluation with gradation costs much and the curve is nearly straight; and halves of the bracket when two of them
 /// did not halve it.
 pub fn reach(target: f64, complexity: impl FnMut(f64) -> f64) -> Result<(f64, u32), Unreachable> {
-    search(target, 0.0, [TOLERANCE, TOLERANCE], complexity)
+    reach_within(TOLERANCE, target, 0.0, complexity)
 }
 
-/// As [`reach`], from a first guess of the scale; but the complexity may be too small by [`LIFT`], so that fewer calls are needed.
-pub fn reach_nearly(target: f64, guess: f64, complexity: impl FnMut(f64) -> f64) -> Result<(f64, u32), Unreachable> {
-    search(target, guess, [LIFT, TOLERANCE], complexity)
-}
-
-/// The complexity may be below the target and above it by these shares.
-fn search(
+/// As [`reach`], to a tolerance, from a first guess of the scale.
+pub fn reach_within(
+    tolerance: f64,
     target: f64,
     guess: f64,
-    [too_small, too_large]: [f64; 2],
     mut complexity: impl FnMut(f64) -> f64,
 ) -> Result<(f64, u32), Unreachable> {
-    let aim = if too_small > too_large { AIM } else { 0.0 };
     let (mut scale, mut slope, mut last) = (guess, FREE_SLOPE, None::<(f64, f64)>);
     let (mut below, mut above) = (f64::NEG_INFINITY, f64::INFINITY);
     // How wide the bracket was when it was last halved, and how often not since.
@@ -55,14 +46,12 @@ fn search(
     for asked in 1..=60 {
         let found = complexity(scale);
         let miss = (found / target).ln();
-        if -too_small <= miss && miss <= too_large {
+        if miss.abs() <= tolerance {
             return Ok((scale, asked));
         }
         if miss.abs() < nearest.0 {
             nearest = (miss.abs(), found);
         }
-        // Of what is aimed at.
-        let miss = miss + aim;
         if miss < 0.0 {
             below = scale;
         } else {

@@ -54,7 +54,7 @@ impl Around<'_> {
         self.seen.forget();
         self.seen.insert(vertex);
         self.stencil.clear();
-        self.fit.clear();
+        self.fit.start();
         let mut last = self.grow(vertex, 0..0);
         last = self.grow(vertex, last);
         let good = |fitted: &Fitted| fitted.quality > GOOD;
