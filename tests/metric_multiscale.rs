@@ -134,7 +134,7 @@ fn bad_input_is_named() {
         (&[&few], &["few.solb", "7 vertices", "64"]),
         (&[&vector], &["vector.solb", "--component"]),
         (&[&vector, "--component", "4"], &["vector.solb", "3 values"]),
-        (&[&nan], &["nan.sol", "17", "not a finite number"]),
+        (&[&nan], &["nan.sol", "SolAtVertices 17 of 64", "finite number"]),
         (&[&u, "--hmin", "0.3"], &["300", "cannot be reached", "--hmin"]),
         (&[&u, "--hmin", "0.3", "--hmax", "0.2"], &["--hmin"]),
         (&[&u, "--norm", "0.5"], &["--norm"]),

@@ -7,6 +7,7 @@
 //! Several sensors are intersected at the same complexity each: so every one has the sizes that it alone would have, up to a factor
 //! that is the same for all, and units do not count. Steps in time of one sensor are not: their |H| are averaged, which makes the
 //! error over the whole time least (Alauzet, Belme, Loseille: fixed-point iteration), for one mesh at all steps.
+mod bounded;
 mod norm;
 mod optimal;
 mod reach;
@@ -16,18 +17,15 @@ mod tests;
 
 pub use norm::Norm;
 
-use super::gradation;
 use super::recovery::{Recovery, Rings};
 use super::{Limits, Sym3, field};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
+use bounded::bounded;
 use optimal::Spectrum;
-use reach::{Unreachable, reach, reach_within};
+use reach::{Unreachable, reach};
 use serde::Serialize;
-
-/// Logarithm of the scale with which a metric of the complexity wanted has it after gradation too, as a first guess.
-const USUAL_SCALE: f64 = -0.27;
 
 /// Which metric is made.
 #[derive(Clone, Copy, Debug)]
@@ -155,53 +153,6 @@ pub fn multiscale(
     drop(rings);
     let (logs, summary) = bounded(team, mesh, &raw, &limits, options)?;
     Ok((logs, Summary { unfitted, ..summary }))
-}
-
-/// The metric within limits and graded, at the scale at which it has the complexity wanted.
-///
-/// Gradation costs most of all. So a metric whose complexity is nearly right is taken, and scaled afterwards. What was graded by a ratio r^k
-/// is graded by r when its sizes are multiplied by 1/k or less: in the bound on growth ln r stands beside |e|/h only.
-fn bounded(
-    team: Team<'_>,
-    mesh: &TetMesh,
-    raw: &[Sym3],
-    limits: &Limits,
-    options: &Options,
-) -> Result<(Vec<Sym3>, Summary), Error> {
-    let target = options.complexity;
-    let mut logs = Vec::new();
-    let mut summary = Summary { complexity_before_gradation: 0.0, complexity: 0.0, limited: 0, unfitted: 0, rounds: 0 };
-    let mut at = |scale: f64, gradation: Option<f64>| {
-        logs = team.map(GRAIN, raw.len(), |v| raw[v].plus_identity(scale));
-        summary.limited = limits.apply(team, &mut logs);
-        summary.complexity_before_gradation = options.measure.of(team, mesh, &logs);
-        summary.complexity = match gradation {
-            None => summary.complexity_before_gradation,
-            Some(ratio) => {
-                gradation::grade(team, mesh, &mut logs, ratio.powf(1.0 - reach::NEARLY / 3.0));
-                stage("graded");
-                options.measure.of(team, mesh, &logs)
-            }
-        };
-        summary.complexity
-    };
-    let reached = match options.gradation {
-        None => reach(target, |scale| at(scale, None)),
-        Some(_) => reach_within(reach::NEARLY, target, USUAL_SCALE, |scale| at(scale, options.gradation)),
-    };
-    let (_, rounds) = reached.map_err(|Unreachable { nearest }| Error::Unreachable { target, nearest })?;
-    summary.rounds = rounds;
-    if options.gradation.is_some() {
-        let graded = std::mem::take(&mut logs);
-        let lifted = reach(target, |scale| {
-            logs = team.map(GRAIN, graded.len(), |v| graded[v].plus_identity(scale));
-            limits.apply(team, &mut logs);
-            summary.complexity = options.measure.of(team, mesh, &logs);
-            summary.complexity
-        });
-        lifted.map_err(|Unreachable { nearest }| Error::Unreachable { target, nearest })?;
-    }
-    Ok((logs, summary))
 }
 
 /// ln M of the optimal metric of a sensor at the complexity wanted, without other bounds than `hmax`.
