@@ -8,6 +8,7 @@ mod classify;
 mod image_mesh;
 mod inspect;
 mod load;
+mod metric;
 mod model;
 mod table;
 mod tune;
@@ -30,6 +31,8 @@ enum Command {
     ImageMesh(image_mesh::Arguments),
     /// Check a mesh and measure it in a metric
     Inspect(inspect::Arguments),
+    /// Make, combine and measure metrics
+    Metric(metric::Arguments),
     /// List the entities of a CAD model
     Model(model::Arguments),
     /// Measure which back-end, strategy and grain are the fastest on a case
@@ -53,6 +56,7 @@ pub fn main() -> ExitCode {
         Command::Classify(arguments) => classify::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
     };

@@ -15,6 +15,7 @@ const OPERATIONS: [Kind; 4] = [Kind::Split, Kind::Reconnect, Kind::Collapse, Kin
 
 /// Arguments of `geo-adapt tune`.
 #[derive(clap::Args)]
+#[command(defer(super::adapt::field::only_with_field))]
 pub struct Arguments {
     #[command(flatten)]
     input: InputArguments,
@@ -132,7 +133,7 @@ impl Bench<'_> {
         let grain = grains.map(|grains| grains.of(OPERATIONS[0]));
         let Plan { backend, strategy, .. } = plan;
         let mut best = Timing { scheduler, backend, strategy, grain, seconds: [f64::INFINITY; 4], conflicts: u64::MAX };
-        let Input { mesh, place, model, source } = self.input;
+        let Input { mesh, place, model, source, .. } = self.input;
         let options = Options { scheduler, plan, grains: grains.unwrap_or_default(), ..Options::default() };
         for _ in 0..self.arguments.repeat {
             let adapted = adapt::adapt(mesh, place, model, source, &options, self.pool, &Silent)

@@ -1,6 +1,6 @@
 //! Tetrahedral meshes as plain arrays: what goes in and what comes out.
 pub mod adjacency;
-mod box_tree;
+pub mod box_tree;
 mod flaw;
 pub mod hilbert;
 pub mod io;
@@ -13,6 +13,7 @@ mod starts;
 mod tet_mesh;
 pub mod validity;
 pub mod vector;
+pub mod vertex_neighbours;
 
 pub use flaw::{Flaw, FlawKind, Offender};
 pub use tet_mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};

@@ -15,14 +15,15 @@ pub struct Field {
 impl Field {
     /// Reads a .sol or .solb file of a mesh of so many vertices. Every tensor must be positive definite.
     pub fn read(path: &Path, vertices: usize) -> Result<Read<Self>, Error> {
-        let Read { content: metrics, notices } = read_each(Team::alone(), path, vertices, |m| m.is_spd().then_some(m))?;
+        let Read { content: metrics, notices } =
+            read_each(Team::alone(), path, Some(vertices), |m| m.is_spd().then_some(m))?;
         Ok(Read { content: Self { metrics }, notices })
     }
 
     /// Reads ln M at every vertex from a .sol or .solb file of M, as [`Field::read`] checks it: the eigenvalues that tell whether a
     /// tensor is positive definite give its logarithm.
     pub fn read_logs(team: Team<'_>, path: &Path, vertices: usize) -> Result<Read<Vec<Sym3>>, Error> {
-        read_each(team, path, vertices, log_of)
+        read_each(team, path, Some(vertices), checked_log)
     }
 
     /// ln M of metrics as [`Field::read_logs`] has it, to the last bit.
@@ -30,7 +31,12 @@ impl Field {
     /// # Panics
     /// When one is not positive definite.
     pub fn logs_of(team: Team<'_>, metrics: &[Sym3]) -> Vec<Sym3> {
-        team.map(GRAIN, metrics.len(), |i| log_of(metrics[i]).expect("a positive definite tensor"))
+        team.map(GRAIN, metrics.len(), |i| checked_log(metrics[i]).expect("a positive definite tensor"))
+    }
+
+    /// As [`Field::read_logs`], of a mesh that is not at hand: as many as there are.
+    pub fn read_all_logs(team: Team<'_>, path: &Path) -> Result<Read<Vec<Sym3>>, Error> {
+        read_each(team, path, None, checked_log)
     }
 
     /// Writes .sol or .solb by the extension.
@@ -41,8 +47,8 @@ impl Field {
     }
 }
 
-/// The logarithm of a tensor; none of one that is not positive definite.
-fn log_of(m: Sym3) -> Option<Sym3> {
+/// ln M; none when M is not positive definite.
+fn checked_log(m: Sym3) -> Option<Sym3> {
     let mut eigen = m.eigen_spd();
     let positive = eigen.values[0] > 0.0;
     eigen.values = eigen.values.map(f64::ln);
@@ -53,13 +59,14 @@ fn log_of(m: Sym3) -> Option<Sym3> {
 fn read_each(
     team: Team<'_>,
     path: &Path,
-    vertices: usize,
+    expected: Option<usize>,
     convert: impl Fn(Sym3) -> Option<Sym3> + Sync,
 ) -> Result<Read<Vec<Sym3>>, Error> {
     let Read { content, notices } = io::read_solution(path)?;
     let tensors = only_tensors(path, &content)?;
-    if content.vertices != vertices {
-        return Err(Error::Count { path: path.into(), found: content.vertices, expected: vertices });
+    let vertices = content.vertices;
+    if let Some(expected) = expected.filter(|&expected| expected != vertices) {
+        return Err(Error::Count { path: path.into(), found: vertices, expected });
     }
     let tensors = tensors.values.as_chunks().0;
     let parts = team.chunks(GRAIN, vertices, |range| {

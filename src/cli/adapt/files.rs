@@ -25,6 +25,7 @@ pub fn check(arguments: &Arguments) -> Result<(), String> {
     }
     let given = &arguments.input;
     let inputs = [Some(&given.mesh), given.cad.as_ref(), given.field.metric.as_ref()];
+    let inputs = inputs.into_iter().flatten().chain(&given.field.field);
     for written in outputs.into_iter().flatten() {
         let folder = written.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
@@ -33,7 +34,7 @@ pub fn check(arguments: &Arguments) -> Result<(), String> {
         if written.is_dir() {
             return Err(format!("{}: this is a folder; name a file", written.display()));
         }
-        for read in inputs.into_iter().flatten() {
+        for read in inputs.clone() {
             if let (Ok(a), Ok(b)) = (written.canonicalize(), read.canonicalize())
                 && a == b
             {

@@ -1,12 +1,15 @@
 //! What a run begins with: the mesh, where it lies on its model, and the metric.
 use super::super::load;
+use super::field::FieldArguments;
 use crate::adapt;
+use crate::cli::metric::fields::{Made, MultiscaleArguments};
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
 use crate::geometry::{Discrete, Model};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, io};
-use crate::metric::{Analytic, Background, Field, Source, Sym3, field};
+use crate::metric::multiscale::Measure;
+use crate::metric::{Background, Field, Source, Sym3, field};
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,18 +33,8 @@ pub struct InputArguments {
     /// How far a vertex of the input may be from the model, in its units
     #[arg(long, value_name = "T", value_parser = crate::cli::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-}
-
-/// The metric: exactly one of the two.
-#[derive(clap::Args)]
-#[group(required = true, multiple = false)]
-pub struct FieldArguments {
-    /// The metric at the vertices of the mesh: .sol or .solb
-    #[arg(long, value_name = "FILE")]
-    pub metric: Option<PathBuf>,
-    /// An analytic metric: linear, polar-1 or polar-2
-    #[arg(long, value_name = "NAME")]
-    analytic: Option<Analytic>,
+    #[command(flatten, next_help_heading = "The metric of --field")]
+    multiscale: MultiscaleArguments,
 }
 
 /// A mesh with the metric at its vertices, if that is what the metric is known by.
@@ -62,6 +55,8 @@ pub struct Input {
     pub model: Model,
     /// The metric, of the complexity that is asked for.
     pub source: Source,
+    /// How it was made, from a field.
+    pub made: Option<Made>,
 }
 
 type Error = Box<dyn std::error::Error>;
@@ -97,29 +92,49 @@ impl InputArguments {
             notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
         }
         let mesh = Arc::new(mesh);
-        let mut source = match (self.field.analytic, logs) {
-            (Some(field), _) => Source::Analytic { field, log_scale: 0.0 },
-            (None, Some(_)) if mesh.tets.is_empty() => {
-                return Err(format!("{}: {}", self.mesh.display(), adapt::Error::Empty).into());
-            }
-            (None, Some(logs)) => Source::Background(Background::on(team, Arc::clone(&mesh), faces, logs)),
-            (None, None) => return Err("neither --metric nor --analytic".into()),
-        };
+        let (mut source, made) = self.source(team, (&mesh, faces), logs, notices)?;
         stage("metric ready");
         let (model, place) = self.place(team, &mesh, cad, notices)?;
         stage("classified");
-        self.scale(team, &mesh, &mut source)?;
+        self.scale(team, &mesh, &mut source, made.is_some())?;
         stage("complexity");
-        Ok(Input { mesh, place, model, source })
+        Ok(Input { mesh, place, model, source, made })
     }
 
-    /// Scales the source to the complexity that is asked for, and refuses one that no mesh can have.
-    fn scale(&self, team: Team<'_>, mesh: &TetMesh, source: &mut Source) -> Result<(), String> {
+    /// The metric's source: the analytic field, or the mesh as background with the metric of a file or the one made from a field; and
+    /// what was done to make it.
+    fn source(
+        &self,
+        team: Team<'_>,
+        (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
+        logs: Option<Vec<Sym3>>,
+        notices: &mut Vec<String>,
+    ) -> Result<(Source, Option<Made>), Error> {
+        if let Some(field) = self.field.analytic {
+            return Ok((Source::Analytic { field, log_scale: 0.0 }, None));
+        }
+        if mesh.tets.is_empty() {
+            return Err(format!("{}: {}", self.mesh.display(), adapt::Error::Empty).into());
+        }
+        let (logs, made) = match logs {
+            Some(logs) => (logs, None),
+            None => {
+                let complexity = self.complexity.ok_or("--field needs a --complexity")?;
+                let wanted = (complexity, Measure::Between);
+                let (logs, made) = self.multiscale.make(team, mesh, &self.field.field, wanted, notices)?;
+                (logs, Some(made))
+            }
+        };
+        Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), made))
+    }
+
+    /// Scales the source to the complexity that is asked for, which one that was made for it has; and refuses one that no mesh can have.
+    fn scale(&self, team: Team<'_>, mesh: &TetMesh, source: &mut Source, is_made: bool) -> Result<(), String> {
         if self.complexity.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
             return Ok(());
         }
         let own = source.complexity(team, mesh);
-        if let Some(target) = self.complexity {
+        if let Some(target) = self.complexity.filter(|_| !is_made) {
             source.scale(team, field::complexity_factor(own, target).ln());
         }
         let complexity = self.complexity.unwrap_or(own);

@@ -1,4 +1,5 @@
 //! `geo-adapt adapt`.
+pub mod field;
 mod files;
 mod freeze;
 pub mod input;
@@ -20,6 +21,7 @@ const INTERRUPTED: u8 = 130;
 
 /// Arguments of `geo-adapt adapt`.
 #[derive(clap::Args)]
+#[command(defer(field::only_with_field))]
 pub struct Arguments {
     #[command(flatten)]
     input: InputArguments,
@@ -68,6 +70,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     files::check(arguments)?;
+    if arguments.cycles > 1 && !arguments.input.field.field.is_empty() {
+        return Err("--cycles: the field of --field lies on the first mesh alone; give one cycle, or a --metric".into());
+    }
     let stop = progress::stop_on_interrupt();
     let threads = arguments.threads.map_or_else(super::cores, usize::from);
     let pool = Pool::new(threads)?;
@@ -86,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
         let prepared = start.elapsed();
         let progress = Progress::new(!arguments.quiet, stop.clone());
-        let Input { mesh, place, model, source } = &input;
+        let Input { mesh, place, model, source, .. } = &input;
         let named = |error| format!("{}: {error}", arguments.input.mesh.display());
         let options = arguments.options(plan, freeze::frozen(&arguments.freeze, mesh).map_err(named)?);
         let adapted = adapt::adapt(mesh, place, model, source, &options, &pool, &progress)

@@ -2,6 +2,7 @@
 use super::input::Input;
 use super::{Arguments, files};
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
+use crate::cli::metric::fields::Made;
 use crate::cli::table::Table;
 use crate::geometry::Model;
 #[cfg(feature = "occt")]
@@ -43,6 +44,9 @@ pub struct Report {
     output: std::path::PathBuf,
     threads: usize,
     complexity_wanted: Option<f64>,
+    /// How the metric was made, with --field.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    multiscale: Option<Made>,
     input_vertices: usize,
     input_tets: usize,
     statistics: Statistics,
@@ -78,6 +82,7 @@ impl Report {
             output: arguments.output.clone(),
             threads,
             complexity_wanted: arguments.input.complexity,
+            multiscale: input.made.clone(),
             input_vertices: input.mesh.vertices.len(),
             input_tets: input.mesh.tets.len(),
             statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
@@ -94,6 +99,9 @@ impl Report {
     pub fn text(&self, arguments: &Arguments) -> String {
         let mut table = Table::new();
         table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
+        if let Some(made) = &self.multiscale {
+            made.rows(&mut table);
+        }
         table.statistics(&self.statistics);
         table.fidelity(&self.fidelity);
         if self.off_model > 0 {

@@ -1,0 +1,24 @@
+//! Where the metric of a run comes from: a file, an analytic field, or a field whose multiscale metric is made.
+use crate::metric::Analytic;
+use std::path::PathBuf;
+
+/// The metric: exactly one of the three.
+#[derive(clap::Args)]
+#[group(required = true, multiple = false)]
+pub struct FieldArguments {
+    /// The metric at the vertices of the mesh: .sol or .solb
+    #[arg(long, value_name = "FILE")]
+    pub metric: Option<PathBuf>,
+    /// An analytic metric: linear, polar-1 or polar-2
+    #[arg(long, value_name = "NAME")]
+    pub analytic: Option<Analytic>,
+    /// A field at the vertices, .sol or .solb, whose multiscale metric is made for --complexity; again for each further step in time
+    #[arg(long, value_name = "FIELD", requires = "complexity")]
+    pub field: Vec<PathBuf>,
+}
+
+/// Lets the options of the multiscale metric be given with --field only.
+pub fn only_with_field(command: clap::Command) -> clap::Command {
+    let options = crate::cli::metric::fields::OPTIONS;
+    options.into_iter().fold(command, |command, name| command.mut_arg(name, |option| option.requires("field")))
+}

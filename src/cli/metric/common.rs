@@ -1,0 +1,193 @@
+//! What the subcommands of `metric` share: arguments to flatten, reading with notices, checks of the output.
+//!
+//! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
+use crate::mesh::TetMesh;
+use crate::mesh::io::{self, Read, read_mesh};
+use crate::metric::{Field, Limits, Sym3, field};
+use crate::tasks::{GRAIN, Pool, Team};
+use std::path::{Path, PathBuf};
+
+/// An error that ends the subcommand with code 2.
+pub type Failure = Box<dyn std::error::Error>;
+
+/// Threads, and how much is told.
+#[derive(clap::Args)]
+pub struct RunArguments {
+    /// Threads [default: all cores]. The result is the same bit for bit on any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    threads: Option<u16>,
+    /// No table and no notes; errors only
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl RunArguments {
+    /// The threads that are asked for; `Team::new(&pool, Plan::default())` works on them.
+    pub fn pool(&self) -> Result<Pool, Failure> {
+        Ok(Pool::new(self.threads.map_or_else(super::super::cores, usize::from))?)
+    }
+
+    /// Shows notes on standard error, unless quiet.
+    pub fn note(&self, notices: &[String]) {
+        for notice in notices.iter().filter(|_| !self.quiet) {
+            eprintln!("geo-adapt: note: {notice}");
+        }
+    }
+
+    /// Prints a table, unless quiet.
+    pub fn print(&self, text: &str) {
+        if !self.quiet {
+            super::super::print(text);
+        }
+    }
+}
+
+/// Where the metric goes.
+#[derive(clap::Args)]
+pub struct OutputArgument {
+    /// Where the metric goes: .sol or .solb
+    #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
+    pub output: PathBuf,
+}
+
+impl OutputArgument {
+    /// Refuses before the work what would fail after it: another ending, a folder that is not there, an input as output.
+    pub fn check(&self, inputs: &[&Path]) -> Result<(), String> {
+        check_output(&self.output, &["sol", "solb"], inputs)
+    }
+
+    /// Writes M = exp of these logarithms.
+    pub fn write_logs(&self, team: Team<'_>, logs: &[Sym3]) -> Result<(), Failure> {
+        let metrics = team.map(GRAIN, logs.len(), |v| logs[v].exp());
+        Ok(Field { metrics }.write(&self.output)?)
+    }
+}
+
+/// Refuses an output that cannot be written or that is an input; `endings` without the dot.
+pub fn check_output(output: &Path, endings: &[&str], inputs: &[&Path]) -> Result<(), String> {
+    let name = output.display();
+    let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    if !endings.contains(&extension) {
+        return Err(format!("{name}: the output must end in .{}", endings.join(" or .")));
+    }
+    let folder = output.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(format!("{name}: there is no folder {}; make it first", folder.display()));
+    }
+    if output.is_dir() {
+        return Err(format!("{name}: this is a folder; name a file"));
+    }
+    let same = |input: &&Path| matches!((output.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if inputs.iter().any(same) {
+        return Err(format!("{name}: is an input and would be overwritten; give another -o"));
+    }
+    Ok(())
+}
+
+/// Bounds of the sizes.
+#[derive(clap::Args)]
+pub struct LimitArguments {
+    /// Least size, in model units
+    #[arg(long, value_name = "H", value_parser = super::super::positive, allow_negative_numbers = true)]
+    hmin: Option<f64>,
+    /// Greatest size, in model units
+    #[arg(long, value_name = "H", value_parser = super::super::positive, allow_negative_numbers = true)]
+    hmax: Option<f64>,
+    /// Greatest ratio of the sizes at a vertex: greater sizes are cut to so many times the least
+    #[arg(long, value_name = "A", value_parser = at_least_one, allow_negative_numbers = true)]
+    aspect_ratio: Option<f64>,
+}
+
+impl LimitArguments {
+    /// The limits; refuses a least size above the greatest.
+    pub fn limits(&self) -> Result<Limits, String> {
+        let Self { hmin, hmax, aspect_ratio } = *self;
+        if let (Some(hmin), Some(hmax)) = (hmin, hmax)
+            && hmin > hmax
+        {
+            return Err(format!("--hmin {hmin} is above --hmax {hmax}; give a least size below the greatest"));
+        }
+        Ok(Limits { hmin, hmax, aspect_ratio })
+    }
+}
+
+/// How fast sizes may grow.
+#[derive(clap::Args)]
+pub struct GradationArgument {
+    /// Greatest growth of the sizes from an edge to the next (Alauzet 2010, mixed space), or `off`
+    #[arg(long, value_name = "R", value_parser = gradation, default_value = "1.5", allow_negative_numbers = true)]
+    gradation: Gradation,
+}
+
+impl GradationArgument {
+    /// The ratio; none when off.
+    pub fn ratio(&self) -> Option<f64> {
+        self.gradation.0
+    }
+}
+
+/// A ratio, or off. (A type of its own, since clap would take an Option for an argument that may be left out.)
+#[derive(Clone, Copy)]
+struct Gradation(Option<f64>);
+
+fn gradation(text: &str) -> Result<Gradation, String> {
+    if text == "off" { Ok(Gradation(None)) } else { growth(text).map(|ratio| Gradation(Some(ratio))) }
+}
+
+/// Parses a ratio of growth.
+pub fn growth(text: &str) -> Result<f64, String> {
+    match super::super::positive(text) {
+        Ok(ratio) if ratio > 1.0 => Ok(ratio),
+        _ => Err("give a number above 1, such as 1.5".into()),
+    }
+}
+
+/// Parses a number that is 1 or more.
+fn at_least_one(text: &str) -> Result<f64, String> {
+    match super::super::positive(text) {
+        Ok(ratio) if ratio >= 1.0 => Ok(ratio),
+        _ => Err("give 1 or more".into()),
+    }
+}
+
+/// Reads a volume mesh and shows its notices.
+pub fn mesh(run: &RunArguments, path: &Path) -> Result<TetMesh, Failure> {
+    let read = read_mesh(path)?;
+    run.note(&read.notices);
+    if read.content.tets.is_empty() {
+        return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
+    }
+    Ok(read.content)
+}
+
+/// Reads ln M at the vertices of a mesh of so many, and shows the notices.
+pub fn logs(run: &RunArguments, team: Team<'_>, path: &Path, vertices: usize) -> Result<Vec<Sym3>, Failure> {
+    let Read { content, notices } = Field::read_logs(team, path, vertices)?;
+    run.note(&notices);
+    Ok(content)
+}
+
+/// Reads ln M at the vertices of a mesh that is not at hand.
+pub fn all_logs(run: &RunArguments, team: Team<'_>, path: &Path) -> Result<Vec<Sym3>, Failure> {
+    let Read { content, notices } = Field::read_all_logs(team, path)?;
+    run.note(&notices);
+    Ok(content)
+}
+
+/// The complexity of ln M on a mesh (`path` is for the error): positive.
+pub fn complexity(team: Team<'_>, path: &Path, mesh: &TetMesh, logs: &[Sym3]) -> Result<f64, String> {
+    let complexity = field::complexity_of_logs(team, mesh, logs);
+    if complexity > 0.0 && complexity.is_finite() {
+        return Ok(complexity);
+    }
+    Err(format!(
+        "{}: the complexity there is {complexity}; are all tetrahedra positive? (geo-adapt inspect tells)",
+        path.display()
+    ))
+}
+
+/// Writes JSON beside, then renames.
+pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_vec_pretty(value)?;
+    Ok(io::write_beside(path, |file| file.write_all(&text).and_then(|()| file.write_all(b"\n")))?)
+}

@@ -1,0 +1,84 @@
+//! `geo-adapt metric show`.
+use super::common::{self, RunArguments};
+use crate::cli::Outcome;
+use crate::cli::table::{Table, figure};
+use crate::metric::gradation::{self, Growths};
+use crate::metric::summary::{Percentiles, Summary};
+use crate::tasks::{Plan, Team};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Arguments of `geo-adapt metric show`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The mesh: .mesh or .meshb
+    mesh: PathBuf,
+    /// The metric at its vertices: .sol or .solb
+    metric: PathBuf,
+    /// Write the figures as JSON
+    #[arg(long, value_name = "FILE.json")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+/// All that is found.
+#[derive(serde::Serialize)]
+struct Shown {
+    #[serde(flatten)]
+    summary: Summary,
+    /// The ratio that each edge would need to stay as it is.
+    gradation: Growths,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    if let Some(json) = &arguments.json {
+        common::check_output(json, &["json"], &[&arguments.mesh, &arguments.metric])?;
+    }
+    let pool = arguments.run.pool()?;
+    let team = Team::new(&pool, Plan::default());
+    let mesh = common::mesh(&arguments.run, &arguments.mesh)?;
+    let logs = common::logs(&arguments.run, team, &arguments.metric, mesh.vertices.len())?;
+    let shown = Shown { summary: Summary::of(team, &mesh, &logs), gradation: gradation::measure(team, &mesh, &logs) };
+    if let Some(json) = &arguments.json {
+        common::write_json(json, &shown)?;
+    }
+    arguments.run.print(&describe(&shown));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The text for people.
+fn describe(shown: &Shown) -> String {
+    let Shown { summary, gradation } = shown;
+    let mut table = Table::new();
+    table.row("vertices", summary.vertices);
+    table.row("complexity", figure(summary.complexity));
+    table.row("complexity, interpolated", figure(summary.complexity_between));
+    rows(&mut table, summary, Some(gradation));
+    table.text().into()
+}
+
+/// Percentiles of sizes and their ratios, and of growth if that was measured: a row each, below a head.
+pub fn rows(table: &mut Table, summary: &Summary, gradation: Option<&Growths>) {
+    table.line(&format!(
+        "{:<26} {}",
+        "",
+        row(["least", "1 %", "10 %", "50 %", "90 %", "99 %", "greatest"].map(String::from))
+    ));
+    let rows = [
+        ("least size", Some(&summary.least_size)),
+        ("greatest size", Some(&summary.greatest_size)),
+        ("aspect ratio", Some(&summary.aspect_ratio)),
+        ("anisotropic quotient", Some(&summary.anisotropic_quotient)),
+        ("gradation, by edge", gradation),
+    ];
+    for (name, found) in rows {
+        let Some(&Percentiles { least, p1, p10, median, p90, p99, greatest }) = found else { continue };
+        table.row(name, row([least, p1, p10, median, p90, p99, greatest].map(figure)));
+    }
+}
+
+fn row(cells: [String; 7]) -> String {
+    cells.map(|cell| format!("{cell:>10}")).join(" ")
+}

@@ -1,0 +1,248 @@
+//! Gradation: no metric asks for sizes that its neighbours' have not grown to yet. Mixed-space homogeneous (Alauzet 2010, §6.2.1).
+//!
+//! For an edge pq with vector e the metric of p grows to q: G has the eigenvectors of M_p and the eigenvalues
+//! λ_i · [(1 + √λ_i |e| ln r)^t (1 + L_p(e) ln r)^(1−t)]^(−2), t = 1/8; M_q ← M_q ∩ G, both ways, until nothing changes.
+//!
+//! A front does it: only edges of vertices that have changed are looked at, those first where what has changed are the smallest sizes,
+//! since sizes only grow on their way (as Δ-stepping does for shortest paths: Meyer & Sanders 2003). A round takes all whose news
+//! are within a class of sizes; each neighbour takes the intersection over those of them that it has an edge with, in the order of their numbers, from
+//! the values of the round before. So all is the same bit for bit on any number of threads.
+mod growth;
+mod measure;
+#[cfg(test)]
+mod tests;
+
+use super::Sym3;
+use super::frame::{Frame, is_below};
+use crate::mesh::TetMesh;
+use crate::mesh::vector::{Vec3, sub};
+use crate::mesh::vertex_neighbours::VertexNeighbours;
+use crate::tasks::{GRAIN, Team};
+pub use measure::{Growths, measure};
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// An intersection that raises no eigenvalue by more than this share, half of it in size, is no change. (With 1e-6 a field of strong and
+/// turning anisotropy takes half as many updates more, for sizes that no mesh can tell apart.)
+const TOLERANCE: f64 = 1e-3;
+
+/// Sizes within this factor of the least that are news are one class.
+const CLASS: f64 = 1.25;
+
+/// Vertices a task: one takes a microsecond or two.
+const FEW: usize = 1 << 8;
+
+/// What grading did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Graded {
+    /// Rounds of the front.
+    pub rounds: usize,
+    /// Metrics that were replaced, in all rounds.
+    pub updates: usize,
+    /// Vertices that have another metric than before.
+    pub changed: usize,
+}
+
+/// Grades ln M at the vertices, shape (n,), by a ratio r > 1. Vertices without a tetrahedron stay as they are, and so does, bit for
+/// bit, every metric that is within bounds; what has been graded is.
+///
+/// # Panics
+/// When there are not as many metrics as vertices.
+pub fn grade(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3], ratio: f64) -> Graded {
+    assert_eq!(mesh.vertices.len(), logs.len(), "one ln M a vertex");
+    let around = VertexNeighbours::of(team, &mesh.tets.nodes, mesh.vertices.len());
+    Grading::new(team, &mesh.vertices, &around, logs, ratio.ln()).run()
+}
+
+/// Where a vertex waits to tell its neighbours.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    Nowhere,
+    Near,
+    Far,
+}
+
+/// A vertex gets another metric.
+#[derive(Clone, Copy)]
+struct Update {
+    vertex: u32,
+    log: Sym3,
+    frame: Frame,
+    /// The least size that has changed.
+    news: f64,
+}
+
+struct Grading<'a> {
+    team: Team<'a>,
+    vertices: &'a [Vec3],
+    around: &'a VertexNeighbours,
+    logs: &'a mut [Sym3],
+    /// Of `logs`, always as [`Frame::of_log`] has it: so a second grading sees what this one saw.
+    frames: Vec<Frame>,
+    /// ln r.
+    pace: f64,
+    places: Vec<Place>,
+    /// Of who waits, the least size that is news.
+    news: Vec<f64>,
+    /// Who tells its neighbours in this round.
+    telling: Vec<bool>,
+    /// Who is told.
+    told: Vec<AtomicBool>,
+    changed: Vec<bool>,
+}
+
+impl<'a> Grading<'a> {
+    fn new(
+        team: Team<'a>,
+        vertices: &'a [Vec3],
+        around: &'a VertexNeighbours,
+        logs: &'a mut [Sym3],
+        pace: f64,
+    ) -> Self {
+        let count = logs.len();
+        Self {
+            team,
+            vertices,
+            around,
+            frames: team.map(GRAIN, count, |v| Frame::of_log(&logs[v])),
+            logs,
+            pace,
+            places: vec![Place::Nowhere; count],
+            news: vec![0.0; count],
+            telling: vec![false; count],
+            told: (0..count).map(|_| AtomicBool::new(false)).collect(),
+            changed: vec![false; count],
+        }
+    }
+
+    fn run(mut self) -> Graded {
+        let mut graded = Graded::default();
+        loop {
+            // Looking at all again at the end makes sure of it, whatever the rounding.
+            let waiting = self.violators();
+            let [rounds, updates] = self.settle(&waiting);
+            graded.rounds += rounds;
+            graded.updates += updates;
+            if updates == 0 {
+                break;
+            }
+        }
+        graded.changed = self.changed.iter().filter(|&&changed| changed).count();
+        graded
+    }
+
+    /// The vertices whose metrics, grown along an edge, are not within the one at its other end, and the least size that is news there.
+    fn violators(&self) -> Vec<(u32, f64)> {
+        self.team.collect(FEW, self.logs.len(), |range, found| {
+            for p in range.start as u32..range.end as u32 {
+                let least = self.around.of_vertex(p).iter().filter_map(|&q| {
+                    let of_q = &self.frames[q as usize];
+                    self.excess(p, of_q, q).map(|relative| of_q.least_excess(&relative))
+                });
+                found.extend(least.reduce(f64::min).map(|least| (p, least)));
+            }
+        })
+    }
+
+    /// The metric of p grown to q, relative to that of q, `of_q`; none when it is within that.
+    #[inline]
+    fn excess(&self, p: u32, of_q: &Frame, q: u32) -> Option<Sym3> {
+        let of_p = &self.frames[p as usize];
+        // What is nowhere finer cannot ask for anything.
+        if of_p.roots[2] <= of_q.roots[0] {
+            return None;
+        }
+        let e = sub(self.vertices[q as usize], self.vertices[p as usize]);
+        let grown = of_p.grown(e, self.pace);
+        if grown[2] <= of_q.roots[0] {
+            return None;
+        }
+        let relative = of_q.relative(of_p, grown);
+        (!is_below(&relative, 1.0 + TOLERANCE)).then_some(relative)
+    }
+
+    /// Lets these tell their neighbours, and these theirs, until nothing changes; returns the rounds and the updates.
+    fn settle(&mut self, waiting: &[(u32, f64)]) -> [usize; 2] {
+        let (mut near, mut far) = (Vec::new(), Vec::with_capacity(waiting.len()));
+        for &(v, news) in waiting {
+            (self.places[v as usize], self.news[v as usize]) = (Place::Far, news);
+            far.push(v);
+        }
+        let mut limit = 0.0;
+        let [mut rounds, mut updates] = [0; 2];
+        loop {
+            if near.is_empty() {
+                // Who was near meanwhile may be in the list twice, or no more be far.
+                far.retain(|&v| self.places[v as usize] == Place::Far);
+                let Some(least) = self.least_news(&far) else { return [rounds, updates] };
+                limit = least * CLASS;
+                far.retain(|&v| {
+                    let is_near = self.news[v as usize] <= limit;
+                    if is_near && self.places[v as usize] == Place::Far {
+                        self.places[v as usize] = Place::Near;
+                        near.push(v);
+                    }
+                    !is_near
+                });
+            }
+            let updated = self.round(&near);
+            near.clear();
+            rounds += 1;
+            updates += updated.len();
+            for Update { vertex, log, frame, news } in updated {
+                let at = vertex as usize;
+                (self.logs[at], self.frames[at], self.changed[at]) = (log, frame, true);
+                let before = if self.places[at] == Place::Nowhere { f64::INFINITY } else { self.news[at] };
+                self.news[at] = news.min(before);
+                let place = if self.news[at] <= limit { Place::Near } else { Place::Far };
+                if self.places[at] != place {
+                    self.places[at] = place;
+                    if place == Place::Near { near.push(vertex) } else { far.push(vertex) }
+                }
+            }
+        }
+    }
+
+    /// The least size that is news at these vertices.
+    fn least_news(&self, vertices: &[u32]) -> Option<f64> {
+        let news = |&v: &u32| self.news[v as usize];
+        let least = |range: Range<usize>| vertices[range].iter().map(news).fold(f64::INFINITY, f64::min);
+        self.team.chunks(GRAIN, vertices.len(), least).into_iter().reduce(f64::min)
+    }
+
+    /// The new metrics of the neighbours of `tellers`, where they change, in the order of the vertices.
+    fn round(&mut self, tellers: &[u32]) -> Vec<Update> {
+        for &p in tellers {
+            self.places[p as usize] = Place::Nowhere;
+            self.telling[p as usize] = true;
+        }
+        let this = &*self;
+        let mut told = this.team.collect(FEW, tellers.len(), |range, told| {
+            let neighbours = tellers[range].iter().flat_map(|&p| this.around.of_vertex(p));
+            told.extend(neighbours.filter(|&&q| !this.told[q as usize].swap(true, Relaxed)));
+        });
+        this.team.sort(&mut told);
+        let updated = this.team.collect(FEW, told.len(), |range, updated| {
+            updated.extend(told[range].iter().filter_map(|&q| this.updated(q)));
+        });
+        told.iter().for_each(|&q| *self.told[q as usize].get_mut() = false);
+        tellers.iter().for_each(|&p| self.telling[p as usize] = false);
+        updated
+    }
+
+    /// The intersection of the metric of q with what has grown from its neighbours that tell; none when that is no change.
+    fn updated(&self, q: u32) -> Option<Update> {
+        let before = self.frames[q as usize];
+        let (mut now, mut news) = (before, f64::INFINITY);
+        for &p in self.around.of_vertex(q).iter().filter(|&&p| self.telling[p as usize]) {
+            let excess = self.excess(p, &now, q);
+            if let Some((both, least)) = excess.and_then(|relative| now.intersection(&relative, 1.0 + TOLERANCE)) {
+                (now, news) = (both, news.min(least));
+            }
+        }
+        let log = (news < f64::INFINITY).then(|| now.log())?;
+        // An intersection raises ln det M; what does not is rounding, of sizes too different for their figures.
+        let rises = log.trace() - self.logs[q as usize].trace() > 0.5 * TOLERANCE;
+        rises.then(|| Update { vertex: q, log, frame: Frame::of_log(&log), news })
+    }
+}

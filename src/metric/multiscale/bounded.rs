@@ -1,0 +1,78 @@
+//! Limits and gradation, and the scale at which the complexity is met with them.
+use super::reach::{NEARLY, Unreachable, reach, reach_within};
+use super::{Error, Options, Summary};
+use crate::mesh::TetMesh;
+use crate::metric::{Limits, Sym3, gradation};
+use crate::tasks::{GRAIN, Team, stage};
+
+/// Logarithm of the scale with which a metric of the complexity wanted has it after gradation too, as a first guess.
+const USUAL_SCALE: f64 = -0.2;
+
+/// The metric within limits and graded, at the scale at which it has the complexity wanted, from ln M without them.
+pub fn bounded(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    raw: &[Sym3],
+    limits: &Limits,
+    options: &Options,
+) -> Result<(Vec<Sym3>, Summary), Error> {
+    let target = options.complexity;
+    let scaled = |logs: &[Sym3], scale: f64| {
+        let mut scaled = team.map(GRAIN, logs.len(), |v| logs[v].plus_identity(scale));
+        let limited = limits.apply(team, &mut scaled);
+        (scaled, limited)
+    };
+    let complexity = |logs: &[Sym3]| options.measure.of(team, mesh, logs);
+    let unreachable = |Unreachable { nearest }| Error::Unreachable { target, nearest };
+    let (mut logs, mut scale, mut rounds) = (Vec::new(), 0.0, 0);
+    if let Some(ratio) = options.gradation {
+        (logs, scale, rounds) = graded(team, mesh, raw, limits, (ratio, options)).map_err(unreachable)?;
+    }
+    let of = if options.gradation.is_some() { std::mem::take(&mut logs) } else { raw.to_vec() };
+    let (more, again) = reach(target, |more| {
+        logs = scaled(&of, more).0;
+        complexity(&logs)
+    })
+    .map_err(unreachable)?;
+    let (before, limited) = scaled(raw, scale + more);
+    let summary = Summary {
+        complexity_before_gradation: complexity(&before),
+        complexity: complexity(&logs),
+        limited,
+        unfitted: 0,
+        rounds: if options.gradation.is_some() { rounds } else { again },
+    };
+    Ok((logs, summary))
+}
+
+/// ln M graded, of nearly the complexity wanted; the scale of the metric it was graded from; and how many gradings it took.
+///
+/// Gradation costs most of all. So a metric whose complexity is nearly right is good enough, to be scaled afterwards. What was graded by a
+/// ratio r^k is graded by r when its sizes are multiplied by 1/k or less, for in the bound on growth ln r stands beside |e|/h only.
+/// For the same reason a metric that was graded at another scale, brought to a coarser one, has all that gradation there will ask
+/// for, or less: grading goes on from it instead of from the beginning. (Not with a least size, which does not scale.)
+fn graded(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    raw: &[Sym3],
+    limits: &Limits,
+    (ratio, options): (f64, &Options),
+) -> Result<(Vec<Sym3>, f64, u32), Unreachable> {
+    let ratio = ratio.powf(1.0 - NEARLY / 3.0);
+    let (mut logs, mut last) = (Vec::new(), f64::NEG_INFINITY);
+    let (scale, rounds) = reach_within(NEARLY, options.complexity, USUAL_SCALE, |scale| {
+        if scale < last && limits.hmin.is_none() {
+            team.fill(GRAIN, &mut logs, |_, logs: &mut [Sym3]| {
+                logs.iter_mut().for_each(|log| *log = log.plus_identity(scale - last));
+            });
+        } else {
+            logs = team.map(GRAIN, raw.len(), |v| raw[v].plus_identity(scale));
+        }
+        last = scale;
+        limits.apply(team, &mut logs);
+        gradation::grade(team, mesh, &mut logs, ratio);
+        stage("graded");
+        options.measure.of(team, mesh, &logs)
+    })?;
+    Ok((logs, scale, rounds))
+}

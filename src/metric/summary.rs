@@ -1,0 +1,85 @@
+//! What a metric asks for: its sizes, their ratios and anisotropic quotients, as percentiles over the vertices.
+use super::{Sym3, field};
+use crate::mesh::TetMesh;
+use crate::tasks::{GRAIN, Team};
+use serde::Serialize;
+
+/// Least and greatest of values, and what so many percent of them are below.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Percentiles {
+    /// The least; 0 without values.
+    pub least: f64,
+    /// 1 %.
+    pub p1: f64,
+    /// 10 %.
+    pub p10: f64,
+    /// 50 %.
+    pub median: f64,
+    /// 90 %.
+    pub p90: f64,
+    /// 99 %.
+    pub p99: f64,
+    /// The greatest; 0 without values.
+    pub greatest: f64,
+}
+
+impl Percentiles {
+    /// Of values in whichever order (nearest rank).
+    pub fn of(team: Team<'_>, mut values: Vec<f64>) -> Self {
+        let Some(last) = values.len().checked_sub(1) else { return Self::default() };
+        team.sort_by(&mut values, f64::total_cmp);
+        let at = |share: f64| values[(share * last as f64).round() as usize];
+        Self {
+            least: values[0],
+            p1: at(0.01),
+            p10: at(0.1),
+            median: at(0.5),
+            p90: at(0.9),
+            p99: at(0.99),
+            greatest: values[last],
+        }
+    }
+}
+
+/// The figures of a metric at the vertices of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Vertices of the mesh.
+    pub vertices: usize,
+    /// C = Σ_v √det(M_v)·V_v: a unit mesh has about 2C vertices and 12C tetrahedra.
+    pub complexity: f64,
+    /// ∫ √det M of the log-Euclidean interpolant: below `complexity` where the mesh does not resolve its metric.
+    pub complexity_between: f64,
+    /// Least size at a vertex, length.
+    pub least_size: Percentiles,
+    /// Greatest size at a vertex, length.
+    pub greatest_size: Percentiles,
+    /// Greatest over least size at a vertex.
+    pub aspect_ratio: Percentiles,
+    /// Anisotropic quotient h_max³/(h1 h2 h3) at a vertex (Loseille & Alauzet 2011): 1 where sizes are equal, the aspect ratio
+    /// where two are great, its square where one is.
+    pub anisotropic_quotient: Percentiles,
+}
+
+impl Summary {
+    /// Of ln M at the vertices, shape (n,).
+    pub fn of(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Self {
+        // ln h, ascending.
+        let sizes = team.map(GRAIN, logs.len(), |v| {
+            let [a, b, c] = logs[v].eigen().values;
+            [-0.5 * c, -0.5 * b, -0.5 * a]
+        });
+        let over = |f: &(dyn Fn([f64; 3]) -> f64 + Sync)| {
+            Percentiles::of(team, team.map(GRAIN, sizes.len(), |v| f(sizes[v]).exp()))
+        };
+        Self {
+            vertices: mesh.vertices.len(),
+            complexity: field::complexity_of_logs(team, mesh, logs),
+            complexity_between: field::complexity_between(team, mesh, logs),
+            least_size: over(&|h| h[0]),
+            greatest_size: over(&|h| h[2]),
+            aspect_ratio: over(&|h| h[2] - h[0]),
+            anisotropic_quotient: over(&|h| 2.0 * h[2] - h[0] - h[1]),
+        }
+    }
+}
