@@ -14,10 +14,12 @@ pub mod implied;
 mod intersection;
 pub mod lanes;
 mod limit;
+pub mod multiscale;
 pub mod quality;
 #[cfg(test)]
 mod random;
 mod ratios;
+pub mod recovery;
 mod source;
 pub mod statistics;
 pub mod summary;

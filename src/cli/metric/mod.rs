@@ -1,11 +1,13 @@
 //! `geo-adapt metric`: metric fields made, combined and measured; one file a subcommand.
 mod common;
+pub(super) mod fields;
 mod from_points;
 mod grade;
 mod implied;
 mod interpolate;
 mod intersect;
 mod limit;
+mod multiscale;
 mod scale;
 mod show;
 
@@ -33,6 +35,8 @@ enum Command {
     Intersect(intersect::Arguments),
     /// Bound sizes and their ratios
     Limit(limit::Arguments),
+    /// Make the metric that resolves a field best for its complexity: L^p multiscale
+    Multiscale(multiscale::Arguments),
     /// Scale a metric to a complexity: about half the number of vertices
     Scale(scale::Arguments),
     /// Measure a metric: complexity, sizes, aspect ratios, how fast sizes grow
@@ -48,6 +52,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Command::Interpolate(arguments) => interpolate::run(arguments),
         Command::Intersect(arguments) => intersect::run(arguments),
         Command::Limit(arguments) => limit::run(arguments),
+        Command::Multiscale(arguments) => multiscale::run(arguments),
         Command::Scale(arguments) => scale::run(arguments),
         Command::Show(arguments) => show::run(arguments),
     }
