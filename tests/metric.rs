@@ -3,6 +3,7 @@ mod common;
 
 use common::adapting::{Workplace, complaint, cube, isotropic, stderr, text};
 use common::program;
+use geo_adapt::image::{Encoding, Frame, Image, Kind};
 use geo_adapt::mesh::vector::Vec3;
 use geo_adapt::mesh::{TetMesh, io};
 use geo_adapt::metric::{Field, Sym3, field};
@@ -273,4 +274,53 @@ fn a_metric_is_the_same_bit_for_bit_on_any_number_of_threads() {
         let one = bench.make(&[&arguments[..], &["--threads", "1"]].concat());
         assert_eq!(bench.make(&[&arguments[..], &["--threads", "4", "-q"]].concat()), one, "{arguments:?}");
     }
+}
+
+/// Writes an image of 24³ voxels over the unit cube.
+fn image(bench: &Bench, name: &str, kind: Kind, value: impl Fn(Vec3) -> f64) -> String {
+    let (n, path) = (24, bench.path(name));
+    let h = 1.0 / n as f64;
+    let frame = Frame::new([0.5 * h; 3], [[h, 0.0, 0.0], [0.0, h, 0.0], [0.0, 0.0, h]]).unwrap();
+    let at = |voxel: usize| frame.point([voxel % n, voxel / n % n, voxel / (n * n)].map(|i| i as f64));
+    let image = Image::new([n; 3], frame, kind, (0..n * n * n).map(|voxel| value(at(voxel))));
+    geo_adapt::image::write(Path::new(&path), &image, Encoding::Gzip).unwrap();
+    path
+}
+
+#[test]
+fn from_image_is_fine_where_the_image_changes() {
+    let bench = Bench::new(12);
+    let size = |metrics: &[Sym3], at: Vec3| {
+        let away = |p: &Vec3| (0..3).map(|i| (p[i] - at[i]).powi(2)).sum::<f64>();
+        let nearest =
+            (0..metrics.len()).min_by(|&a, &b| away(&bench.mesh.vertices[a]).total_cmp(&away(&bench.mesh.vertices[b])));
+        metrics[nearest.unwrap()].sizes()
+    };
+    // A wall at x = 0.5 between labels 1 and 2.
+    let labels = image(&bench, "labels.nrrd", Kind::Uint8, |p| if p[0] < 0.5 { 1.0 } else { 2.0 });
+    let asked = ["--mesh", &bench.input, "--complexity", "3000"];
+    let found = bench.make(&[&["from-image", &labels], &asked[..]].concat());
+    assert!((bench.complexity(&found) / 3000.0 - 1.0).abs() < 1e-2);
+    let (wall, inside) = (size(&found, [0.5; 3]), size(&found, [0.25, 0.5, 0.5]));
+    assert!(inside[0] - wall[0] > 0.08 && wall[0] / wall[2] < 1.0 + 1e-9, "{wall:?} {inside:?}");
+    // A grey layer: fine across it.
+    let grey = image(&bench, "grey.nrrd", Kind::Float, |p| (20.0 * (p[0] - 0.5)).tanh());
+    let found = bench.make(&[&["from-image", &grey], &asked[..], &["--hmin", "0.01"]].concat());
+    assert!((bench.complexity(&found) / 3000.0 - 1.0).abs() < 1e-2);
+    let beside = size(&found, [0.5 + 1.0 / 24.0, 0.5, 0.5]);
+    assert!(beside[0] / beside[2] > 3.0 && size(&found, [0.1, 0.5, 0.5])[2] > 2.0 * beside[2], "{beside:?}");
+    // The same values as integers are grey when that is said.
+    let integers = image(&bench, "integers.nrrd", Kind::Int16, |p| 1000.0 * (20.0 * (p[0] - 0.5)).tanh());
+    let again = bench.make(&[&["from-image", &integers, "--grey"], &asked[..], &["--hmin", "0.01"]].concat());
+    assert!((size(&again, [0.5 + 1.0 / 24.0, 0.5, 0.5])[2] / beside[2] - 1.0).abs() < 0.05);
+    says(
+        &bench.refusal(&[&["from-image", &labels, "--hmin", "0.3"], &asked[..]].concat()),
+        &["in.meshb", "cannot be reached"],
+    );
+    let empty = image(&bench, "empty.nrrd", Kind::Uint8, |_| 0.0);
+    says(&bench.refusal(&[&["from-image", &empty], &asked[..]].concat()), &["empty.nrrd", "no border"]);
+    let constant = image(&bench, "constant.nrrd", Kind::Float, |_| 7.0);
+    says(&bench.refusal(&[&["from-image", &constant], &asked[..]].concat()), &["constant.nrrd", "second derivatives"]);
+    says(&bench.refusal(&[&["from-image", &bench.path("no.nrrd")], &asked[..]].concat()), &["no.nrrd"]);
+    says(&bench.refusal(&[&["from-image", &grey, "--smooth", "-1"], &asked[..]].concat()), &["--smooth", "0 to 100"]);
 }

@@ -76,7 +76,17 @@ impl Smoothed {
             let along = |s: f64| std::array::from_fn(|k| if k == i { s } else { 0.0 });
             of_index[i][i] = shifted(along(1.0)) - 2.0 * centre + shifted(along(-1.0));
             for j in 0..i {
-                let to = |s: f64, t: f64| shifted(std::array::from_fn(|k| if k == i { s } else if k == j { t } else { 0.0 }));
+                let to = |s: f64, t: f64| {
+                    shifted(std::array::from_fn(|k| {
+                        if k == i {
+                            s
+                        } else if k == j {
+                            t
+                        } else {
+                            0.0
+                        }
+                    }))
+                };
                 of_index[i][j] = 0.25 * (to(1.0, 1.0) - to(1.0, -1.0) - to(-1.0, 1.0) + to(-1.0, -1.0));
                 of_index[j][i] = of_index[i][j];
             }

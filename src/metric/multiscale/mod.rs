@@ -23,7 +23,9 @@ use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
 use optimal::Spectrum;
-use reach::{Unreachable, reach, reach_nearly};
+pub use reach::Unreachable;
+pub(super) use reach::reach;
+use reach::reach_nearly;
 use serde::Serialize;
 
 /// Logarithm of the scale with which a metric of the complexity wanted has it after gradation too, as a first guess.
