@@ -264,7 +264,8 @@ fn a_metric_is_the_same_bit_for_bit_on_any_number_of_threads() {
         let (s, c) = (4.0 * p[0]).sin_cos();
         Sym3::from_sizes([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]], [10f64.powf(-3.0 * p[1]), 0.5, 1.0])
     });
-    let new = Bench::new(5).input;
+    let other = Bench::new(5);
+    let new = other.input.clone();
     for arguments in [
         vec!["grade", &bench.input, &a],
         vec!["scale", &bench.input, &a, "--complexity", "1e4"],

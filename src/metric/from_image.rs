@@ -6,8 +6,8 @@ use crate::mesh::box_tree::BoxTree;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team};
 
-/// Second derivatives below this share of the greatest of the image are noise.
-const NOISE: f64 = 1e-4;
+/// Second derivatives below this share of the greatest of the image are raised to it: rounding of single precision.
+const NOISE: f64 = 1e-6;
 
 /// What the metric has to be.
 #[derive(Clone, Copy, Debug)]
