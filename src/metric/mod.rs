@@ -8,6 +8,7 @@ mod error;
 mod exponential;
 pub mod field;
 mod frame;
+pub mod from_image;
 pub mod from_points;
 pub mod gradation;
 pub mod implied;

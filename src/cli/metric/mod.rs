@@ -1,6 +1,7 @@
 //! `geo-adapt metric`: metric fields made, combined and measured; one file a subcommand.
 mod common;
 pub(super) mod fields;
+mod from_image;
 mod from_points;
 mod grade;
 mod implied;
@@ -23,6 +24,8 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// The metric of an image: fine where its values bend, or at borders between labels
+    FromImage(from_image::Arguments),
     /// The metric of a cloud of points: the ellipsoid about each vertex that holds its nearest points
     FromPoints(from_points::Arguments),
     /// Let sizes grow no faster than a ratio from an edge to the next
@@ -46,6 +49,7 @@ enum Command {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     match &arguments.command {
+        Command::FromImage(arguments) => from_image::run(arguments),
         Command::FromPoints(arguments) => from_points::run(arguments),
         Command::Grade(arguments) => grade::run(arguments),
         Command::Implied(arguments) => implied::run(arguments),

@@ -24,7 +24,8 @@ use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
 use bounded::bounded;
 use optimal::Spectrum;
-use reach::{Unreachable, reach};
+pub use reach::Unreachable;
+pub(super) use reach::reach;
 use serde::Serialize;
 
 /// Which metric is made.
