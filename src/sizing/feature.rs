@@ -1,0 +1,257 @@
+//! Thin parts and gaps: entities that come near each other and do not touch.
+//!
+//! Each point of the boundary asks the other entities for their closest points, by the model itself and not by the mesh, so that a
+//! coarse mesh sees a gap as it is. Which entities may be near tells a tree of boxes over pieces of the model. The size is limited along
+//! the direction of the gap alone.
+use super::curvature::{Local, cut};
+use super::sight::Sight;
+use super::touch::Touch;
+use super::tree::{Box3, EMPTY, Tree, box_of, join};
+use crate::geometry::classify::Classification;
+use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, SurfaceKind, Topology};
+use crate::mesh::TetMesh;
+use crate::mesh::vector::{Vec3, distance, dot, scale, sub};
+use crate::metric::Sym3;
+use crate::tasks::Team;
+use serde::Serialize;
+
+/// Pieces of a face in each direction, and of an edge.
+const PIECES: usize = 8;
+/// Samples of a piece in each direction, its ends included.
+const SAMPLES: usize = 3;
+/// Between its samples a piece may leave their box by this share of its diagonal.
+const MARGIN: f64 = 0.15;
+/// A gap goes across a face if its direction makes at most 60° with the normal,
+const ACROSS: f64 = 0.5;
+/// and the other face looks back, or at least not away by more than this cosine.
+const AWAY: f64 = 0.25;
+/// A gap goes across an edge if its direction makes at least 45° with the tangent.
+const ALONG: f64 = 0.7;
+/// What is nearer than this share of the diagonal touches, whether the model says so or not.
+const TOUCHING: f64 = 1e-7;
+
+/// Two entities that come near.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Gap {
+    /// How near, model units.
+    pub distance: f64,
+    /// From where.
+    pub at: Vec3,
+    /// On which entity that is.
+    pub from: Entity,
+    /// The other one.
+    pub to: Entity,
+}
+
+/// A point of the boundary.
+#[derive(Clone, Copy)]
+pub struct Place {
+    /// Where it is, on the model.
+    pub point: Vec3,
+    /// On what.
+    pub entity: Entity,
+    /// The mesh vertex there; none between vertices.
+    pub vertex: Option<u32>,
+    /// The mesh triangle there; none on an edge or at a vertex.
+    pub triangle: Option<u32>,
+}
+
+/// The entities of a model and who is near whom.
+pub struct Near<'a> {
+    topology: &'a Topology,
+    mesh: &'a TetMesh,
+    place: &'a Classification,
+    touch: Touch<'a>,
+    sight: Sight<'a>,
+    pieces: Tree,
+    owners: Vec<Entity>,
+    cells: f64,
+    least: f64,
+    /// What is nearer touches.
+    touching: f64,
+    /// Whether normals tell the sides of a face apart: not where two solids may share it.
+    has_sides: bool,
+}
+
+impl<'a> Near<'a> {
+    /// So many cells across, no size below `least`.
+    pub fn new(
+        team: Team<'_>,
+        mesh: &'a TetMesh,
+        place: &'a Classification,
+        model: &'a Model,
+        cells: f64,
+        least: f64,
+    ) -> Self {
+        let topology = model.topology();
+        let (boxes, owners): (Vec<Box3>, Vec<Entity>) = pieces(team, model).into_iter().unzip();
+        Self {
+            topology,
+            mesh,
+            place,
+            touch: Touch::new(topology),
+            sight: Sight::new(team, mesh),
+            pieces: Tree::new(team, &boxes),
+            owners,
+            cells,
+            least,
+            touching: topology.tolerance.max(TOUCHING * topology.diagonal()),
+            has_sides: topology.solids <= 1,
+        }
+    }
+
+    /// The metric at a place, limited across the gaps there; and the nearest of those that limit it. `local` tells how the entities at
+    /// the place lie; `found` is scratch.
+    pub fn limit(
+        &self,
+        evaluator: &mut Evaluator,
+        at: &Place,
+        local: &Local,
+        mut metric: Sym3,
+        found: &mut Vec<Entity>,
+    ) -> (Sym3, Option<Gap>) {
+        let reach = self.cells / metric.eigen().values[0].sqrt();
+        found.clear();
+        self.pieces.each_in(&[at.point.map(|x| x - reach), at.point.map(|x| x + reach)], |piece| {
+            found.push(self.owners[piece as usize]);
+            true
+        });
+        found.sort_unstable();
+        found.dedup();
+        let mut nearest: Option<Gap> = None;
+        for &to in found.iter().filter(|&&to| !self.touch.touches(at.entity, to)) {
+            let Some((there, normal)) = self.closest(evaluator, at, to) else { continue };
+            let length = distance(at.point, there);
+            if !(length < reach && length > self.touching) {
+                continue;
+            }
+            let g = scale(sub(there, at.point), 1.0 / length);
+            let size = (length / self.cells).max(self.least);
+            // The sight is asked last: it costs most.
+            if dot(g, metric.solve(g)) <= size * size || !self.is_across(at, local, g, normal) {
+                continue;
+            }
+            let in_face = normal.is_none() && self.touch.share_face(at.entity, edge_of(to));
+            if in_face || self.sight.is_clear(at.point, there, |triangle| self.is_own(at, to, triangle)) {
+                metric = cut(metric, g, size);
+                if nearest.is_none_or(|known| length < known.distance) {
+                    nearest = Some(Gap { distance: length, at: at.point, from: at.entity, to });
+                }
+            }
+        }
+        (metric, nearest)
+    }
+
+    /// The closest point of another entity, and the normal there of a face. From inside a face edges are not asked: the faces beside
+    /// them are.
+    fn closest(&self, evaluator: &mut Evaluator, at: &Place, to: Entity) -> Option<(Vec3, Option<Vec3>)> {
+        match to {
+            Entity::Face(face) => {
+                let on = evaluator.closest_on_face(face, at.point, None);
+                Some((on.point, Some(evaluator.face_normal(face, on.uv))))
+            }
+            Entity::Edge(edge) if at.entity.dimension() < 2 => {
+                Some((evaluator.closest_on_edge(edge, at.point, None).point, None))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a gap along g goes across what lies at the place, and not beside it. `normal` is that of the other face.
+    fn is_across(&self, at: &Place, local: &Local, g: Vec3, normal: Option<Vec3>) -> bool {
+        let Some(normal) = normal else {
+            return at.entity.dimension() == 0 || local.tangents.iter().all(|&t| dot(g, t).abs() <= ALONG);
+        };
+        let faces = |&own: &Vec3| {
+            let cosine = dot(own, g);
+            let looks_away = self.has_sides && cosine.signum() * dot(normal, g) > AWAY;
+            cosine.abs() >= ACROSS && !looks_away
+        };
+        local.normals.is_empty() || local.normals.iter().any(faces)
+    }
+
+    /// Whether a triangle belongs to one end of a gap.
+    fn is_own(&self, at: &Place, to: Entity, triangle: u32) -> bool {
+        let face = self.place.faces[triangle as usize];
+        let beside = match to {
+            Entity::Face(other) => face == other,
+            Entity::Edge(edge) => self.topology.edges[edge as usize].faces.contains(&face),
+            Entity::Vertex(_) | Entity::Interior => false,
+        };
+        let here = match (at.vertex, at.triangle, at.entity) {
+            (Some(vertex), ..) => self.mesh.triangles.nodes[triangle as usize].contains(&vertex),
+            (None, Some(own), _) => own == triangle,
+            (None, None, Entity::Edge(edge)) => self.topology.edges[edge as usize].faces.contains(&face),
+            _ => false,
+        };
+        beside || here
+    }
+}
+
+fn edge_of(entity: Entity) -> u32 {
+    if let Entity::Edge(edge) = entity { edge } else { u32::MAX }
+}
+
+/// Boxes of pieces of all faces and ridges, and whose they are.
+fn pieces(team: Team<'_>, model: &Model) -> Vec<(Box3, Entity)> {
+    let topology = model.topology();
+    let faces = topology.faces.len();
+    team.collect(1, faces + topology.edges.len(), |range, found| {
+        let mut evaluator = model.evaluator();
+        for i in range {
+            if i < faces {
+                pieces_of_face(topology, &mut evaluator, i as u32, found);
+            } else if topology.is_ridge((i - faces) as u32) {
+                pieces_of_edge(topology, &mut evaluator, (i - faces) as u32, found);
+            }
+        }
+    })
+}
+
+fn pieces_of_face(topology: &Topology, evaluator: &mut Evaluator, face: u32, found: &mut Vec<(Box3, Entity)>) {
+    let entity = &topology.faces[face as usize];
+    let owner = Entity::Face(face);
+    if entity.kind == SurfaceKind::Discrete {
+        // Its parameters are no chart.
+        found.push((entity.bounds, owner));
+        return;
+    }
+    let mut box_at = |i: usize, j: usize| {
+        let mut all = EMPTY;
+        for k in 0..SAMPLES * SAMPLES {
+            let part = |cell: usize, k: usize| (cell as f64 + k as f64 / (SAMPLES - 1) as f64) / PIECES as f64;
+            let at = [part(i, k / SAMPLES), part(j, k % SAMPLES)];
+            let uv = [0, 1].map(|k: usize| entity.range[k][0] + at[k] * (entity.range[k][1] - entity.range[k][0]));
+            let p = evaluator.face_frame(face, uv).point;
+            all = join(all, [p, p]);
+        }
+        all
+    };
+    let slack = topology.tolerance;
+    for (i, j) in (0..PIECES * PIECES).map(|k| (k / PIECES, k % PIECES)) {
+        let [low, high] = widen(box_at(i, j));
+        // No part of the face leaves its own box.
+        let piece = [
+            std::array::from_fn(|k| f64::max(low[k], entity.bounds[0][k] - slack)),
+            std::array::from_fn(|k| f64::min(high[k], entity.bounds[1][k] + slack)),
+        ];
+        if (0..3).all(|k| piece[0][k] <= piece[1][k]) {
+            found.push((piece, owner));
+        }
+    }
+}
+
+fn pieces_of_edge(topology: &Topology, evaluator: &mut Evaluator, edge: u32, found: &mut Vec<(Box3, Entity)>) {
+    let [first, last] = topology.edges[edge as usize].range;
+    for i in 0..PIECES {
+        let at = |k: usize| (i as f64 + k as f64 / (SAMPLES - 1) as f64) / PIECES as f64;
+        let points = (0..SAMPLES).map(|k| evaluator.edge_frame(edge, first + at(k) * (last - first)).point);
+        found.push((widen(box_of(points)), Entity::Edge(edge)));
+    }
+}
+
+/// The box with its margin.
+fn widen([low, high]: Box3) -> Box3 {
+    let margin = MARGIN * distance(low, high);
+    [low.map(|x| x - margin), high.map(|x| x + margin)]
+}
