@@ -76,7 +76,7 @@ pub fn geometry_metric(
     let (samples, gap) = add_between(team, &sizing, &mut metrics);
     summary.between = samples;
     summary.note(gap);
-    let limits = Limits { hmin: Some(options.least), hmax: Some(options.greatest), aspect_ratio: None };
+    let limits = Limits { hmin: Some(options.least), hmax: Some(options.greatest), aspect_ratio: options.aspect_ratio };
     let logs = team.map(GRAIN, metrics.len(), |v| limits.apply_to_log(&metrics[v].ln()));
     let least = -2.0 * options.least.ln() - 1e-9;
     let at_least = |range: std::ops::Range<usize>| range.filter(|&v| logs[v].eigen().values[2] >= least).count();

@@ -22,6 +22,8 @@ pub struct Options {
     pub least: f64,
     /// Greatest size, and that of what is flat.
     pub greatest: f64,
+    /// Greatest ratio of the sizes at a point; none for no limit.
+    pub aspect_ratio: Option<f64>,
     /// Cells across a thin part or a gap; none to leave these alone.
     pub cells: Option<f64>,
     /// Ratio of gradation; none to leave the sizes as the geometry has them.
@@ -36,6 +38,7 @@ impl Options {
             segments: SEGMENTS,
             least: LEAST * diagonal,
             greatest: GREATEST * diagonal,
+            aspect_ratio: None,
             cells: Some(CELLS),
             gradation: Some(GRADATION),
         }

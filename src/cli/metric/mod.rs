@@ -1,5 +1,6 @@
 //! `geo-adapt metric`: metric fields made, combined and measured; one file a subcommand.
 mod common;
+mod geometry;
 mod show;
 
 use super::Outcome;
@@ -14,6 +15,8 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Make the metric that the geometry asks for: curvature, thin parts, gaps
+    Geometry(geometry::Arguments),
     /// Measure a metric: complexity, sizes, aspect ratios, how fast sizes grow
     Show(show::Arguments),
 }
@@ -21,6 +24,7 @@ enum Command {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     match &arguments.command {
+        Command::Geometry(arguments) => geometry::run(arguments),
         Command::Show(arguments) => show::run(arguments),
     }
 }
