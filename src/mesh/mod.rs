@@ -13,6 +13,7 @@ mod starts;
 mod tet_mesh;
 pub mod validity;
 pub mod vector;
+pub mod vertex_neighbours;
 
 pub use flaw::{Flaw, FlawKind, Offender};
 pub use tet_mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};

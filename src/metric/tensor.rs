@@ -120,7 +120,7 @@ impl Sym3 {
     /// The pivots of M = L D Lᵀ, in the order of the rows; their product is the determinant, and all are
     /// positive just when M is positive definite. Not defined (NaN or infinite) when a pivot vanishes.
     #[inline]
-    fn pivots(&self) -> [f64; 3] {
+    pub(super) fn pivots(&self) -> [f64; 3] {
         let [a, b, c, d, e, f] = self.0;
         let l1 = b / a;
         let p2 = c - l1 * b;
