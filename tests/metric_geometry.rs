@@ -379,15 +379,39 @@ fn a_coarse_mesh_misses_no_gap() {
     }
     let mesh = surface.0;
     assert_eq!(mesh.vertices.len() - low, 8);
-    // The box has its corners only, each 1.2 from where the sphere is nearest.
-    let options = Options { greatest: 1.0, cells: Some(6.0), gradation: Some(1.5), ..bare(1.0) };
-    let (metrics, _, summary) = sized(&mesh, &model, &Options { gradation: None, ..options });
+    // The box has its corners only, 1.04 from the sphere: too far to see it. Where they are nearest, sphere and box are 0.3 apart.
+    let options = Options { cells: Some(1.7), gradation: Some(1.1), ..bare(0.6) };
+    let (metrics, _, summary) = sized(&mesh, &model, &options);
     assert!(summary.between > 0);
     assert!((summary.nearest_gap.unwrap().distance - 0.3).abs() < 1e-3, "{summary:?}");
-    for metric in &metrics[low..] {
+    for (p, metric) in mesh.vertices.iter().zip(&metrics).skip(low) {
         let across = sizes_along(metric, Z);
-        assert!((0.3..0.75).contains(&across), "{across}");
+        // Grown from where the sphere is nearest; beside it the gap is wider and this corner nearer.
+        let foot = distance(*p, [0.9, 0.8, p[2]]);
+        let most = 0.3 / 1.7 + 1.1f64.ln() * foot;
+        assert!(across < 1.1 * most && across > 0.7 * most, "{across} {most}");
     }
+}
+
+#[test]
+fn sizes_grow_along_the_triangles_of_a_surface() {
+    let (model, mesh) = (model("cone"), cone());
+    let steep = bare(10.0);
+    let options = Options { gradation: Some(1.3), ..steep };
+    let (bare, ..) = sized(&mesh, &model, &steep);
+    let (graded, _, summary) = sized(&mesh, &model, &options);
+    assert!(summary.graded > 300, "{summary:?}");
+    let growth = |metrics: &[Sym3]| {
+        let edges = mesh.triangles.nodes.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let ends = edges.map(|ends| {
+            let [p, q] = ends.map(|v| mesh.vertices[v as usize]);
+            let [a, b] = ends.map(|v| sizes_along(&metrics[v as usize], unit(sub(q, p))));
+            (a - b).abs() / distance(p, q)
+        });
+        ends.fold(0.0, f64::max)
+    };
+    // Physical growth is ln 1.3 a length; an eighth of it is not counted in space.
+    assert!(growth(&bare) > 10.0 && growth(&graded) < 0.5, "{} {}", growth(&bare), growth(&graded));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //!
 //! Only coarse triangles and ridges are sampled, at about half the greatest size, so the samples are as many as the surface is large,
 //! whatever the mesh. What is found grows with the distance to the vertices as a gradation lets it.
+use super::curvature::cut;
 use super::feature::{Gap, Place};
 use super::field::{Asked, Sizing};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry};
@@ -48,12 +49,25 @@ pub fn add_between(team: Team<'_>, sizing: &Sizing, metrics: &mut [Sym3]) -> (us
     let at = Buckets::of(team, metrics.len(), sent.len(), |i| [sent[i].vertex]);
     team.fill(TASK, metrics, |start, metrics| {
         for (vertex, metric) in (start..).zip(metrics) {
-            for entry in at.of_key(vertex) {
-                *metric = metric.intersect(&sent[entry as usize].metric);
-            }
+            combine(metric, at.of_key(vertex).map(|entry| sent[entry as usize].metric));
         }
     });
     (samples, nearest)
+}
+
+/// Limits a metric by others, the finest size of all first, each in its own directions and only as far as it is not yet granted: the
+/// intersection of many ellipsoids that point a little apart, one after the other, would be finer than any of them asks for.
+fn combine(metric: &mut Sym3, others: impl Iterator<Item = Sym3>) {
+    let mut slabs: Vec<(f64, Vec3)> = others
+        .flat_map(|other| {
+            let eigen = other.eigen_spd();
+            [0, 1, 2].map(|i| (1.0 / eigen.values[i].sqrt(), eigen.vectors[i]))
+        })
+        .collect();
+    slabs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (size, direction) in slabs {
+        *metric = cut(*metric, direction, size);
+    }
 }
 
 /// One task.
@@ -136,6 +150,18 @@ fn grown(metric: Sym3, from: Vec3, to: Vec3, growth: f64) -> Sym3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn many_that_point_a_little_apart_are_one() {
+        let mut metric = Sym3::IDENTITY.times(0.01);
+        let tilted = (-10..=10).map(|i| {
+            let (sin, cos) = (0.02 * f64::from(i)).sin_cos();
+            Sym3::from_sizes([[sin, 0.0, cos], [cos, 0.0, -sin], [0.0, 1.0, 0.0]], [1.0 + f64::from(i * i), 10.0, 10.0])
+        });
+        combine(&mut metric, tilted);
+        let [_, b, c] = metric.sizes();
+        assert!((c - 1.0).abs() < 1e-9 && b > 9.0, "{b} {c}");
+    }
 
     #[test]
     fn sizes_grow_with_the_distance() {

@@ -66,7 +66,7 @@ impl<'a> Curvature<'a> {
 
     /// The metric of an entity at parameters, (t, 0) on an edge, (u, v) on a face: on a face by its principal curvatures; on an edge
     /// that of all its faces and of its own curvature along the tangent; at a vertex that of all edges and faces there. It is finite
-    /// everywhere: where curvatures are not defined it is their limit.
+    /// everywhere: at a pole it is the limit of the curvatures, at an apex the least size near it in all directions.
     pub fn at(&self, evaluator: &mut impl Evaluate, entity: Entity, parameters: [f64; 2], local: &mut Local) {
         local.clear();
         match entity {
@@ -146,14 +146,22 @@ impl<'a> Curvature<'a> {
             None => self.add_frame(&frame, local),
             Some(free) => {
                 local.is_limit = true;
-                if frame.normal != [0.0; 3] {
+                let is_pole = frame.normal != [0.0; 3];
+                if is_pole {
                     local.normals.push(frame.normal);
                 }
+                let mut least = self.options.greatest;
                 for i in 0..AROUND {
                     let around = (i as f64 + 0.5) / AROUND as f64;
-                    if let Some(frame) = self.beside(evaluator, face, uv, free, around) {
+                    let Some(frame) = self.beside(evaluator, face, uv, free, around) else { continue };
+                    if is_pole {
                         local.intersect(self.tensor(&frame));
                     }
+                    least = least.min(self.options.size(frame.curvatures[0]));
+                }
+                if !is_pole {
+                    // An apex has every direction around it.
+                    local.intersect(Sym3::IDENTITY.times(least.powi(-2)));
                 }
             }
         }

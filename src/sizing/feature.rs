@@ -56,6 +56,24 @@ pub struct Place {
     pub triangle: Option<u32>,
 }
 
+/// Another entity, as a place sees it.
+#[derive(Clone, Copy)]
+struct Other {
+    length: f64,
+    to: Entity,
+    /// Its closest point.
+    there: Vec3,
+    /// Its normal there, if it is a face.
+    normal: Option<Vec3>,
+}
+
+/// Scratch of one thread.
+#[derive(Default)]
+pub struct Pad {
+    entities: Vec<Entity>,
+    others: Vec<Other>,
+}
+
 /// The entities of a model and who is near whom.
 pub struct Near<'a> {
     topology: &'a Topology,
@@ -101,30 +119,35 @@ impl<'a> Near<'a> {
     }
 
     /// The metric at a place, limited across the gaps there; and the nearest of those that limit it. `local` tells how the entities at
-    /// the place lie; `found` is scratch.
+    /// the place lie.
     pub fn limit(
         &self,
         evaluator: &mut Evaluator,
         at: &Place,
         local: &Local,
         mut metric: Sym3,
-        found: &mut Vec<Entity>,
+        Pad { entities, others }: &mut Pad,
     ) -> (Sym3, Option<Gap>) {
         let reach = self.cells / metric.eigen().values[0].sqrt();
-        found.clear();
+        entities.clear();
         self.pieces.each_in(&[at.point.map(|x| x - reach), at.point.map(|x| x + reach)], |piece| {
-            found.push(self.owners[piece as usize]);
+            entities.push(self.owners[piece as usize]);
             true
         });
-        found.sort_unstable();
-        found.dedup();
-        let mut nearest: Option<Gap> = None;
-        for &to in found.iter().filter(|&&to| !self.touch.touches(at.entity, to)) {
+        entities.sort_unstable();
+        entities.dedup();
+        others.clear();
+        for &to in entities.iter().filter(|&&to| !self.touch.touches(at.entity, to)) {
             let Some((there, normal)) = self.closest(evaluator, at, to) else { continue };
             let length = distance(at.point, there);
-            if !(length < reach && length > self.touching) {
-                continue;
+            if length < reach && length > self.touching {
+                others.push(Other { length, to, there, normal });
             }
+        }
+        // The nearest first: it often leaves nothing to do for those behind it.
+        others.sort_unstable_by(|a, b| a.length.total_cmp(&b.length).then(a.to.cmp(&b.to)));
+        let mut nearest: Option<Gap> = None;
+        for &Other { length, to, there, normal } in others.iter() {
             let g = scale(sub(there, at.point), 1.0 / length);
             let size = (length / self.cells).max(self.least);
             // The sight is asked last: it costs most.
@@ -134,9 +157,7 @@ impl<'a> Near<'a> {
             let in_face = normal.is_none() && self.touch.share_face(at.entity, edge_of(to));
             if in_face || self.sight.is_clear(at.point, there, |triangle| self.is_own(at, to, triangle)) {
                 metric = cut(metric, g, size);
-                if nearest.is_none_or(|known| length < known.distance) {
-                    nearest = Some(Gap { distance: length, at: at.point, from: at.entity, to });
-                }
+                nearest = nearest.or(Some(Gap { distance: length, at: at.point, from: at.entity, to }));
             }
         }
         (metric, nearest)

@@ -2,13 +2,13 @@
 use super::coarse::add_between;
 use super::curvature::{Curvature, Local};
 use super::estimate::Estimate;
-use super::feature::{Gap, Near, Place};
+use super::feature::{Gap, Near, Pad, Place};
 use super::options::GRADATION;
 use super::{Options, Summary};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluator, Geometry, Model};
 use crate::mesh::TetMesh;
-use crate::metric::{Limits, Sym3};
+use crate::metric::{Limits, Sym3, gradation};
 use crate::tasks::{GRAIN, Team};
 
 /// Vertices that one task asks the model about; each makes an evaluator.
@@ -18,7 +18,7 @@ const VERTICES: usize = 1 << 9;
 #[derive(Default)]
 pub(super) struct Asked {
     local: Local,
-    found: Vec<Entity>,
+    pad: Pad,
 }
 
 /// All that the metric at a place depends on.
@@ -77,10 +77,15 @@ pub fn geometry_metric(
     summary.between = samples;
     summary.note(gap);
     let limits = Limits { hmin: Some(options.least), hmax: Some(options.greatest), aspect_ratio: options.aspect_ratio };
-    let logs = team.map(GRAIN, metrics.len(), |v| limits.apply_to_log(&metrics[v].ln()));
+    let mut logs = team.map(GRAIN, metrics.len(), |v| limits.apply_to_log(&metrics[v].ln()));
     let least = -2.0 * options.least.ln() - 1e-9;
     let at_least = |range: std::ops::Range<usize>| range.filter(|&v| logs[v].eigen().values[2] >= least).count();
     summary.at_least_size = team.chunks(GRAIN, logs.len(), at_least).into_iter().sum();
+    if let Some(ratio) = options.gradation {
+        summary.graded = gradation::grade(team, mesh, &mut logs, ratio).changed;
+        // Grown metrics that meet at an angle can leave sizes a little below the least.
+        limits.apply(team, &mut logs);
+    }
     (logs, summary)
 }
 
@@ -140,7 +145,7 @@ impl Sizing<'_> {
     fn limited(&self, evaluator: &mut Evaluator, place: &Place, asked: &mut Asked) -> (Sym3, Option<Gap>) {
         let metric = self.curvature.metric_of(&asked.local);
         match &self.near {
-            Some(near) => near.limit(evaluator, place, &asked.local, metric, &mut asked.found),
+            Some(near) => near.limit(evaluator, place, &asked.local, metric, &mut asked.pad),
             None => (metric, None),
         }
     }

@@ -8,8 +8,9 @@ const SEGMENTS: f64 = 2.0;
 const CELLS: f64 = 2.0;
 /// Greatest size by default, as a share of the diagonal of the model's box (what refine and gmsh take too).
 const GREATEST: f64 = 0.1;
-/// Least size by default, as a share of the diagonal.
-const LEAST: f64 = 1e-3;
+/// Least size by default, as a share of the diagonal. It is there for apices and for what all but touches: a box of the far field may be
+/// hundreds of times larger than what lies in it, so a thousandth would hide a wing's nose.
+const LEAST: f64 = 1e-5;
 /// Ratio of the sizes of neighbouring cells by default.
 pub const GRADATION: f64 = 1.5;
 
@@ -31,7 +32,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// The defaults for a model: sizes between a thousandth and a tenth of its diagonal.
+    /// The defaults for a model: sizes between 1e-5 and a tenth of its diagonal.
     pub fn of(topology: &Topology) -> Self {
         let diagonal = topology.diagonal();
         Self {

@@ -23,6 +23,8 @@ pub struct Summary {
     pub nearest_gap: Option<Gap>,
     /// Places between the vertices of coarse triangles and edges that were looked at.
     pub between: usize,
+    /// Vertices whose sizes gradation has made smaller.
+    pub graded: usize,
 }
 
 impl Summary {

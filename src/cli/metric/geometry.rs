@@ -30,7 +30,8 @@ pub struct Arguments {
     /// Segments for a radian of curvature: the size is 1/(N κ), 2π N segments go round a circle
     #[arg(long, value_name = "N", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
     segments: f64,
-    /// Sizes. By default --hmin is a thousandth and --hmax a tenth of the diagonal of the model's box
+    /// Sizes. By default --hmax is a tenth of the diagonal of the model's box and --hmin 1e-5 of it: that is for apices and for what all but
+    /// touches, where sizes have no other end
     #[command(flatten)]
     limits: LimitArguments,
     #[command(flatten)]
@@ -187,6 +188,9 @@ fn describe(report: &Report, has_volume: bool) -> String {
     }
     if summary.between > 0 {
         table.row("looked at between vertices", format_args!("{} places, for the mesh is coarse", summary.between));
+    }
+    if summary.graded > 0 {
+        table.row("made smaller by gradation", format_args!("{} vertices", summary.graded));
     }
     if has_volume {
         table.row("complexity", figure(figures.complexity));
