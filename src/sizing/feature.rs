@@ -10,7 +10,7 @@ use super::tree::{Box3, EMPTY, Tree, box_of, join};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, SurfaceKind, Topology};
 use crate::mesh::TetMesh;
-use crate::mesh::vector::{Vec3, distance, dot, scale, sub};
+use crate::mesh::vector::{Vec3, distance, dot, norm, scale, sub, unit};
 use crate::metric::Sym3;
 use crate::tasks::Team;
 use serde::Serialize;
@@ -26,7 +26,7 @@ const ACROSS: f64 = 0.5;
 /// and the other face looks back, or at least not away by more than this cosine.
 const AWAY: f64 = 0.25;
 /// A gap goes across an edge if its direction makes at least 45° with the tangent.
-const ALONG: f64 = 0.7;
+const ALONG: f64 = 0.707;
 /// What is nearer than this share of the diagonal touches, whether the model says so or not.
 const TOUCHING: f64 = 1e-7;
 
@@ -148,10 +148,12 @@ impl<'a> Near<'a> {
         others.sort_unstable_by(|a, b| a.length.total_cmp(&b.length).then(a.to.cmp(&b.to)));
         let mut nearest: Option<Gap> = None;
         for &Other { length, to, there, normal } in others.iter() {
-            let g = scale(sub(there, at.point), 1.0 / length);
-            let size = (length / self.cells).max(self.least);
+            let way = scale(sub(there, at.point), 1.0 / length);
+            let across = across(way, at, local);
+            let share = norm(across);
+            let (g, size) = (unit(across), (share * length / self.cells).max(self.least));
             // The sight is asked last: it costs most.
-            if dot(g, metric.solve(g)) <= size * size || !self.is_across(at, local, g, normal) {
+            if share < ALONG || dot(g, metric.solve(g)) <= size * size || !self.is_facing(local, way, normal) {
                 continue;
             }
             let in_face = normal.is_none() && self.touch.share_face(at.entity, edge_of(to));
@@ -178,11 +180,10 @@ impl<'a> Near<'a> {
         }
     }
 
-    /// Whether a gap along g goes across what lies at the place, and not beside it. `normal` is that of the other face.
-    fn is_across(&self, at: &Place, local: &Local, g: Vec3, normal: Option<Vec3>) -> bool {
-        let Some(normal) = normal else {
-            return at.entity.dimension() == 0 || local.tangents.iter().all(|&t| dot(g, t).abs() <= ALONG);
-        };
+    /// Whether a face with this normal lies opposite to one of the faces at the place, the way there along g. Of an edge (no normal) nothing
+    /// is asked.
+    fn is_facing(&self, local: &Local, g: Vec3, normal: Option<Vec3>) -> bool {
+        let Some(normal) = normal else { return true };
         let faces = |&own: &Vec3| {
             let cosine = dot(own, g);
             let looks_away = self.has_sides && cosine.signum() * dot(normal, g) > AWAY;
@@ -206,6 +207,15 @@ impl<'a> Near<'a> {
             _ => false,
         };
         beside || here
+    }
+}
+
+/// What of a direction goes across the edge that a place lies on: near its end the way to another edge leans along it, and sizes along it
+/// are not the gap's.
+fn across(direction: Vec3, at: &Place, local: &Local) -> Vec3 {
+    match (at.entity, &local.tangents[..]) {
+        (Entity::Edge(_), &[tangent, ..]) => sub(direction, scale(tangent, dot(direction, tangent))),
+        _ => direction,
     }
 }
 
