@@ -1,6 +1,6 @@
 //! Tetrahedral meshes as plain arrays: what goes in and what comes out.
 pub mod adjacency;
-mod box_tree;
+pub mod box_tree;
 mod flaw;
 pub mod hilbert;
 pub mod io;

@@ -15,19 +15,20 @@ pub struct Field {
 impl Field {
     /// Reads a .sol or .solb file of a mesh of so many vertices. Every tensor must be positive definite.
     pub fn read(path: &Path, vertices: usize) -> Result<Read<Self>, Error> {
-        let Read { content: metrics, notices } = read_each(Team::alone(), path, vertices, |m| m.is_spd().then_some(m))?;
+        let Read { content: metrics, notices } =
+            read_each(Team::alone(), path, Some(vertices), |m| m.is_spd().then_some(m))?;
         Ok(Read { content: Self { metrics }, notices })
     }
 
     /// Reads ln M at every vertex from a .sol or .solb file of M, as [`Field::read`] checks it: the eigenvalues that tell whether a
     /// tensor is positive definite give its logarithm.
     pub fn read_logs(team: Team<'_>, path: &Path, vertices: usize) -> Result<Read<Vec<Sym3>>, Error> {
-        read_each(team, path, vertices, |m| {
-            let mut eigen = m.eigen_spd();
-            let positive = eigen.values[0] > 0.0;
-            eigen.values = eigen.values.map(f64::ln);
-            positive.then(|| Sym3::from_eigen(&eigen))
-        })
+        read_each(team, path, Some(vertices), checked_log)
+    }
+
+    /// As [`Field::read_logs`], of a mesh that is not at hand: as many as there are.
+    pub fn read_all_logs(team: Team<'_>, path: &Path) -> Result<Read<Vec<Sym3>>, Error> {
+        read_each(team, path, None, checked_log)
     }
 
     /// Writes .sol or .solb by the extension.
@@ -38,17 +39,26 @@ impl Field {
     }
 }
 
+/// ln M; none when M is not positive definite.
+fn checked_log(m: Sym3) -> Option<Sym3> {
+    let mut eigen = m.eigen_spd();
+    let positive = eigen.values[0] > 0.0;
+    eigen.values = eigen.values.map(f64::ln);
+    positive.then(|| Sym3::from_eigen(&eigen))
+}
+
 /// What `convert` makes of the tensors of a file; none for one that is not positive definite.
 fn read_each(
     team: Team<'_>,
     path: &Path,
-    vertices: usize,
+    expected: Option<usize>,
     convert: impl Fn(Sym3) -> Option<Sym3> + Sync,
 ) -> Result<Read<Vec<Sym3>>, Error> {
     let Read { content, notices } = io::read_solution(path)?;
     let tensors = only_tensors(path, &content)?;
-    if content.vertices != vertices {
-        return Err(Error::Count { path: path.into(), found: content.vertices, expected: vertices });
+    let vertices = content.vertices;
+    if let Some(expected) = expected.filter(|&expected| expected != vertices) {
+        return Err(Error::Count { path: path.into(), found: vertices, expected });
     }
     let tensors = tensors.values.as_chunks().0;
     let parts = team.chunks(GRAIN, vertices, |range| {

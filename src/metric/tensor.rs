@@ -204,32 +204,4 @@ impl Sym3 {
     pub fn inverse(&self) -> Self {
         self.map_spd(|x| 1.0 / x)
     }
-
-    /// The tensor's terms in an orthonormal frame: f_i · A f_j.
-    #[inline]
-    fn in_frame(&self, f: &[Vec3; 3]) -> Self {
-        use crate::mesh::vector::dot;
-        let [a, b, c] = f.map(|v| self.apply(v));
-        Self([dot(f[0], a), dot(f[0], b), dot(f[1], b), dot(f[0], c), dot(f[1], c), dot(f[2], c)])
-    }
-
-    /// diag(s) A diag(s).
-    #[inline]
-    fn scaled(&self, s: [f64; 3]) -> Self {
-        let m = &self.0;
-        let row = [m[0] * s[0] * s[0], m[1] * s[0] * s[1], m[2] * s[1] * s[1]];
-        Self([row[0], row[1], row[2], m[3] * s[0] * s[2], m[4] * s[1] * s[2], m[5] * s[2] * s[2]])
-    }
-
-    /// M1 ∩ M2: the metric whose unit ball fits into both unit balls (METHOD.md §1): where the unit ball of M1 is made a sphere,
-    /// the eigenvalues of M2 are raised to at least 1. All is done in the frame of M1's eigenvectors, where M1^(±1/2) is
-    /// diagonal: terms of different scales never mix, and great anisotropy does no harm.
-    pub fn intersect(&self, other: &Self) -> Self {
-        let Eigen { values, vectors } = self.eigen_spd();
-        let roots = values.map(f64::sqrt);
-        let relative = other.in_frame(&vectors).scaled(roots.map(|x| 1.0 / x));
-        let both = relative.map_spd(|x| x.max(1.0)).scaled(roots);
-        let transposed = [0, 1, 2].map(|i| [vectors[0][i], vectors[1][i], vectors[2][i]]);
-        both.in_frame(&transposed)
-    }
 }

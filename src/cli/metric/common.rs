@@ -3,7 +3,7 @@
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
 use crate::mesh::TetMesh;
 use crate::mesh::io::{self, Read, read_mesh};
-use crate::metric::{Field, Limits, Sym3};
+use crate::metric::{Field, Limits, Sym3, field};
 use crate::tasks::{GRAIN, Pool, Team};
 use std::path::{Path, PathBuf};
 
@@ -165,6 +165,25 @@ pub fn logs(run: &RunArguments, team: Team<'_>, path: &Path, vertices: usize) ->
     let Read { content, notices } = Field::read_logs(team, path, vertices)?;
     run.note(&notices);
     Ok(content)
+}
+
+/// Reads ln M at the vertices of a mesh that is not at hand.
+pub fn all_logs(run: &RunArguments, team: Team<'_>, path: &Path) -> Result<Vec<Sym3>, Failure> {
+    let Read { content, notices } = Field::read_all_logs(team, path)?;
+    run.note(&notices);
+    Ok(content)
+}
+
+/// The complexity of ln M on a mesh (`path` is for the error): positive.
+pub fn complexity(team: Team<'_>, path: &Path, mesh: &TetMesh, logs: &[Sym3]) -> Result<f64, String> {
+    let complexity = field::complexity_of_logs(team, mesh, logs);
+    if complexity > 0.0 && complexity.is_finite() {
+        return Ok(complexity);
+    }
+    Err(format!(
+        "{}: the complexity there is {complexity}; are all tetrahedra positive? (geo-adapt inspect tells)",
+        path.display()
+    ))
 }
 
 /// Writes JSON beside, then renames.

@@ -1,6 +1,13 @@
 //! `geo-adapt metric`: metric fields made, combined and measured; one file a subcommand.
 mod common;
+mod from_points;
 mod geometry;
+mod grade;
+mod implied;
+mod interpolate;
+mod intersect;
+mod limit;
+mod scale;
 mod show;
 
 use super::Outcome;
@@ -15,8 +22,22 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// The metric of a cloud of points: the ellipsoid about each vertex that holds its nearest points
+    FromPoints(from_points::Arguments),
     /// Make the metric that the geometry asks for: curvature, thin parts, gaps
     Geometry(geometry::Arguments),
+    /// Let sizes grow no faster than a ratio from an edge to the next
+    Grade(grade::Arguments),
+    /// The metric of a mesh itself: the one in which its edges have length one, as far as they can
+    Implied(implied::Arguments),
+    /// Bring a metric from one mesh to another
+    Interpolate(interpolate::Arguments),
+    /// Ask for what each of several metrics of the same mesh asks for
+    Intersect(intersect::Arguments),
+    /// Bound sizes and their ratios
+    Limit(limit::Arguments),
+    /// Scale a metric to a complexity: about half the number of vertices
+    Scale(scale::Arguments),
     /// Measure a metric: complexity, sizes, aspect ratios, how fast sizes grow
     Show(show::Arguments),
 }
@@ -24,7 +45,14 @@ enum Command {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     match &arguments.command {
+        Command::FromPoints(arguments) => from_points::run(arguments),
         Command::Geometry(arguments) => geometry::run(arguments),
+        Command::Grade(arguments) => grade::run(arguments),
+        Command::Implied(arguments) => implied::run(arguments),
+        Command::Interpolate(arguments) => interpolate::run(arguments),
+        Command::Intersect(arguments) => intersect::run(arguments),
+        Command::Limit(arguments) => limit::run(arguments),
+        Command::Scale(arguments) => scale::run(arguments),
         Command::Show(arguments) => show::run(arguments),
     }
 }

@@ -2,6 +2,7 @@
 use super::common::{self, RunArguments};
 use crate::cli::Outcome;
 use crate::cli::table::{Table, figure};
+use crate::metric::gradation::{self, Growths};
 use crate::metric::summary::{Percentiles, Summary};
 use crate::tasks::{Plan, Team};
 use std::path::PathBuf;
@@ -21,6 +22,15 @@ pub struct Arguments {
     run: RunArguments,
 }
 
+/// All that is found.
+#[derive(serde::Serialize)]
+struct Shown {
+    #[serde(flatten)]
+    summary: Summary,
+    /// The ratio that each edge would need to stay as it is.
+    gradation: Growths,
+}
+
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     if let Some(json) = &arguments.json {
@@ -30,16 +40,17 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let team = Team::new(&pool, Plan::default());
     let mesh = common::mesh(&arguments.run, &arguments.mesh)?;
     let logs = common::logs(&arguments.run, team, &arguments.metric, mesh.vertices.len())?;
-    let summary = Summary::of(team, &mesh, &logs);
+    let shown = Shown { summary: Summary::of(team, &mesh, &logs), gradation: gradation::measure(team, &mesh, &logs) };
     if let Some(json) = &arguments.json {
-        common::write_json(json, &summary)?;
+        common::write_json(json, &shown)?;
     }
-    arguments.run.print(&describe(&summary));
+    arguments.run.print(&describe(&shown));
     Ok(ExitCode::SUCCESS)
 }
 
 /// The text for people.
-fn describe(summary: &Summary) -> String {
+fn describe(shown: &Shown) -> String {
+    let Shown { summary, gradation } = shown;
     let mut table = Table::new();
     table.row("vertices", summary.vertices);
     table.row("complexity", figure(summary.complexity));
@@ -54,6 +65,7 @@ fn describe(summary: &Summary) -> String {
         ("greatest size", &summary.greatest_size),
         ("aspect ratio", &summary.aspect_ratio),
         ("anisotropic quotient", &summary.anisotropic_quotient),
+        ("gradation, by edge", gradation),
     ];
     for (name, Percentiles { least, p1, p10, median, p90, p99, greatest }) in rows {
         table.row(name, row([least, p1, p10, median, p90, p99, greatest].map(|&x| figure(x))));

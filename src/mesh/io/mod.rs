@@ -8,6 +8,7 @@ mod binary;
 mod cursor;
 mod error;
 mod keyword;
+mod points;
 mod read;
 mod sink;
 mod solution;
@@ -16,6 +17,7 @@ mod write;
 
 pub use beside::write_beside;
 pub use error::Error;
+pub use points::read_points;
 pub use solution::{FieldKind, Solution, SolutionField};
 
 use super::TetMesh;

@@ -1,8 +1,8 @@
 //! The gradation that a metric has: the ratio r that each edge would need.
 use super::super::Sym3;
+use super::super::frame::{Frame, is_below};
 use super::super::summary::Percentiles;
 use super::TOLERANCE;
-use super::growth::{Frame, is_below};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::Edges;
 use crate::mesh::vector::sub;

@@ -3,9 +3,9 @@
 //! For an edge pq with vector e the metric of p grows to q: G has the eigenvectors of M_p and the eigenvalues
 //! λ_i · [(1 + √λ_i |e| ln r)^t (1 + L_p(e) ln r)^(1−t)]^(−2), t = 1/8; M_q ← M_q ∩ G, both ways, until nothing changes.
 //!
-//! A front does it: only edges of vertices that have changed are looked at, those of the smallest sizes first, since it is they that
-//! tell others (as Δ-stepping does for shortest paths: Meyer & Sanders 2003). A round takes all that wait within a class of
-//! sizes; each neighbour takes the intersection over those of them that it has an edge with, in the order of their numbers, from
+//! A front does it: only edges of vertices that have changed are looked at, those first where what has changed are the smallest sizes,
+//! since sizes only grow on their way (as Δ-stepping does for shortest paths: Meyer & Sanders 2003). A round takes all whose news
+//! are within a class of sizes; each neighbour takes the intersection over those of them that it has an edge with, in the order of their numbers, from
 //! the values of the round before. So all is the same bit for bit on any number of threads.
 mod growth;
 mod measure;
@@ -13,18 +13,20 @@ mod measure;
 mod tests;
 
 use super::Sym3;
+use super::frame::{Frame, is_below};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, sub};
 use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::tasks::{GRAIN, Team};
-use growth::{Frame, is_below};
 pub use measure::{Growths, measure};
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// An intersection that raises no eigenvalue by more than this share is no change.
-const TOLERANCE: f64 = 1e-6;
+/// An intersection that raises no eigenvalue by more than this share, half of it in size, is no change. (With 1e-6 a field of strong and
+/// turning anisotropy takes half as many updates more, for sizes that no mesh can tell apart.)
+const TOLERANCE: f64 = 1e-3;
 
-/// Sizes within this factor of the least that waits are one class.
+/// Sizes within this factor of the least that are news are one class.
 const CLASS: f64 = 1.25;
 
 /// Vertices a task: one takes a microsecond or two.
@@ -61,6 +63,16 @@ enum Place {
     Far,
 }
 
+/// A vertex gets another metric.
+#[derive(Clone, Copy)]
+struct Update {
+    vertex: u32,
+    log: Sym3,
+    frame: Frame,
+    /// The least size that has changed.
+    news: f64,
+}
+
 struct Grading<'a> {
     team: Team<'a>,
     vertices: &'a [Vec3],
@@ -71,6 +83,8 @@ struct Grading<'a> {
     /// ln r.
     pace: f64,
     places: Vec<Place>,
+    /// Of who waits, the least size that is news.
+    news: Vec<f64>,
     /// Who tells its neighbours in this round.
     telling: Vec<bool>,
     /// Who is told.
@@ -95,6 +109,7 @@ impl<'a> Grading<'a> {
             logs,
             pace,
             places: vec![Place::Nowhere; count],
+            news: vec![0.0; count],
             telling: vec![false; count],
             told: (0..count).map(|_| AtomicBool::new(false)).collect(),
             changed: vec![false; count],
@@ -106,7 +121,7 @@ impl<'a> Grading<'a> {
         loop {
             // Looking at all again at the end makes sure of it, whatever the rounding.
             let waiting = self.violators();
-            let [rounds, updates] = self.settle(waiting);
+            let [rounds, updates] = self.settle(&waiting);
             graded.rounds += rounds;
             graded.updates += updates;
             if updates == 0 {
@@ -117,13 +132,16 @@ impl<'a> Grading<'a> {
         graded
     }
 
-    /// The vertices whose metrics, grown along an edge, are not within the one at its other end.
-    fn violators(&self) -> Vec<u32> {
+    /// The vertices whose metrics, grown along an edge, are not within the one at its other end, and the least size that is news there.
+    fn violators(&self) -> Vec<(u32, f64)> {
         self.team.collect(FEW, self.logs.len(), |range, found| {
-            let violates = |&p: &u32| {
-                self.around.of_vertex(p).iter().any(|&q| self.excess(p, &self.frames[q as usize], q).is_some())
-            };
-            found.extend((range.start as u32..range.end as u32).filter(violates));
+            for p in range.start as u32..range.end as u32 {
+                let least = self.around.of_vertex(p).iter().filter_map(|&q| {
+                    let of_q = &self.frames[q as usize];
+                    self.excess(p, of_q, q).map(|relative| of_q.least_excess(&relative))
+                });
+                found.extend(least.reduce(f64::min).map(|least| (p, least)));
+            }
         })
     }
 
@@ -145,48 +163,56 @@ impl<'a> Grading<'a> {
     }
 
     /// Lets these tell their neighbours, and these theirs, until nothing changes; returns the rounds and the updates.
-    fn settle(&mut self, waiting: Vec<u32>) -> [usize; 2] {
-        let (mut near, mut far) = (Vec::new(), waiting);
-        far.iter().for_each(|&v| self.places[v as usize] = Place::Far);
-        let mut least_root = f64::INFINITY;
+    fn settle(&mut self, waiting: &[(u32, f64)]) -> [usize; 2] {
+        let (mut near, mut far) = (Vec::new(), Vec::with_capacity(waiting.len()));
+        for &(v, news) in waiting {
+            (self.places[v as usize], self.news[v as usize]) = (Place::Far, news);
+            far.push(v);
+        }
+        let mut limit = 0.0;
         let [mut rounds, mut updates] = [0; 2];
         loop {
             if near.is_empty() {
+                // Who was near meanwhile may be in the list twice, or no more be far.
                 far.retain(|&v| self.places[v as usize] == Place::Far);
-                let Some(finest) = self.finest(&far) else { return [rounds, updates] };
-                least_root = finest / CLASS;
-                let is_near = |&v: &u32| self.frames[v as usize].roots[2] >= least_root;
-                near.extend(far.iter().copied().filter(is_near));
-                // Once each: a vertex that was near meanwhile may be in the list twice.
-                near.retain(|&v| std::mem::replace(&mut self.places[v as usize], Place::Near) == Place::Far);
-                far.retain(|v| !is_near(v));
+                let Some(least) = self.least_news(&far) else { return [rounds, updates] };
+                limit = least * CLASS;
+                far.retain(|&v| {
+                    let is_near = self.news[v as usize] <= limit;
+                    if is_near && self.places[v as usize] == Place::Far {
+                        self.places[v as usize] = Place::Near;
+                        near.push(v);
+                    }
+                    !is_near
+                });
             }
             let updated = self.round(&near);
             near.clear();
             rounds += 1;
             updates += updated.len();
-            for (v, log, frame) in updated {
-                let at = v as usize;
+            for Update { vertex, log, frame, news } in updated {
+                let at = vertex as usize;
                 (self.logs[at], self.frames[at], self.changed[at]) = (log, frame, true);
-                let place = if frame.roots[2] >= least_root { Place::Near } else { Place::Far };
+                let before = if self.places[at] == Place::Nowhere { f64::INFINITY } else { self.news[at] };
+                self.news[at] = news.min(before);
+                let place = if self.news[at] <= limit { Place::Near } else { Place::Far };
                 if self.places[at] != place {
                     self.places[at] = place;
-                    if place == Place::Near { near.push(v) } else { far.push(v) }
+                    if place == Place::Near { near.push(vertex) } else { far.push(vertex) }
                 }
             }
         }
     }
 
-    /// Greatest 1/h of these vertices.
-    fn finest(&self, vertices: &[u32]) -> Option<f64> {
-        let roots = |&v: &u32| self.frames[v as usize].roots[2];
-        let parts =
-            self.team.chunks(GRAIN, vertices.len(), |range| vertices[range].iter().map(roots).fold(0.0, f64::max));
-        parts.into_iter().reduce(f64::max)
+    /// The least size that is news at these vertices.
+    fn least_news(&self, vertices: &[u32]) -> Option<f64> {
+        let news = |&v: &u32| self.news[v as usize];
+        let least = |range: Range<usize>| vertices[range].iter().map(news).fold(f64::INFINITY, f64::min);
+        self.team.chunks(GRAIN, vertices.len(), least).into_iter().reduce(f64::min)
     }
 
     /// The new metrics of the neighbours of `tellers`, where they change, in the order of the vertices.
-    fn round(&mut self, tellers: &[u32]) -> Vec<(u32, Sym3, Frame)> {
+    fn round(&mut self, tellers: &[u32]) -> Vec<Update> {
         for &p in tellers {
             self.places[p as usize] = Place::Nowhere;
             self.telling[p as usize] = true;
@@ -206,18 +232,18 @@ impl<'a> Grading<'a> {
     }
 
     /// The intersection of the metric of q with what has grown from its neighbours that tell; none when that is no change.
-    fn updated(&self, q: u32) -> Option<(u32, Sym3, Frame)> {
+    fn updated(&self, q: u32) -> Option<Update> {
         let before = self.frames[q as usize];
-        let (mut now, mut changes) = (before, false);
+        let (mut now, mut news) = (before, f64::INFINITY);
         for &p in self.around.of_vertex(q).iter().filter(|&&p| self.telling[p as usize]) {
             let excess = self.excess(p, &now, q);
-            if let Some(both) = excess.and_then(|relative| now.intersection(&relative, 1.0 + TOLERANCE)) {
-                (now, changes) = (both, true);
+            if let Some((both, least)) = excess.and_then(|relative| now.intersection(&relative, 1.0 + TOLERANCE)) {
+                (now, news) = (both, news.min(least));
             }
         }
-        let log = changes.then(|| now.log())?;
+        let log = (news < f64::INFINITY).then(|| now.log())?;
         // An intersection raises ln det M; what does not is rounding, of sizes too different for their figures.
         let rises = log.trace() - self.logs[q as usize].trace() > 0.5 * TOLERANCE;
-        rises.then(|| (q, log, Frame::of_log(&log)))
+        rises.then(|| Update { vertex: q, log, frame: Frame::of_log(&log), news })
     }
 }

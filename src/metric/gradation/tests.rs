@@ -55,7 +55,7 @@ fn sizes_grow_from_a_fine_vertex() {
     let at = mesh.vertices.iter().position(|&p| p == [0.5, 0.5, 0.75]).unwrap();
     let exact = 1e-3 + 0.25 * RATIO.ln();
     for h in sizes(&logs)[at] {
-        assert!((h / exact - 1.0).abs() < 1e-5, "{h} {exact}");
+        assert!((h / exact - 1.0).abs() < TOLERANCE, "{h} {exact}");
     }
     // Nothing is coarser than before, and what stays does so to the last bit.
     let unchanged = logs.iter().zip(&before).filter(|(a, b)| a == b).count();
@@ -71,7 +71,7 @@ fn a_graded_metric_stays_to_the_last_bit() {
     let (mesh, mut logs) = spot(6, [0.5; 3], layer);
     grade(Team::alone(), &mesh, &mut logs, RATIO);
     assert!(logs.iter().flat_map(|log| log.0).all(f64::is_finite));
-    assert!(excess(&mesh, &logs, RATIO) < 1e-5);
+    assert!(excess(&mesh, &logs, RATIO) < 2.0 * TOLERANCE);
     let once = logs.clone();
     assert_eq!(grade(Team::alone(), &mesh, &mut logs, RATIO), Graded::default());
     assert_eq!(logs, once);
@@ -107,7 +107,7 @@ fn the_growth_that_is_there_is_measured() {
     assert!(fast.greatest > 10.0 && fast.least == 1.0 && fast.median == 1.0, "{fast:?}");
     grade(Team::alone(), &mesh, &mut logs, RATIO);
     let graded = measure(Team::alone(), &mesh, &logs);
-    assert!((graded.greatest / RATIO - 1.0).abs() < 1e-3, "{graded:?}");
+    assert!((graded.greatest / RATIO - 1.0).abs() < 2e-3, "{graded:?}");
     // The ratio that is found is one that leaves all as it is.
     let again = logs.clone();
     assert_eq!(grade(Team::alone(), &mesh, &mut logs, graded.greatest), Graded::default());

@@ -1,0 +1,42 @@
+//! `geo-adapt metric interpolate`.
+use super::common::{self, OutputArgument, RunArguments};
+use crate::cli::Outcome;
+use crate::cli::table::{Table, figure};
+use crate::metric::transfer::{Transferred, transfer};
+use crate::tasks::{Plan, Team};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Arguments of `geo-adapt metric interpolate`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The mesh that has the metric: .mesh or .meshb
+    old_mesh: PathBuf,
+    /// The metric at its vertices: .sol or .solb
+    old_metric: PathBuf,
+    /// The mesh that gets it: .mesh or .meshb
+    new_mesh: PathBuf,
+    #[command(flatten)]
+    to: OutputArgument,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let Arguments { run, to, .. } = arguments;
+    to.check(&[&arguments.old_mesh, &arguments.old_metric, &arguments.new_mesh])?;
+    let pool = run.pool()?;
+    let team = Team::new(&pool, Plan::default());
+    let old = common::mesh(run, &arguments.old_mesh)?;
+    let logs = common::logs(run, team, &arguments.old_metric, old.vertices.len())?;
+    let new = common::mesh(run, &arguments.new_mesh)?;
+    let Transferred { logs, outside, farthest } = transfer(team, &old, &logs, &new.vertices);
+    to.write_logs(team, &logs)?;
+    let mut table = Table::new();
+    table.row("vertices", logs.len());
+    table.row("outside the old mesh", format_args!("{outside}, they get the metric of its nearest point"));
+    table.row("farthest from it", figure(farthest));
+    run.print(table.text());
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,64 @@
+//! `geo-adapt metric intersect`.
+use super::common::{self, OutputArgument, RunArguments};
+use crate::cli::Outcome;
+use crate::cli::table::{Table, figure};
+use crate::metric::{field, intersect_all};
+use crate::tasks::{Plan, Team};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Arguments of `geo-adapt metric intersect`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Two or more metrics of the same mesh: .sol or .solb. The mesh may come first, then complexities are printed
+    #[arg(required = true, value_name = "[MESH] METRIC METRIC", num_args = 2..)]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    to: OutputArgument,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let Arguments { run, to, .. } = arguments;
+    let inputs: Vec<_> = arguments.files.iter().map(PathBuf::as_path).collect();
+    to.check(&inputs)?;
+    let is_mesh = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "mesh" || ending == "meshb");
+    let mesh_path = arguments.files.first().filter(is_mesh);
+    let paths = &arguments.files[usize::from(mesh_path.is_some())..];
+    let [first, others @ ..] = paths else { return Err("give two metrics at least".into()) };
+    if others.is_empty() {
+        return Err(
+            format!("{}: one metric has nothing to be intersected with; give two at least", first.display()).into()
+        );
+    }
+    let pool = run.pool()?;
+    let team = Team::new(&pool, Plan::default());
+    let mesh = mesh_path.map(|path| common::mesh(run, path)).transpose()?;
+    let mut logs = match &mesh {
+        Some(mesh) => common::logs(run, team, first, mesh.vertices.len())?,
+        None => common::all_logs(run, team, first)?,
+    };
+    let mut table = Table::new();
+    table.row("vertices", logs.len());
+    let complexity = |logs: &[_]| {
+        mesh.as_ref().map_or(String::new(), |mesh| {
+            format!(", complexity {}", figure(field::complexity_of_logs(team, mesh, logs)))
+        })
+    };
+    table.row(&first.display().to_string(), format_args!("first{}", complexity(&logs)));
+    for path in others {
+        // Metrics of other numbers of vertices are of another mesh.
+        let other = common::logs(run, team, path, logs.len())?;
+        let own = complexity(&other);
+        let changed = intersect_all(team, &mut logs, &other);
+        table.row(&path.display().to_string(), format_args!("changes {changed} vertices{own}"));
+    }
+    if mesh.is_some() {
+        table.row("intersection", &complexity(&logs)[2..]);
+    }
+    to.write_logs(team, &logs)?;
+    run.print(table.text());
+    Ok(ExitCode::SUCCESS)
+}
