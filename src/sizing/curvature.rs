@@ -126,7 +126,7 @@ impl<'a> Curvature<'a> {
         let middle = 0.5 * (first + last);
         let mut frame = evaluator.edge_frame(edge, t);
         let typical = norm(evaluator.edge_frame(edge, middle).d1);
-        if !(norm(frame.d1) > COLLAPSED * typical) {
+        if norm(frame.d1) <= COLLAPSED * typical || !norm(frame.d1).is_finite() {
             // The curve stands still at its end: a little inside.
             local.is_limit = true;
             frame = evaluator.edge_frame(edge, t + NUDGE * (middle - t));

@@ -10,7 +10,7 @@ use super::tree::{Box3, EMPTY, Tree, box_of, join};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, SurfaceKind, Topology};
 use crate::mesh::TetMesh;
-use crate::mesh::vector::{Vec3, distance, dot, norm, scale, sub, unit};
+use crate::mesh::vector::{Vec3, distance, dot, lerp, norm, scale, sub, unit};
 use crate::metric::Sym3;
 use crate::tasks::Team;
 use serde::Serialize;
@@ -82,6 +82,7 @@ pub struct Near<'a> {
     touch: Touch<'a>,
     sight: Sight<'a>,
     pieces: Tree,
+    boxes: Vec<Box3>,
     owners: Vec<Entity>,
     cells: f64,
     least: f64,
@@ -110,6 +111,7 @@ impl<'a> Near<'a> {
             touch: Touch::new(topology),
             sight: Sight::new(team, mesh),
             pieces: Tree::new(team, &boxes),
+            boxes,
             owners,
             cells,
             least,
@@ -131,7 +133,10 @@ impl<'a> Near<'a> {
         let reach = self.cells / metric.eigen().values[0].sqrt();
         entities.clear();
         self.pieces.each_in(&[at.point.map(|x| x - reach), at.point.map(|x| x + reach)], |piece| {
-            entities.push(self.owners[piece as usize]);
+            let owner = self.owners[piece as usize];
+            if entities.last() != Some(&owner) && may_face(at, local, &self.boxes[piece as usize], owner) {
+                entities.push(owner);
+            }
             true
         });
         entities.sort_unstable();
@@ -208,6 +213,29 @@ impl<'a> Near<'a> {
         };
         beside || here
     }
+}
+
+/// Whether a gap to a point of this box may go across what lies at the place: if not for any piece of an entity, its closest point
+/// need not be looked for.
+fn may_face(at: &Place, local: &Local, piece: &Box3, owner: Entity) -> bool {
+    let middle = sub(lerp(piece[0], piece[1], 0.5), at.point);
+    let (radius, away) = (0.5 * distance(piece[0], piece[1]), norm(middle));
+    if away <= 1.5 * radius {
+        return true;
+    }
+    // Seen from the place the box is within this angle β of its middle.
+    let sine = radius / away;
+    let cosine = (1.0 - sine * sine).sqrt();
+    let along = |axis: Vec3| dot(axis, middle).abs() / away;
+    let beside = match (at.entity, &local.tangents[..]) {
+        // At least 45° − β from the tangent,
+        (Entity::Edge(_), &[tangent, ..]) => along(tangent) <= ALONG * (cosine + sine),
+        _ => true,
+    };
+    // and at most 60° + β from a normal; of an edge that is not asked.
+    let least = ACROSS * cosine - (1.0 - ACROSS * ACROSS).sqrt() * sine;
+    let faces = || local.normals.is_empty() || local.normals.iter().any(|&normal| along(normal) >= least);
+    beside && (owner.dimension() < 2 || faces())
 }
 
 /// What of a direction goes across the edge that a place lies on: near its end the way to another edge leans along it, and sizes along it
