@@ -1,7 +1,7 @@
 //! The sizes that a geometry asks for (METHOD.md §1): the curvature of its faces and edges, and what is thin or near.
 //!
 //! `curvature` makes the tensor of an entity at a point, `estimate` does where the model is a mesh's own surface; `feature` finds the
-//! entities that come near without touching (`touch`), by boxes over samples of the model (`tree`), where nothing stands between
+//! entities that come near without touching (`touch`), by boxes over samples of the model (`pieces`, `tree`), where nothing stands between
 //! (`sight`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together.
 mod coarse;
 mod curvature;
@@ -9,6 +9,7 @@ mod estimate;
 mod feature;
 mod field;
 mod options;
+mod pieces;
 mod sight;
 mod summary;
 mod touch;
