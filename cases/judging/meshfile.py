@@ -90,13 +90,17 @@ def read_mesh(path):
                 on_edges[1], on_faces[1], skipped)
 
 
-def read_metric(path):
-    """Reads a solution with one symmetric tensor a vertex; returns matrices, shape (n, 3, 3)."""
+def read_fields(path):
+    """Reads a solution; returns the kinds of its fields (1 scalar, 2 vector, 3 symmetric tensor) and all values, shape (n, sum)."""
     raw = Path(path).read_bytes()
     if raw[:4] in (b"\1\0\0\0", b"\0\0\0\1"):
-        kinds, values = _binary_solution(path, raw)
-    else:
-        kinds, values = _ascii_solution(path, raw)
+        return _binary_solution(path, raw)
+    return _ascii_solution(path, raw)
+
+
+def read_metric(path):
+    """Reads a solution with one symmetric tensor a vertex; returns matrices, shape (n, 3, 3)."""
+    kinds, values = read_fields(path)
     if kinds != [3]:
         raise FileError(f"{path}: expected one symmetric tensor a vertex (type 3), found types {kinds}")
     # order of the file: 11 12 22 13 23 33
@@ -252,6 +256,12 @@ def write_metric(path, matrices):
     """Writes .solb, version 2, little-endian, one symmetric tensor a vertex."""
     values = matrices.reshape(-1, 9)[:, [0, 1, 4, 2, 5, 8]]
     head = struct.pack("<iii", len(values), 1, 3)
+    _write_blocks(path, [(SOL_AT_VERTICES, head + _pack([(values, "<f8")]))])
+
+
+def write_scalars(path, values):
+    """Writes .solb, version 2, little-endian, `values` of shape (n, k) as k scalars a vertex."""
+    head = struct.pack(f"<ii{values.shape[1]}i", len(values), values.shape[1], *[1] * values.shape[1])
     _write_blocks(path, [(SOL_AT_VERTICES, head + _pack([(values, "<f8")]))])
 
 

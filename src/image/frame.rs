@@ -46,6 +46,11 @@ impl Frame {
         self.inverse.map(|row| dot(row, from))
     }
 
+    /// The gradient in space of each index, 1/length.
+    pub fn gradients(&self) -> [Vec3; 3] {
+        self.inverse
+    }
+
     /// Volume of a voxel.
     pub fn volume(&self) -> f64 {
         dot(self.axes[0], cross(self.axes[1], self.axes[2])).abs()

@@ -15,6 +15,7 @@ mod nrrd;
 mod refine;
 mod rules;
 mod seeds;
+mod smoothed;
 mod store;
 #[cfg(test)]
 mod tests;
@@ -26,3 +27,4 @@ pub use list::Counts;
 pub use nrrd::{Encoding, Image, Kind, read, write};
 pub use refine::mesh;
 pub use rules::{Error, Limits, Wish};
+pub use smoothed::{Smoothed, borders};

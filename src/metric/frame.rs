@@ -38,42 +38,36 @@ impl Frame {
         Sym3::from_eigen(&Eigen { values: self.roots.map(|root| root * root), vectors: self.vectors })
     }
 
-    /// M_q^(-1/2) G M_q^(-1/2) in the frame of self, which is M_q; G has the eigenvectors of `p` and these roots.
+    /// G relative to self, which is M_q; G has the eigenvectors of `p` and these roots.
     #[inline]
-    pub fn relative(&self, p: &Self, roots: [f64; 3]) -> Sym3 {
+    pub fn relative(&self, p: &Self, roots: [f64; 3]) -> Relative {
         let over = self.roots.map(|root| 1.0 / root);
-        let mut sum = Sym3::ZERO;
-        for (root, v) in roots.into_iter().zip(p.vectors) {
-            sum = sum.plus(Sym3::outer([0, 1, 2].map(|j| root * dot(v, self.vectors[j]) * over[j]), 1.0));
-        }
-        sum
+        let row = |i: usize| [0, 1, 2].map(|j| roots[i] * dot(p.vectors[i], self.vectors[j]) * over[j]);
+        Relative([row(0), row(1), row(2)])
     }
 
-    /// M_q ∩ G with N = `relative` of G to self, which is M_q, and the least size that changes; none when no eigenvalue of N is above
-    /// `bound`.
-    pub fn intersection(&self, relative: &Sym3, bound: f64) -> Option<(Self, f64)> {
-        let eigen = relative.eigen_spd();
+    /// M_q ∩ G with G relative to self, which is M_q, and the least size that changes; none when no eigenvalue of N is above `bound`.
+    pub fn intersection(&self, relative: &Relative, bound: f64) -> Option<(Self, f64)> {
+        let eigen = relative.eigen();
         if eigen.values[2] <= bound {
             return None;
         }
+        // M = (K R)ᵀ K R in the frame of self, R its roots and K = I + Σ (√value − 1) u uᵀ over the values above 1.
         let (mut raised, mut least) = (Sym3::IDENTITY, f64::INFINITY);
         for (value, u) in eigen.values.into_iter().zip(eigen.vectors).filter(|(value, _)| *value > 1.0) {
-            raised = raised.plus(Sym3::outer(u, value - 1.0));
+            raised = raised.plus(Sym3::outer(u, value.sqrt() - 1.0));
             least = least.min(self.size_along(value, u));
         }
-        // Graded, not only ill-conditioned: Jacobi's rotations keep the figures of its small eigenvalues.
-        let [a, b, c] = self.roots;
-        let m = raised.0;
-        let both =
-            Sym3([m[0] * a * a, m[1] * a * b, m[2] * b * b, m[3] * a * c, m[4] * b * c, m[5] * c * c]).eigen_spd();
+        let rows = [0, 1, 2].map(|i| [0, 1, 2].map(|j| raised.at(i, j) * self.roots[j]));
+        let both = gram_eigen(rows);
         let [u, v, w] = self.vectors;
         let in_space = |x: Vec3| -> Vec3 { std::array::from_fn(|i| x[0] * u[i] + x[1] * v[i] + x[2] * w[i]) };
         Some((Self { roots: both.values.map(f64::sqrt), vectors: both.vectors.map(in_space) }, least))
     }
 
-    /// The least size that G has where it is finer than self; N = `relative` of G to self.
-    pub fn least_excess(&self, relative: &Sym3) -> f64 {
-        let eigen = relative.eigen_spd();
+    /// The least size that G, relative to self, has where it is finer than self.
+    pub fn least_excess(&self, relative: &Relative) -> f64 {
+        let eigen = relative.eigen();
         let excess = eigen.values.into_iter().zip(eigen.vectors).filter(|(value, _)| *value > 1.0);
         excess.map(|(value, u)| self.size_along(value, u)).fold(f64::INFINITY, f64::min)
     }
@@ -84,6 +78,67 @@ impl Frame {
         let x: Vec3 = std::array::from_fn(|i| u[i] / self.roots[i]);
         (dot(x, x) / value).sqrt()
     }
+}
+
+/// A metric G relative to another, M_q: N = M_q^(-1/2) G M_q^(-1/2) = WᵀW in the frame of M_q, by the rows of W = R_p V_pᵀ V_q R_q⁻¹.
+#[derive(Clone, Copy)]
+pub struct Relative([Vec3; 3]);
+
+/// Up to this trace the eigenvalues of N about 1 are right to 1e-11 when they are taken from N.
+const MODERATE: f64 = 1e5;
+
+impl Relative {
+    /// N.
+    #[inline]
+    pub fn form(&self) -> Sym3 {
+        let [a, b, c] = self.0;
+        Sym3::outer(a, 1.0).plus(Sym3::outer(b, 1.0)).plus(Sym3::outer(c, 1.0))
+    }
+
+    /// Eigenvalues and eigenvectors of N: those about 1 to 1e-10 also where others are 1e12.
+    pub fn eigen(&self) -> Eigen {
+        let form = self.form();
+        if form.trace() < MODERATE { form.eigen_spd() } else { gram_eigen(self.0) }
+    }
+
+    /// Whether all eigenvalues of N are below the bound.
+    #[inline]
+    pub fn is_below(&self, bound: f64) -> bool {
+        self.form().times(-1.0).plus_identity(bound).pivots().into_iter().all(|pivot| pivot > 0.0)
+    }
+}
+
+/// Eigenvalues and eigenvectors of WᵀW from the rows of W, without WᵀW, which would square what is lost: the columns of W are turned
+/// in pairs until they are orthogonal (one-sided Jacobi: Hestenes 1958; its accuracy: Demmel & Veselić 1992).
+fn gram_eigen(rows: [Vec3; 3]) -> Eigen {
+    let mut columns = [0, 1, 2].map(|j| [rows[0][j], rows[1][j], rows[2][j]]);
+    let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for _ in 0..50 {
+        let mut is_turned = false;
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            let (a, b, c) = (dot(columns[p], columns[p]), dot(columns[q], columns[q]), dot(columns[p], columns[q]));
+            if c.abs() <= 1e-16 * (a * b).sqrt() || !c.is_normal() {
+                continue;
+            }
+            is_turned = true;
+            let theta = (b - a) / (2.0 * c);
+            let tangent = 1.0f64.copysign(theta) / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
+            let sine = tangent * cosine;
+            for pair in [&mut columns, &mut vectors] {
+                let (x, y) = (pair[p], pair[q]);
+                pair[p] = std::array::from_fn(|i| cosine * x[i] - sine * y[i]);
+                pair[q] = std::array::from_fn(|i| sine * x[i] + cosine * y[i]);
+            }
+        }
+        if !is_turned {
+            break;
+        }
+    }
+    let values = columns.map(|column| dot(column, column));
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
+    Eigen { values: order.map(|i| values[i]), vectors: order.map(|i| vectors[i]) }
 }
 
 /// What two metrics are to each other.
@@ -100,7 +155,7 @@ pub enum Both {
 /// eigenvalues of M2 are raised to at least 1. One that fits into the other is told as it is, to a share `rounding` of λ.
 pub fn intersect(a: &Frame, b: &Frame, rounding: f64) -> Both {
     let relative = a.relative(b, b.roots);
-    let values = relative.eigen_spd().values;
+    let values = relative.eigen().values;
     if values[2] <= 1.0 + rounding {
         return Both::First;
     }
@@ -108,10 +163,4 @@ pub fn intersect(a: &Frame, b: &Frame, rounding: f64) -> Both {
         return Both::Second;
     }
     a.intersection(&relative, 1.0).map_or(Both::First, |(both, _)| Both::New(both))
-}
-
-/// Whether all eigenvalues are below the bound.
-#[inline]
-pub fn is_below(relative: &Sym3, bound: f64) -> bool {
-    relative.times(-1.0).plus_identity(bound).pivots().into_iter().all(|pivot| pivot > 0.0)
 }

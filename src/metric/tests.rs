@@ -1,6 +1,7 @@
 //! Properties of the tensor algebra over random metrics, to an anisotropy of 1e6.
+use super::frame::Frame;
 use super::random::{rotated, spd};
-use super::{Eigen, Sym3};
+use super::{Eigen, Sym3, field};
 use crate::mesh::vector::dot;
 use proptest::prelude::*;
 
@@ -102,12 +103,54 @@ proptest! {
     #[test]
     fn the_intersection_contains_both(a in spd(STRONGEST), b in spd(STRONGEST), vs in prop::array::uniform8(prop::array::uniform3(-1.0..1.0f64))) {
         let both = a.intersect(&b);
-        prop_assert!(both.0.iter().all(|x| x.is_finite()));
-        let rounding = 1e-9 * (size(&a) + size(&b));
+        prop_assert!(both.is_spd(), "{both:?}");
+        prop_assert_eq!(both, b.intersect(&a));
+        let rounding = 1e-14 * (size(&a) + size(&b));
         for v in vs {
             let greater = a.quadratic(v).max(b.quadratic(v));
-            prop_assert!(both.quadratic(v) >= greater - rounding * dot(v, v), "{} {greater}", both.quadratic(v));
+            prop_assert!(both.quadratic(v) >= greater * (1.0 - 1e-8) - rounding * dot(v, v), "{} {greater}", both.quadratic(v));
         }
+        prop_assert_eq!(a.intersect(&a), a);
+    }
+
+    #[test]
+    fn intersected_logarithms_are_right_to_each_eigenvalue(a in spd(STRONGEST), b in spd(STRONGEST)) {
+        let logs = [a.ln(), b.ln()];
+        let both = logs[0].intersect_logs(&logs[1]);
+        prop_assert!(both.0.iter().all(|x| x.is_finite()));
+        prop_assert_eq!(both, logs[1].intersect_logs(&logs[0]));
+        // In the Loewner order: no eigenvalue of M⁻¹ A, M the intersection, is above 1, and one of A, B reaches it in each direction.
+        let [m, a, b] = [&both, &logs[0], &logs[1]].map(Frame::of_log);
+        let [in_a, in_b] = [&a, &b].map(|one| m.relative(one, one.roots).eigen().values[2]);
+        prop_assert!(in_a <= 1.0 + 1e-8 && in_b <= 1.0 + 1e-8, "{in_a} {in_b}");
+        // det (A ∩ B) is the product of the relative eigenvalues, of those above 1, times det A.
+        let raised: f64 = a.relative(&b, b.roots).eigen().values.iter().map(|x| x.max(1.0).ln()).sum();
+        prop_assert!((both.trace() - logs[0].trace() - raised).abs() < 1e-7, "{} {}", both.trace() - logs[0].trace(), raised);
+        // What is within one already stays to the last bit.
+        let finer = logs[0].plus_identity(0.1);
+        prop_assert_eq!(logs[0].intersect_logs(&finer), finer);
+    }
+
+    #[test]
+    fn log_euclidean_means_commute(a in spd(STRONGEST), b in spd(STRONGEST), weight in 0.0..1.0f64) {
+        let mean = |a: &Sym3, b: &Sym3, weight: f64| a.ln().times(1.0 - weight).plus(b.ln().times(weight));
+        let one = mean(&a, &b, weight);
+        prop_assert!(difference(&one, &mean(&b, &a, 1.0 - weight)) <= 1e-13 * (1.0 + size(&one)));
+        // The volume is the geometric mean of both, and so is the metric for a common frame.
+        let expected = (1.0 - weight) * a.ln().trace() + weight * b.ln().trace();
+        prop_assert!((one.trace() - expected).abs() < 1e-12 * (1.0 + expected.abs()));
+        let m = one.exp();
+        prop_assert!(m.0.iter().all(|x| x.is_finite()) && m.0[0] > 0.0 && m.0[2] > 0.0 && m.0[5] > 0.0);
+    }
+
+    #[test]
+    fn scaling_reaches_its_complexity(metrics in prop::collection::vec(spd(STRONGEST), 8), target in 1e-3..1e9f64) {
+        let mesh = crate::mesh::samples::cube(1);
+        let mut logs: Vec<Sym3> = metrics.iter().map(Sym3::ln).collect();
+        let team = crate::tasks::Team::alone();
+        let factor = field::complexity_factor(field::complexity_of_logs(team, &mesh, &logs), target);
+        logs.iter_mut().for_each(|log| *log = log.plus_identity(factor.ln()));
+        prop_assert!((field::complexity_of_logs(team, &mesh, &logs) / target - 1.0).abs() < 1e-10);
     }
 
     #[test]

@@ -24,6 +24,7 @@ pub fn check(arguments: &Arguments) -> Result<(), String> {
         return Err(format!("{}: is also the mesh's or its metric's file; give another --report", report.display()));
     }
     let inputs = [Some(&arguments.mesh), arguments.cad.as_ref(), arguments.field.metric.as_ref()];
+    let inputs = inputs.into_iter().flatten().chain(&arguments.field.field);
     for written in outputs.into_iter().flatten() {
         let folder = written.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
@@ -32,7 +33,7 @@ pub fn check(arguments: &Arguments) -> Result<(), String> {
         if written.is_dir() {
             return Err(format!("{}: this is a folder; name a file", written.display()));
         }
-        for read in inputs.into_iter().flatten() {
+        for read in inputs.clone() {
             if let (Ok(a), Ok(b)) = (written.canonicalize(), read.canonicalize())
                 && a == b
             {

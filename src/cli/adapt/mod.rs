@@ -1,8 +1,10 @@
 //! `geo-adapt adapt`.
+mod field;
 mod files;
 mod progress;
 mod report;
 
+use super::metric::fields::MultiscaleArguments;
 use super::{Outcome, load};
 use crate::adapt::{self, Criterion, Options, PointCreation, Scheduler};
 use crate::geometry::classify::{self, Classification};
@@ -10,7 +12,8 @@ use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
 use crate::geometry::{Discrete, Model};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, io};
-use crate::metric::{Analytic, Background, Field, Source, field};
+use crate::metric::Source;
+use crate::metric::field::complexity_factor;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
 use progress::Progress;
 use std::path::PathBuf;
@@ -26,6 +29,7 @@ const GREATEST_COMPLEXITY: f64 = 2e8;
 
 /// Arguments of `geo-adapt adapt`.
 #[derive(clap::Args)]
+#[command(defer(field::only_with_field))]
 pub struct Arguments {
     /// The mesh: .mesh or .meshb
     mesh: PathBuf,
@@ -36,7 +40,7 @@ pub struct Arguments {
     #[arg(long, value_name = "MODEL")]
     cad: Option<PathBuf>,
     #[command(flatten)]
-    field: FieldArguments,
+    field: field::FieldArguments,
     /// Scale the metric to this complexity: about half the number of vertices
     #[arg(long, value_name = "C", value_parser = super::positive, allow_negative_numbers = true)]
     complexity: Option<f64>,
@@ -70,18 +74,8 @@ pub struct Arguments {
     /// No progress and no table; errors only
     #[arg(short, long)]
     quiet: bool,
-}
-
-/// The metric: exactly one of the two.
-#[derive(clap::Args)]
-#[group(required = true, multiple = false)]
-struct FieldArguments {
-    /// The metric at the vertices of the mesh: .sol or .solb
-    #[arg(long, value_name = "FILE")]
-    metric: Option<PathBuf>,
-    /// An analytic metric: linear, polar-1 or polar-2
-    #[arg(long, value_name = "NAME")]
-    analytic: Option<Analytic>,
+    #[command(flatten, next_help_heading = "The metric of --field")]
+    multiscale: MultiscaleArguments,
 }
 
 /// Runs the subcommand.
@@ -104,11 +98,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
     }
     let mesh = Arc::new(read.content);
-    let mut source = source(team, arguments, &mesh, faces, &mut read.notices)?;
+    let (mut source, made) = field::source(team, arguments, &mesh, faces, &mut read.notices)?;
     stage("metric ready");
     let (model, place) = place(team, arguments, &mesh, &mut read.notices)?;
     stage("classified");
-    scale(team, arguments, &mesh, &mut source)?;
+    scale(team, arguments, &mesh, &mut source, made.is_some())?;
     stage("complexity");
     let progress = Progress::new(!arguments.quiet, stop);
     for notice in read.notices.iter().filter(|_| !arguments.quiet) {
@@ -121,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         .map_err(|error| format!("{}: {error}", arguments.mesh.display()))?;
     progress.finish();
     let finished = start.elapsed();
-    let report = report::Report::new(team, arguments, &mesh, &model, adapted, threads);
+    let report = report::Report::new(team, arguments, &mesh, &model, adapted, (threads, made));
     stage("report");
     let report = files::write(arguments, report, [prepared, finished, start.elapsed()])?;
     stage("written");
@@ -131,34 +125,20 @@ pub fn run(arguments: &Arguments) -> Outcome {
     Ok(if progress.interrupted() { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
 }
 
-/// The metric's source: the analytic field, or the input mesh with the file's metric as background.
-fn source(
+/// Scales the source to the complexity that is asked for, which one that was made for it has; and refuses one that no mesh can have.
+fn scale(
     team: Team<'_>,
     arguments: &Arguments,
-    mesh: &Arc<TetMesh>,
-    faces: MatchedFaces,
-    notices: &mut Vec<String>,
-) -> Result<Source, Box<dyn std::error::Error>> {
-    if let Some(field) = arguments.field.analytic {
-        return Ok(Source::Analytic { field, log_scale: 0.0 });
-    }
-    let path = arguments.field.metric.as_ref().ok_or("neither --metric nor --analytic")?;
-    let read = Field::read_logs(team, path, mesh.vertices.len())?;
-    notices.extend(read.notices);
-    if mesh.tets.is_empty() {
-        return Err(format!("{}: {}", arguments.mesh.display(), adapt::Error::Empty).into());
-    }
-    Ok(Source::Background(Background::on(team, Arc::clone(mesh), faces, read.content)))
-}
-
-/// Scales the source to the complexity that is asked for, and refuses one that no mesh can have.
-fn scale(team: Team<'_>, arguments: &Arguments, mesh: &TetMesh, source: &mut Source) -> Result<(), String> {
+    mesh: &TetMesh,
+    source: &mut Source,
+    is_made: bool,
+) -> Result<(), String> {
     if arguments.complexity.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
         return Ok(());
     }
     let own = source.complexity(team, mesh);
-    if let Some(target) = arguments.complexity {
-        source.scale(team, field::complexity_factor(own, target).ln());
+    if let Some(target) = arguments.complexity.filter(|_| !is_made) {
+        source.scale(team, complexity_factor(own, target).ln());
     }
     let complexity = arguments.complexity.unwrap_or(own);
     if complexity <= GREATEST_COMPLEXITY {

@@ -1,6 +1,7 @@
 //! What was done: the table on the terminal and the JSON.
 use super::{Arguments, files};
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
+use crate::cli::metric::fields::Made;
 use crate::cli::table::Table;
 use crate::geometry::Model;
 #[cfg(feature = "occt")]
@@ -42,6 +43,9 @@ pub struct Report {
     output: std::path::PathBuf,
     threads: usize,
     complexity_wanted: Option<f64>,
+    /// How the metric was made, with --field.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    multiscale: Option<Made>,
     input_vertices: usize,
     input_tets: usize,
     statistics: Statistics,
@@ -66,7 +70,7 @@ impl Report {
         input: &TetMesh,
         model: &Model,
         adapted: Adapted,
-        threads: usize,
+        (threads, multiscale): (usize, Option<Made>),
     ) -> Self {
         let extracted = adapted.extracted;
         let mut mesh = extracted.mesh;
@@ -84,6 +88,7 @@ impl Report {
             output: arguments.output.clone(),
             threads,
             complexity_wanted: arguments.complexity,
+            multiscale,
             input_vertices: input.vertices.len(),
             input_tets: input.tets.len(),
             statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
@@ -100,6 +105,9 @@ impl Report {
     pub fn text(&self, arguments: &Arguments) -> String {
         let mut table = Table::new();
         table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
+        if let Some(made) = &self.multiscale {
+            made.rows(&mut table);
+        }
         table.statistics(&self.statistics);
         table.fidelity(&self.fidelity);
         if self.off_model > 0 {

@@ -3,6 +3,7 @@
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
 use crate::mesh::TetMesh;
 use crate::mesh::io::{self, Read, read_mesh};
+use crate::mesh::vector::distance;
 use crate::metric::{Field, Limits, Sym3, field};
 use crate::tasks::{GRAIN, Pool, Team};
 use std::path::{Path, PathBuf};
@@ -184,6 +185,14 @@ pub fn complexity(team: Team<'_>, path: &Path, mesh: &TetMesh, logs: &[Sym3]) ->
         "{}: the complexity there is {complexity}; are all tetrahedra positive? (geo-adapt inspect tells)",
         path.display()
     ))
+}
+
+/// The diagonal of the box around the vertices.
+pub fn diameter(mesh: &TetMesh) -> f64 {
+    let corner = |f: fn(f64, f64) -> f64| {
+        mesh.vertices.iter().copied().reduce(|a, b| std::array::from_fn(|i| f(a[i], b[i]))).unwrap_or_default()
+    };
+    distance(corner(f64::min), corner(f64::max))
 }
 
 /// Writes JSON beside, then renames.

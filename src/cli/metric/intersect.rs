@@ -11,7 +11,7 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Two or more metrics of the same mesh: .sol or .solb. The mesh may come first, then complexities are printed
-    #[arg(required = true, value_name = "[MESH] METRIC METRIC", num_args = 2..)]
+    #[arg(required = true, value_name = "[MESH] METRIC METRIC", num_args = 1..)]
     files: Vec<PathBuf>,
     #[command(flatten)]
     to: OutputArgument,

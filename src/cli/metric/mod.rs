@@ -1,5 +1,7 @@
 //! `geo-adapt metric`: metric fields made, combined and measured; one file a subcommand.
 mod common;
+pub(super) mod fields;
+mod from_image;
 mod from_points;
 mod geometry;
 mod grade;
@@ -7,6 +9,7 @@ mod implied;
 mod interpolate;
 mod intersect;
 mod limit;
+mod multiscale;
 mod scale;
 mod show;
 
@@ -22,6 +25,8 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// The metric of an image: fine where its values bend, or at borders between labels
+    FromImage(from_image::Arguments),
     /// The metric of a cloud of points: the ellipsoid about each vertex that holds its nearest points
     FromPoints(from_points::Arguments),
     /// Make the metric that the geometry asks for: curvature, thin parts, gaps
@@ -36,6 +41,8 @@ enum Command {
     Intersect(intersect::Arguments),
     /// Bound sizes and their ratios
     Limit(limit::Arguments),
+    /// Make the metric that resolves a field best for its complexity: L^p multiscale
+    Multiscale(multiscale::Arguments),
     /// Scale a metric to a complexity: about half the number of vertices
     Scale(scale::Arguments),
     /// Measure a metric: complexity, sizes, aspect ratios, how fast sizes grow
@@ -45,6 +52,7 @@ enum Command {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     match &arguments.command {
+        Command::FromImage(arguments) => from_image::run(arguments),
         Command::FromPoints(arguments) => from_points::run(arguments),
         Command::Geometry(arguments) => geometry::run(arguments),
         Command::Grade(arguments) => grade::run(arguments),
@@ -52,6 +60,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Command::Interpolate(arguments) => interpolate::run(arguments),
         Command::Intersect(arguments) => intersect::run(arguments),
         Command::Limit(arguments) => limit::run(arguments),
+        Command::Multiscale(arguments) => multiscale::run(arguments),
         Command::Scale(arguments) => scale::run(arguments),
         Command::Show(arguments) => show::run(arguments),
     }

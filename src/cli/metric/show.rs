@@ -55,22 +55,28 @@ fn describe(shown: &Shown) -> String {
     table.row("vertices", summary.vertices);
     table.row("complexity", figure(summary.complexity));
     table.row("complexity, interpolated", figure(summary.complexity_between));
+    rows(&mut table, summary, Some(gradation));
+    table.text().into()
+}
+
+/// Percentiles of sizes and their ratios, and of growth if that was measured: a row each, below a head.
+pub fn rows(table: &mut Table, summary: &Summary, gradation: Option<&Growths>) {
     table.line(&format!(
         "{:<26} {}",
         "",
         row(["least", "1 %", "10 %", "50 %", "90 %", "99 %", "greatest"].map(String::from))
     ));
     let rows = [
-        ("least size", &summary.least_size),
-        ("greatest size", &summary.greatest_size),
-        ("aspect ratio", &summary.aspect_ratio),
-        ("anisotropic quotient", &summary.anisotropic_quotient),
+        ("least size", Some(&summary.least_size)),
+        ("greatest size", Some(&summary.greatest_size)),
+        ("aspect ratio", Some(&summary.aspect_ratio)),
+        ("anisotropic quotient", Some(&summary.anisotropic_quotient)),
         ("gradation, by edge", gradation),
     ];
-    for (name, Percentiles { least, p1, p10, median, p90, p99, greatest }) in rows {
-        table.row(name, row([least, p1, p10, median, p90, p99, greatest].map(|&x| figure(x))));
+    for (name, found) in rows {
+        let Some(&Percentiles { least, p1, p10, median, p90, p99, greatest }) = found else { continue };
+        table.row(name, row([least, p1, p10, median, p90, p99, greatest].map(figure)));
     }
-    table.text().into()
 }
 
 fn row(cells: [String; 7]) -> String {

@@ -1,6 +1,6 @@
 //! The gradation that a metric has: the ratio r that each edge would need.
 use super::super::Sym3;
-use super::super::frame::{Frame, is_below};
+use super::super::frame::Frame;
 use super::super::summary::Percentiles;
 use super::TOLERANCE;
 use crate::mesh::TetMesh;
@@ -27,7 +27,7 @@ pub fn measure(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Growths {
     let is_graded = |[p, q]: [u32; 2], pace: f64| {
         let e = sub(mesh.vertices[q as usize], mesh.vertices[p as usize]);
         let [of_p, of_q] = [p, q].map(|v| &frames[v as usize]);
-        let within = |from: &Frame, to: &Frame| is_below(&to.relative(from, from.grown(e, pace)), 1.0 + TOLERANCE);
+        let within = |from: &Frame, to: &Frame| to.relative(from, from.grown(e, pace)).is_below(1.0 + TOLERANCE);
         within(of_p, of_q) && within(of_q, of_p)
     };
     let step = edges.len().div_ceil(SAMPLES).max(1);

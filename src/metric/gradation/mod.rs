@@ -13,7 +13,7 @@ mod measure;
 mod tests;
 
 use super::Sym3;
-use super::frame::{Frame, is_below};
+use super::frame::{Frame, Relative};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, sub};
 use crate::mesh::vertex_neighbours::VertexNeighbours;
@@ -147,7 +147,7 @@ impl<'a> Grading<'a> {
 
     /// The metric of p grown to q, relative to that of q, `of_q`; none when it is within that.
     #[inline]
-    fn excess(&self, p: u32, of_q: &Frame, q: u32) -> Option<Sym3> {
+    fn excess(&self, p: u32, of_q: &Frame, q: u32) -> Option<Relative> {
         let of_p = &self.frames[p as usize];
         // What is nowhere finer cannot ask for anything.
         if of_p.roots[2] <= of_q.roots[0] {
@@ -159,7 +159,7 @@ impl<'a> Grading<'a> {
             return None;
         }
         let relative = of_q.relative(of_p, grown);
-        (!is_below(&relative, 1.0 + TOLERANCE)).then_some(relative)
+        (!relative.is_below(1.0 + TOLERANCE)).then_some(relative)
     }
 
     /// Lets these tell their neighbours, and these theirs, until nothing changes; returns the rounds and the updates.

@@ -1,0 +1,203 @@
+//! Reading the fields that a metric is made from, and the options of the multiscale metric; `adapt --field` has them too.
+use super::common::{Failure, GradationArgument, LimitArguments};
+use crate::mesh::TetMesh;
+use crate::mesh::io::{FieldKind, Read, Solution, SolutionField, read_solution};
+use crate::metric::Sym3;
+use crate::metric::multiscale::{self, Measure, Norm, Options, Summary, multiscale};
+use crate::metric::recovery::Recovery;
+use crate::tasks::Team;
+use clap::ValueEnum;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// How several files become one metric.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Combine {
+    /// They are steps in time of the same fields: the Hessians |H| of each are averaged
+    #[default]
+    Average,
+    /// They are fields of their own: the metrics of all are intersected
+    Intersect,
+}
+
+/// The options of the multiscale metric.
+#[derive(clap::Args)]
+pub struct MultiscaleArguments {
+    /// The p of the L^p norm of the interpolation error: 1, 2, 4, any number from 1 on, or inf
+    #[arg(long, value_name = "P", default_value_t = Norm::default(), allow_negative_numbers = true)]
+    norm: Norm,
+    /// How second derivatives are recovered
+    #[arg(long, value_enum, default_value_t = Recovery::default())]
+    hessian: Recovery,
+    /// Use only value K of each vertex, from 1 (of a vector its component, of several fields counted through them all)
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
+    component: Option<u32>,
+    /// What several FIELD files are (the scalars within a file are intersected in any case)
+    #[arg(long, value_enum, default_value_t = Combine::default())]
+    combine: Combine,
+    #[command(flatten)]
+    gradation: GradationArgument,
+    #[command(flatten)]
+    limits: LimitArguments,
+}
+
+/// The long names of the options, as [`MultiscaleArguments`] has them.
+pub const OPTIONS: [&str; 8] = ["norm", "hessian", "component", "combine", "gradation", "hmin", "hmax", "aspect_ratio"];
+
+/// The metric that was made, for tables and JSON.
+#[derive(Serialize)]
+pub struct Made {
+    fields: Vec<PathBuf>,
+    sensors: usize,
+    steps: usize,
+    combine: Combine,
+    component: Option<u32>,
+    hessian: Recovery,
+    norm: Norm,
+    gradation: Option<f64>,
+    complexity_wanted: f64,
+    #[serde(flatten)]
+    summary: Summary,
+}
+
+impl MultiscaleArguments {
+    /// ln M at the vertices of the mesh, shape (n,), made from the fields of these files, and what was done. Notices are added.
+    pub fn make(
+        &self,
+        team: Team<'_>,
+        mesh: &TetMesh,
+        paths: &[PathBuf],
+        (complexity, measure): (f64, Measure),
+        notices: &mut Vec<String>,
+    ) -> Result<(Vec<Sym3>, Made), Failure> {
+        let limits = self.limits.limits()?;
+        let mut files = Vec::new();
+        for path in paths {
+            let Read { content, notices: found } = read_solution(path)?;
+            notices.extend(found);
+            files.push(self.scalars(path, content, mesh.vertices.len())?);
+        }
+        let (sensors, names) = self.sensors(paths, &files)?;
+        let (norm, recovery, gradation) = (self.norm, self.hessian, self.gradation.ratio());
+        let options = Options { complexity, measure, recovery, norm, gradation, limits };
+        let (logs, summary) = multiscale(team, mesh, &sensors, &options).map_err(|error| match error {
+            multiscale::Error::Flat { sensor } | multiscale::Error::NotFinite { sensor, .. } => {
+                format!("{}: {error}", names[sensor])
+            }
+            _ => error.to_string(),
+        })?;
+        let made = Made {
+            fields: paths.to_vec(),
+            sensors: sensors.len(),
+            steps: sensors.first().map_or(0, Vec::len),
+            combine: self.combine,
+            component: self.component,
+            hessian: recovery,
+            norm,
+            gradation,
+            complexity_wanted: complexity,
+            summary,
+        };
+        Ok((logs, made))
+    }
+
+    /// The scalars of a file, each with a value a vertex.
+    fn scalars(&self, path: &Path, solution: Solution, vertices: usize) -> Result<Vec<Vec<f64>>, String> {
+        let name = path.display();
+        if solution.vertices != vertices {
+            let found = solution.vertices;
+            return Err(format!(
+                "{name}: values at {found} vertices, but the mesh has {vertices}: give a field of this mesh"
+            ));
+        }
+        let count: usize = solution.fields.iter().map(|field| field.kind.values()).sum();
+        if let Some(component) = self.component {
+            let mut before = component as usize - 1;
+            for SolutionField { kind, values } in &solution.fields {
+                if before < kind.values() {
+                    return Ok(vec![values.iter().skip(before).step_by(kind.values()).copied().collect()]);
+                }
+                before -= kind.values();
+            }
+            return Err(format!("{name}: {count} values a vertex, but --component is {component}; give 1 to {count}"));
+        }
+        if count == 0 {
+            return Err(format!("{name}: no field at the vertices; give a file with a scalar field"));
+        }
+        if solution.fields.iter().any(|field| field.kind != FieldKind::Scalar) {
+            let remedy =
+                format!("choose one of the {count} values a vertex by --component 1 to {count}, such as a vector's x");
+            return Err(format!("{name}: not all fields are scalars (libMeshb type 1); {remedy}"));
+        }
+        Ok(solution.fields.into_iter().map(|field| field.values).collect())
+    }
+
+    /// The scalars as sensors with their steps, and what each is called in errors.
+    #[allow(clippy::type_complexity)]
+    fn sensors<'f>(
+        &self,
+        paths: &[PathBuf],
+        files: &'f [Vec<Vec<f64>>],
+    ) -> Result<(Vec<Vec<&'f [f64]>>, Vec<String>), String> {
+        let field = |path: &Path, number: usize, of: usize| match of {
+            1 => path.display().to_string(),
+            _ => format!("{}: field {}", path.display(), number + 1),
+        };
+        let (Some(first), Some(path)) = (files.first(), paths.first()) else { return Err("no field is given".into()) };
+        if self.combine == Combine::Intersect {
+            let sensors = files.iter().flatten().map(|values| vec![values.as_slice()]).collect();
+            let names = paths.iter().zip(files).flat_map(|(path, scalars)| {
+                (0..scalars.len()).map(|number| field(path, number, scalars.len())).collect::<Vec<_>>()
+            });
+            return Ok((sensors, names.collect()));
+        }
+        if let Some((other, scalars)) = paths.iter().zip(files).find(|(_, scalars)| scalars.len() != first.len()) {
+            let (here, there) = (scalars.len(), first.len());
+            return Err(format!(
+                "{}: {here} fields, but {} has {there}: steps in time have the same fields; files of different fields go with \
+                 --combine intersect",
+                other.display(),
+                path.display()
+            ));
+        }
+        let sensors = (0..first.len()).map(|k| files.iter().map(|scalars| scalars[k].as_slice()).collect()).collect();
+        let more = if paths.len() > 1 { format!(" and the {} other steps", paths.len() - 1) } else { String::new() };
+        Ok((sensors, (0..first.len()).map(|k| field(path, k, first.len()) + &more).collect()))
+    }
+}
+
+impl Made {
+    /// Rows of a table that tell what was done.
+    pub fn rows(&self, table: &mut crate::cli::table::Table) {
+        use crate::cli::table::figure;
+        let Summary { complexity_before_gradation, complexity, limited, unfitted, rounds } = self.summary;
+        let fields = match (self.sensors, self.steps) {
+            (1, 1) => String::new(),
+            (sensors, 1) => format!(" ({sensors} scalars, metrics intersected)"),
+            (1, steps) => format!(" ({steps} steps, |H| averaged)"),
+            (sensors, steps) => format!(" ({sensors} scalars, metrics intersected, of {steps} steps, |H| averaged)"),
+        };
+        let names: Vec<_> = self.fields.iter().map(|path| path.display().to_string()).collect();
+        table.row("field", format_args!("{}{fields}", names.join(", ")));
+        table.row("hessian", self.hessian.name());
+        if unfitted > 0 {
+            table.row("hessian of neighbours", format_args!("{unfitted} vertices: too few points around them"));
+        }
+        table.row("norm", format_args!("L^{}", self.norm));
+        match self.gradation {
+            Some(ratio) => table.row("gradation", figure(ratio)),
+            None => table.row("gradation", "off"),
+        }
+        table.row("limited", format_args!("{limited} vertices"));
+        table.row("complexity wanted", figure(self.complexity_wanted));
+        table.row(
+            "complexity reached",
+            format_args!(
+                "{} ({} before gradation; {rounds} rounds)",
+                figure(complexity),
+                figure(complexity_before_gradation)
+            ),
+        );
+    }
+}

@@ -1,0 +1,81 @@
+//! `geo-adapt metric multiscale`.
+use super::common::{self, OutputArgument, RunArguments};
+use super::fields::MultiscaleArguments;
+use crate::cli::Outcome;
+use crate::cli::table::Table;
+use crate::metric::multiscale::Measure;
+use crate::metric::summary::Summary;
+use crate::tasks::{Plan, Team, stage};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Arguments of `geo-adapt metric multiscale`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The mesh: .mesh or .meshb
+    mesh: PathBuf,
+    /// The field at its vertices: .sol or .solb. Several files are steps in time, several scalars in a file count alike
+    #[arg(required = true, value_name = "FIELD")]
+    fields: Vec<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgument,
+    /// The complexity of the metric, after limits and gradation: about half the number of vertices
+    #[arg(long, value_name = "C", value_parser = crate::cli::positive, allow_negative_numbers = true)]
+    complexity: f64,
+    #[command(flatten)]
+    multiscale: MultiscaleArguments,
+    /// Write what was done as JSON
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+/// What is written as JSON.
+#[derive(Serialize)]
+struct Report<'a> {
+    version: &'static str,
+    mesh: &'a Path,
+    output: &'a Path,
+    multiscale: super::fields::Made,
+    metric: Summary,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let inputs: Vec<&Path> = std::iter::once(&arguments.mesh).chain(&arguments.fields).map(PathBuf::as_path).collect();
+    arguments.output.check(&inputs)?;
+    if let Some(report) = &arguments.report {
+        common::check_output(report, &["json"], &inputs)?;
+    }
+    let pool = arguments.run.pool()?;
+    let team = Team::new(&pool, Plan::default());
+    stage("start");
+    let mesh = common::mesh(&arguments.run, &arguments.mesh)?;
+    stage("mesh read");
+    let (mut notices, wanted) = (Vec::new(), (arguments.complexity, Measure::AtVertices));
+    let (logs, made) = arguments.multiscale.make(team, &mesh, &arguments.fields, wanted, &mut notices)?;
+    arguments.run.note(&notices);
+    arguments.output.write_logs(team, &logs)?;
+    stage("written");
+    if arguments.report.is_none() && arguments.run.quiet {
+        return Ok(ExitCode::SUCCESS);
+    }
+    let report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        mesh: &arguments.mesh,
+        output: &arguments.output.output,
+        multiscale: made,
+        metric: Summary::of(team, &mesh, &logs),
+    };
+    if let Some(path) = &arguments.report {
+        common::write_json(path, &report)?;
+    }
+    let mut table = Table::new();
+    report.multiscale.rows(&mut table);
+    super::show::rows(&mut table, &report.metric, None);
+    table.row("written", arguments.output.output.display());
+    arguments.run.print(table.text());
+    Ok(ExitCode::SUCCESS)
+}

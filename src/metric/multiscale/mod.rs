@@ -1,0 +1,240 @@
+//! The multiscale metric: from fields at the vertices to the metric whose mesh has the least interpolation error in an L^p norm for its
+//! number of vertices (METHOD.md §1; Loseille & Alauzet 2011).
+//!
+//! Fields → Hessians ([`Recovery`]) → |H|, meant over the steps of a sensor → L^p metric of each sensor at the complexity wanted → their
+//! intersection → limits, gradation, and the scale with which the complexity is met after these.
+//!
+//! Several sensors are intersected at the same complexity each: so every one has the sizes that it alone would have, up to a factor
+//! that is the same for all, and units do not count. Steps in time of one sensor are not: their |H| are averaged, which makes the
+//! error over the whole time least (Alauzet, Belme, Loseille: fixed-point iteration), for one mesh at all steps.
+mod norm;
+mod optimal;
+mod reach;
+mod sensor;
+#[cfg(test)]
+mod tests;
+
+pub use norm::Norm;
+
+use super::gradation;
+use super::recovery::{Recovery, Rings};
+use super::{Limits, Sym3, field};
+use crate::mesh::TetMesh;
+use crate::mesh::vector::{Vec3, distance};
+use crate::tasks::{GRAIN, Team, stage};
+use optimal::Spectrum;
+pub use reach::Unreachable;
+pub(super) use reach::reach;
+use reach::reach_nearly;
+use serde::Serialize;
+
+/// Logarithm of the scale with which a metric of the complexity wanted has it after gradation too, as a first guess.
+const USUAL_SCALE: f64 = -0.27;
+
+/// Which metric is made.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// The complexity C that is met, to 1 %, with limits and gradation.
+    pub complexity: f64,
+    /// How C is measured from ln M at the vertices.
+    pub measure: Measure,
+    /// How Hessians are recovered.
+    pub recovery: Recovery,
+    /// The norm of the error.
+    pub norm: Norm,
+    /// Greatest growth of sizes, above 1; none for no gradation.
+    pub gradation: Option<f64>,
+    /// Bounds of the sizes; none is ever above the diameter of the mesh's box.
+    pub limits: Limits,
+}
+
+/// How the complexity is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// Σ_v √det(M_v)·V_v, as metrics are compared.
+    #[default]
+    AtVertices,
+    /// ∫ √det M of the interpolant, which tells the vertices of the mesh to come also where this mesh does not resolve its metric.
+    Between,
+}
+
+impl Measure {
+    fn of(self, team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 {
+        match self {
+            Self::AtVertices => field::complexity_of_logs(team, mesh, logs),
+            Self::Between => field::complexity_between(team, mesh, logs),
+        }
+    }
+}
+
+/// What was done.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Complexity before gradation at the scale that was found.
+    pub complexity_before_gradation: f64,
+    /// Complexity that was reached.
+    pub complexity: f64,
+    /// Vertices whose sizes the limits changed, before gradation.
+    pub limited: usize,
+    /// Vertices with the Hessian of their neighbours, since the points around them do not tell one.
+    pub unfitted: usize,
+    /// How often the metric was scaled, limited and graded.
+    pub rounds: u32,
+}
+
+/// Why there is no metric. Sensors, steps and vertices count from 0.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// There is no sensor, or one without a step.
+    #[error("no field is given")]
+    Nothing,
+    /// The second derivatives of a sensor are rounding.
+    #[error(
+        "the field is constant or linear to rounding: it has no second derivatives, so that no size follows from it; give another field"
+    )]
+    Flat {
+        /// The sensor.
+        sensor: usize,
+    },
+    /// A value is NaN or infinite.
+    #[error("the value of vertex {} is not a finite number", vertex + 1)]
+    NotFinite {
+        /// The sensor.
+        sensor: usize,
+        /// The step.
+        step: usize,
+        /// The vertex.
+        vertex: usize,
+    },
+    /// The limits do not let the complexity come near.
+    #[error(
+        "a complexity of {target} cannot be reached: with these limits the nearest is {nearest:.4e}; give another --complexity, or \
+         change --hmin, --hmax or --aspect-ratio (no size is above the diameter of the mesh's box)"
+    )]
+    Unreachable {
+        /// The complexity wanted.
+        target: f64,
+        /// The nearest one.
+        nearest: f64,
+    },
+}
+
+/// ln M at the vertices, shape (n,), of the multiscale metric of some sensors. Each has one field, shape (n,), for each step in time, mostly one.
+///
+/// # Panics
+/// When a field has not one value a vertex.
+pub fn multiscale(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    sensors: &[Vec<&[f64]>],
+    options: &Options,
+) -> Result<(Vec<Sym3>, Summary), Error> {
+    if sensors.is_empty() || sensors.iter().any(Vec::is_empty) {
+        return Err(Error::Nothing);
+    }
+    let diameter = diameter(team, mesh);
+    let hmax = options.limits.hmax.unwrap_or(diameter).min(diameter);
+    let limits = Limits { hmax: Some(hmax), ..options.limits };
+    let rings = Rings::of(team, mesh);
+    stage("rings");
+    let (mut raw, mut unfitted) = (Vec::new(), 0);
+    for (number, steps) in sensors.iter().enumerate() {
+        let found = sensor::absolute(team, mesh, &rings, options.recovery, (number, steps), diameter)?;
+        unfitted = unfitted.max(found.unfitted);
+        stage("hessians");
+        let logs = optimal_logs(team, mesh, &found, options, hmax)?;
+        stage("optimal");
+        if raw.is_empty() {
+            raw = logs;
+        } else {
+            team.fill(GRAIN, &mut raw, |start, raw| {
+                raw.iter_mut()
+                    .zip(&logs[start..])
+                    .for_each(|(log, other)| *log = log.exp().intersect(&other.exp()).ln());
+            });
+        }
+    }
+    drop(rings);
+    let (logs, summary) = bounded(team, mesh, &raw, &limits, options)?;
+    Ok((logs, Summary { unfitted, ..summary }))
+}
+
+/// The metric within limits and graded, at the scale at which it has the complexity wanted.
+///
+/// Gradation costs most of all. So a metric whose complexity is a little too small is taken, and scaled up afterwards: smaller sizes may grow
+/// faster, so that it stays graded.
+fn bounded(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    raw: &[Sym3],
+    limits: &Limits,
+    options: &Options,
+) -> Result<(Vec<Sym3>, Summary), Error> {
+    let target = options.complexity;
+    let mut logs = Vec::new();
+    let mut summary = Summary { complexity_before_gradation: 0.0, complexity: 0.0, limited: 0, unfitted: 0, rounds: 0 };
+    let mut at = |scale: f64, gradation: Option<f64>| {
+        logs = team.map(GRAIN, raw.len(), |v| raw[v].plus_identity(scale));
+        summary.limited = limits.apply(team, &mut logs);
+        summary.complexity_before_gradation = options.measure.of(team, mesh, &logs);
+        summary.complexity = match gradation {
+            None => summary.complexity_before_gradation,
+            Some(ratio) => {
+                gradation::grade(team, mesh, &mut logs, ratio);
+                stage("graded");
+                options.measure.of(team, mesh, &logs)
+            }
+        };
+        summary.complexity
+    };
+    let reached = match options.gradation {
+        None => reach(target, |scale| at(scale, None)),
+        Some(_) => reach_nearly(target, USUAL_SCALE, |scale| at(scale, options.gradation)),
+    };
+    let (_, rounds) = reached.map_err(|Unreachable { nearest }| Error::Unreachable { target, nearest })?;
+    summary.rounds = rounds;
+    if options.gradation.is_some() {
+        let graded = std::mem::take(&mut logs);
+        let lifted = reach(target, |scale| {
+            logs = team.map(GRAIN, graded.len(), |v| graded[v].plus_identity(scale));
+            limits.apply(team, &mut logs);
+            summary.complexity = options.measure.of(team, mesh, &logs);
+            summary.complexity
+        });
+        lifted.map_err(|Unreachable { nearest }| Error::Unreachable { target, nearest })?;
+    }
+    Ok((logs, summary))
+}
+
+/// ln M of the optimal metric of a sensor at the complexity wanted, without other bounds than `hmax`.
+fn optimal_logs(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    found: &sensor::Absolute,
+    options: &Options,
+    hmax: f64,
+) -> Result<Vec<Sym3>, Error> {
+    let spectra = team.map(GRAIN, found.hessians.len(), |v| Spectrum::of(&found.hessians[v], found.floor));
+    let mut logs = Vec::new();
+    // Without sizes at their bound the second round is right.
+    let reached = reach(options.complexity, |scale| {
+        logs = team.map(GRAIN, spectra.len(), |v| spectra[v].log_metric(options.norm, scale, hmax));
+        options.measure.of(team, mesh, &logs)
+    });
+    reached.map_err(|Unreachable { nearest }| Error::Unreachable { target: options.complexity, nearest })?;
+    Ok(logs)
+}
+
+/// The diagonal of the box of the vertices that tetrahedra have.
+fn diameter(team: Team<'_>, mesh: &TetMesh) -> f64 {
+    let (none, tets) = (([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), &mesh.tets.nodes);
+    let join = |(low, high): (Vec3, Vec3), (l, h): (Vec3, Vec3)| -> (Vec3, Vec3) {
+        (std::array::from_fn(|i| low[i].min(l[i])), std::array::from_fn(|i| high[i].max(h[i])))
+    };
+    let parts = team.chunks(GRAIN, tets.len(), |range| {
+        let points = tets[range].iter().flatten().map(|&v| mesh.vertices[v as usize]);
+        points.fold(none, |found, p| join(found, (p, p)))
+    });
+    let (low, high) = parts.into_iter().fold(none, join);
+    distance(low, high)
+}

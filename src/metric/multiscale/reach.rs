@@ -1,0 +1,134 @@
+//! The scale at which a metric has a given complexity.
+
+/// Complexities that differ by less than this share are equal.
+const TOLERANCE: f64 = 2e-3;
+
+/// Where a metric may be scaled up after it was made, one is taken whose complexity is below the target by no more than this share,
+const LIFT: f64 = 0.06;
+
+/// and this one is aimed at.
+const AIM: f64 = 0.02;
+
+/// ln C grows by 3/2 of ln M where nothing bounds the sizes.
+const FREE_SLOPE: f64 = 1.5;
+
+/// The logarithm of the scale of M moves by no more than this in a step,
+const LONGEST_STEP: f64 = 8.0;
+
+/// and by no more than this in all: a factor of 1e17.
+const FARTHEST: f64 = 40.0;
+
+/// No scale has that complexity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unreachable {
+    /// The complexity that came nearest.
+    pub nearest: f64,
+}
+
+/// The logarithm of the scale at which `complexity`, which grows with it, is `target`, to [`TOLERANCE`]; and how often it was asked. The
+/// last call is at the scale that is returned.
+///
+/// Secants, since an evaluation with gradation costs much and the curve is nearly straight; and halves of the bracket when two of them
+/// did not halve it.
+pub fn reach(target: f64, complexity: impl FnMut(f64) -> f64) -> Result<(f64, u32), Unreachable> {
+    search(target, 0.0, [TOLERANCE, TOLERANCE], complexity)
+}
+
+/// As [`reach`], from a first guess of the scale; but the complexity may be too small by [`LIFT`], so that fewer calls are needed.
+pub fn reach_nearly(target: f64, guess: f64, complexity: impl FnMut(f64) -> f64) -> Result<(f64, u32), Unreachable> {
+    search(target, guess, [LIFT, TOLERANCE], complexity)
+}
+
+/// The complexity may be below the target and above it by these shares.
+fn search(
+    target: f64,
+    guess: f64,
+    [too_small, too_large]: [f64; 2],
+    mut complexity: impl FnMut(f64) -> f64,
+) -> Result<(f64, u32), Unreachable> {
+    let aim = if too_small > too_large { AIM } else { 0.0 };
+    let (mut scale, mut slope, mut last) = (guess, FREE_SLOPE, None::<(f64, f64)>);
+    let (mut below, mut above) = (f64::NEG_INFINITY, f64::INFINITY);
+    // How wide the bracket was when it was last halved, and how often not since.
+    let (mut width, mut patience) = (f64::INFINITY, 0);
+    let mut nearest = (f64::INFINITY, 0.0);
+    for asked in 1..=60 {
+        let found = complexity(scale);
+        let miss = (found / target).ln();
+        if -too_small <= miss && miss <= too_large {
+            return Ok((scale, asked));
+        }
+        if miss.abs() < nearest.0 {
+            nearest = (miss.abs(), found);
+        }
+        // Of what is aimed at.
+        let miss = miss + aim;
+        if miss < 0.0 {
+            below = scale;
+        } else {
+            above = scale;
+        }
+        if let Some((scale_before, miss_before)) = last {
+            slope = (miss - miss_before) / (scale - scale_before);
+        }
+        last = Some((scale, miss));
+        (width, patience) = if above - below <= 0.5 * width { (above - below, 2) } else { (width, patience - 1) };
+        // Where it is flat a long step tells whether a scale can still change it.
+        let step = if slope > 0.05 { -miss / slope } else { f64::INFINITY.copysign(-miss) };
+        let next = scale + step.clamp(-LONGEST_STEP, LONGEST_STEP);
+        let is_bracketed = below.is_finite() && above.is_finite();
+        scale = if is_bracketed && (patience < 0 || !(below < next && next < above)) {
+            0.5 * (below + above)
+        } else {
+            next
+        };
+        // Closed to rounding: a jump. Far away: a bound. Neither: a complexity that is no number.
+        if above - below < 1e-9 || !(scale.abs() <= FARTHEST) {
+            break;
+        }
+    }
+    Err(Unreachable { nearest: nearest.1 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_free_metric_takes_two_steps() {
+        let (scale, asked) = reach(5000.0, |scale| 3.0 * (1.5 * scale).exp()).unwrap();
+        assert!((3.0 * (1.5 * scale).exp() / 5000.0 - 1.0).abs() < 1e-9);
+        assert_eq!(asked, 2);
+    }
+
+    #[test]
+    fn bounds_and_kinks_are_no_trouble() {
+        // Saturating at both ends, a kink, and a nearly flat piece between.
+        let curves: [fn(f64) -> f64; 3] = [
+            |s| 10.0 + 1e6 / (1.0 + (-2.0 * s + 5.0).exp()),
+            |s| if s < 3.0 { (0.1 * s).exp() * 100.0 } else { (4.0 * (s - 3.0) + 0.3).exp() * 100.0 },
+            |s| (s * 1.5 + (3.0 * s).sin() * 0.4).exp(),
+        ];
+        for curve in curves {
+            for target in [90.0, 200.0, 9e4] {
+                let mut last = f64::NAN;
+                let (_, asked) = reach(target, |s| {
+                    last = curve(s);
+                    last
+                })
+                .unwrap();
+                assert!((last / target - 1.0).abs() < 0.003 && asked < 20, "{target} {last} after {asked}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_bounds_forbid_is_said() {
+        let bounded = |s: f64| (1.5 * s).exp().clamp(10.0, 1000.0);
+        assert_eq!(reach(5000.0, bounded), Err(Unreachable { nearest: 1000.0 }));
+        assert_eq!(reach(5.0, bounded), Err(Unreachable { nearest: 10.0 }));
+        assert!(reach(5.0, |_| f64::NAN).is_err());
+        // A jump has no scale of the value within.
+        assert!(reach(500.0, |s| if s < 1.0 { 100.0 } else { 900.0 }).is_err());
+    }
+}

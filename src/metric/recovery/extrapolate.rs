@@ -1,0 +1,48 @@
+//! Hessians where a recovery has none, from those of the neighbours.
+use super::rings::Rings;
+use crate::metric::Sym3;
+use crate::tasks::{GRAIN, Team};
+
+/// What was found at the vertices inside; at those on the boundary the mean of their neighbours inside, farther from it of their neighbours
+/// that have one by then, and what was found where none ever has.
+pub fn from_inside(team: Team<'_>, rings: &Rings, found: &[Sym3]) -> Vec<Sym3> {
+    let known = team.map(GRAIN, found.len(), |v| rings.is_inside(v as u32).then_some(found[v]));
+    let filled = fill(team, rings, known);
+    team.map(GRAIN, found.len(), |v| filled[v].unwrap_or(found[v]))
+}
+
+/// Fills gaps by the mean of the neighbours that are known, ring by ring, as long as that fills any.
+pub fn fill(team: Team<'_>, rings: &Rings, mut known: Vec<Option<Sym3>>) -> Vec<Option<Sym3>> {
+    loop {
+        let filled = team.collect(GRAIN, known.len(), |range, filled| {
+            for vertex in range.filter(|&v| known[v].is_none()) {
+                let near = rings.neighbours(vertex as u32).iter().filter_map(|&other| known[other as usize]);
+                let (sum, count) = near.fold((Sym3::ZERO, 0.0), |(sum, count), h| (sum.plus(h), count + 1.0));
+                if count > 0.0 {
+                    filled.push((vertex, sum.times(1.0 / count)));
+                }
+            }
+        });
+        if filled.is_empty() {
+            return known;
+        }
+        filled.into_iter().for_each(|(vertex, hessian)| known[vertex] = Some(hessian));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::cube;
+
+    #[test]
+    fn gaps_are_filled_ring_by_ring() {
+        let mesh = cube(3);
+        let rings = Rings::of(Team::alone(), &mesh);
+        let on_side = |v: usize| mesh.vertices[v][0] == 0.0;
+        let h = Sym3::diagonal(1.0, 2.0, 3.0);
+        let known = (0..64).map(|v| on_side(v).then_some(h)).collect();
+        assert!(fill(Team::alone(), &rings, known).into_iter().all(|filled| filled == Some(h)));
+        assert!(fill(Team::alone(), &rings, vec![None; 64]).into_iter().all(|filled| filled.is_none()));
+    }
+}

@@ -1,0 +1,92 @@
+//! Recovery by a quadratic function for each vertex, fitted to the values of its neighbours and theirs.
+use super::quadratic::{Fitted, Quadratic};
+use super::rings::Rings;
+use super::seen::Seen;
+use super::{extrapolate, l2};
+use crate::mesh::TetMesh;
+use crate::mesh::vector::sub;
+use crate::metric::Sym3;
+use crate::tasks::{GRAIN, Team};
+
+/// Vertices a task: one takes some microseconds.
+const VERTICES: usize = GRAIN / 16;
+
+/// Below this quality of a fit another ring is asked.
+const GOOD: f64 = 0.05;
+
+/// Below this one a fit to three rings is not used.
+const USABLE: f64 = 1e-3;
+
+/// The Hessian of a field at the vertices, (n,) from values (n,), and how many took that of their neighbours. Quadratic functions are met to
+/// rounding at every vertex that has a usable fit: on the boundary as inside.
+pub fn hessians(team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -> (Vec<Sym3>, usize) {
+    let mut found = vec![None; values.len()];
+    team.fill(VERTICES, &mut found, |start, found| {
+        let mut around =
+            Around { mesh, rings, values, seen: Seen::default(), stencil: Vec::new(), fit: Quadratic::default() };
+        for (slot, vertex) in found.iter_mut().zip(start as u32..) {
+            *slot = around.hessian(vertex);
+        }
+    });
+    let unfitted = found.iter().filter(|hessian| hessian.is_none()).count();
+    if unfitted == 0 {
+        return (team.map(GRAIN, found.len(), |v| found[v].unwrap_or(Sym3::ZERO)), 0);
+    }
+    let filled = extrapolate::fill(team, rings, found);
+    // A mesh of a few cells has no fit at all.
+    let projected = if filled.contains(&None) { l2::hessians(team, mesh, rings, values) } else { Vec::new() };
+    (team.map(GRAIN, filled.len(), |v| filled[v].unwrap_or_else(|| projected[v])), unfitted)
+}
+
+/// What one task works with.
+struct Around<'a> {
+    mesh: &'a TetMesh,
+    rings: &'a Rings,
+    values: &'a [f64],
+    seen: Seen,
+    /// The vertices around the one in hand, ring by ring.
+    stencil: Vec<u32>,
+    fit: Quadratic,
+}
+
+impl Around<'_> {
+    fn hessian(&mut self, vertex: u32) -> Option<Sym3> {
+        self.seen.forget();
+        self.seen.insert(vertex);
+        self.stencil.clear();
+        self.fit.clear();
+        let mut last = self.grow(vertex, 0..0);
+        last = self.grow(vertex, last);
+        let good = |fitted: &Fitted| fitted.quality > GOOD;
+        if let Some(fitted) = self.fit.fit().filter(good) {
+            return Some(fitted.hessian);
+        }
+        self.grow(vertex, last);
+        self.fit.fit().filter(|fitted| fitted.quality > USABLE).map(|fitted| fitted.hessian)
+    }
+
+    /// Adds the neighbours of the last ring, given by its places in the stencil (empty: of the vertex itself); returns those of the new one.
+    fn grow(&mut self, vertex: u32, last: std::ops::Range<usize>) -> std::ops::Range<usize> {
+        let start = self.stencil.len();
+        if start == 0 {
+            self.add(vertex, vertex);
+        }
+        for at in last {
+            self.add(vertex, self.stencil[at]);
+        }
+        start..self.stencil.len()
+    }
+
+    /// Adds the neighbours of `other`.
+    #[inline]
+    fn add(&mut self, vertex: u32, other: u32) {
+        let (p, value) = (self.mesh.vertices[vertex as usize], self.values[vertex as usize]);
+        for &near in self.rings.neighbours(other) {
+            if self.seen.insert(near) {
+                self.stencil.push(near);
+                let [x, y, z] = sub(self.mesh.vertices[near as usize], p);
+                self.fit.push([x, y, z, self.values[near as usize] - value]);
+            }
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Second derivatives of a field that is known at the vertices of a mesh.
+mod extrapolate;
+mod fit;
+mod l2;
+mod quadratic;
+mod rings;
+mod seen;
+#[cfg(test)]
+mod tests;
+
+pub use rings::Rings;
+
+use super::Sym3;
+use crate::mesh::TetMesh;
+use crate::tasks::Team;
+use clap::ValueEnum;
+use serde::Serialize;
+
+/// How Hessians are recovered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Recovery {
+    /// A quadratic function for each vertex, fitted to the values of its neighbours and theirs: exact for quadratics, on the boundary too.
+    #[default]
+    Fit,
+    /// The gradients of the elements, averaged to the vertices, twice: smooths more.
+    L2,
+}
+
+impl Recovery {
+    /// As the command line spells it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fit => "fit",
+            Self::L2 => "l2",
+        }
+    }
+
+    /// The Hessian at the vertices of a mesh, shape (n,), of a field with these values there, shape (n,), in the field's units over length²; and
+    /// at how many vertices it is the mean of the neighbours', since the points around do not tell it. `rings` are the mesh's.
+    ///
+    /// # Panics
+    /// When there is not one value a vertex.
+    pub fn hessians(self, team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -> (Vec<Sym3>, usize) {
+        assert_eq!(mesh.vertices.len(), values.len(), "one value a vertex");
+        match self {
+            Self::Fit => fit::hessians(team, mesh, rings, values),
+            Self::L2 => (l2::hessians(team, mesh, rings, values), 0),
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The quadratic function through a value that comes nearest to the values around it.
+//!
+//! u(x) − u(v) ≈ g·d + ½ dᵀH d with d = x − v, by weighted least squares. The coordinates are d = C y with the second moments Σ ddᵀ = CCᵀ of the
+//! points: whatever affine map the points have gone through, the same y come out, so a mesh stretched a thousand times is as good as
+//! one that is not. The weights are 1/|y|². The system is solved by modified Gram–Schmidt on the columns with the
+//! right-hand side among them, which is as stable as Householder's reflections (Björck 1967), and all of it is products of columns, eight
+//! rows at a time.
+use crate::metric::Sym3;
+use crate::metric::lanes::{LANES, Lanes};
+use multiversion::multiversion;
+
+/// The terms: three linear ones, then ½y₁², y₁y₂, ½y₂², y₁y₃, y₂y₃, ½y₃², as a tensor has them.
+const TERMS: usize = 9;
+
+/// The linear ones.
+const LINEAR: usize = 3;
+
+/// A pivot of the second moments that is less than this share of its term: the points lie in a plane, to the rounding.
+const FLAT: f64 = 1e-15;
+
+/// The points around a vertex, eight a block, and room to work in. What is not set in the last block counts for nothing.
+#[derive(Default)]
+pub struct Quadratic {
+    /// Differences of the coordinates from the vertex, and of the value.
+    blocks: Vec<[Lanes; 4]>,
+    points: usize,
+    /// The columns of the terms and the right-hand side, one after the other, each as long as there are blocks.
+    columns: Vec<Lanes>,
+}
+
+/// A fit.
+#[derive(Clone, Copy, Debug)]
+pub struct Fitted {
+    /// The second derivatives.
+    pub hessian: Sym3,
+    /// How well the points tell the terms apart, in [0, 1]: the least share of a term's column that is no combination of those before.
+    pub quality: f64,
+}
+
+impl Quadratic {
+    /// Forgets all points.
+    #[inline]
+    pub fn clear(&mut self) {
+        self.blocks.clear();
+        self.points = 0;
+    }
+
+    /// Adds a point by its differences from the vertex: those of the coordinates, then that of the value.
+    #[inline]
+    pub fn push(&mut self, difference: [f64; 4]) {
+        let lane = self.points % LANES;
+        if lane == 0 {
+            self.blocks.push([Lanes::ZERO; 4]);
+        }
+        self.points += 1;
+        if let Some(block) = self.blocks.last_mut() {
+            block.iter_mut().zip(difference).for_each(|(lanes, x)| lanes.0[lane] = x);
+        }
+    }
+
+    /// The least-squares fit; none where the points lie in a plane or are too few.
+    #[inline]
+    pub fn fit(&mut self) -> Option<Fitted> {
+        if self.points < TERMS {
+            return None;
+        }
+        self.columns.resize((TERMS + 1) * self.blocks.len(), Lanes::ZERO);
+        fit(&self.blocks, &mut self.columns)
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+fn fit(blocks: &[[Lanes; 4]], columns: &mut [Lanes]) -> Option<Fitted> {
+    let to_y = whitening(blocks)?;
+    fill(blocks, &to_y, columns);
+    let (factors, pivots, quality) = orthogonalise(blocks.len(), columns);
+    // Back from the last term; the linear ones are not asked for.
+    let mut h = [0.0; TERMS];
+    for k in (LINEAR..TERMS).rev() {
+        let rest: f64 = (k + 1..TERMS).map(|j| factors[k][j] * h[j]).sum();
+        h[k] = factors[k][TERMS] - rest;
+    }
+    let hessian = congruent(&to_y, &[h[3], h[4], h[5], h[6], h[7], h[8]]);
+    (pivots && hessian.0.iter().all(|x| x.is_finite())).then_some(Fitted { hessian, quality })
+}
+
+/// The lower triangle of C⁻¹, y = C⁻¹ d: the inverse of Cholesky's factor of the points' second moments, row by row.
+#[inline(always)]
+fn whitening(blocks: &[[Lanes; 4]]) -> Option<[f64; 6]> {
+    let mut moments = [Lanes::ZERO; 6];
+    for [x, y, z, _] in blocks {
+        for (sum, product) in moments.iter_mut().zip([*x * *x, *x * *y, *y * *y, *x * *z, *y * *z, *z * *z]) {
+            *sum = *sum + product;
+        }
+    }
+    let [xx, xy, yy, xz, yz, zz] = moments.map(Lanes::sum);
+    let (l10, l20) = (xy / xx, xz / xx);
+    let d1 = yy - l10 * xy;
+    let x = yz - l10 * xz;
+    let l21 = x / d1;
+    let d2 = zz - l20 * xz - l21 * x;
+    // Also where a number is none.
+    if !(xx > f64::MIN_POSITIVE && d1 > FLAT * yy && d2 > FLAT * zz) {
+        return None;
+    }
+    let [a, b, c] = [xx, d1, d2].map(|d| 1.0 / d.sqrt());
+    Some([a, -l10 * b, b, (l10 * l21 - l20) * c, -l21 * c, c])
+}
+
+/// The columns of all terms and the right-hand side, each row weighted by 1/|y|.
+#[inline(always)]
+fn fill(blocks: &[[Lanes; 4]], w: &[f64; 6], columns: &mut [Lanes]) {
+    let height = blocks.len();
+    for (at, [x, y, z, value]) in blocks.iter().enumerate() {
+        let p = *x * w[0];
+        let q = *x * w[1] + *y * w[2];
+        let r = *x * w[3] + *y * w[4] + *z * w[5];
+        let square = p * p + q * q + r * r;
+        // No row for what is the vertex itself, to rounding.
+        let weight = square.above(1e-30, Lanes::all(1.0) / square.sqrt(), Lanes::ZERO);
+        let (wp, wq, wr) = (p * weight, q * weight, r * weight);
+        let row = [wp, wq, wr, wp * p * 0.5, wp * q, wq * q * 0.5, wp * r, wq * r, wr * r * 0.5, *value * weight];
+        for (k, term) in row.into_iter().enumerate() {
+            columns[k * height + at] = term;
+        }
+    }
+}
+
+/// Makes the columns orthogonal, one after the other. Returns how much of each is taken off those behind (row k: multiples of column k), whether
+/// no column vanished, and the least share that is left of one.
+#[inline(always)]
+fn orthogonalise(height: usize, columns: &mut [Lanes]) -> ([[f64; TERMS + 1]; TERMS], bool, f64) {
+    let mut factors = [[0.0; TERMS + 1]; TERMS];
+    let mut lengths = [0.0; TERMS];
+    for (length, column) in lengths.iter_mut().zip(columns.chunks_exact(height)) {
+        *length = product(column, column);
+    }
+    let mut least = f64::INFINITY;
+    for k in 0..TERMS {
+        let (before, behind) = columns.split_at_mut((k + 1) * height);
+        let pivot = &before[k * height..];
+        let square = product(pivot, pivot);
+        // NaN, from no number at all, stays least.
+        let share = square / lengths[k];
+        least = if share >= least { least } else { share };
+        for (j, column) in behind.chunks_exact_mut(height).enumerate() {
+            let factor = product(pivot, column) / square;
+            factors[k][k + 1 + j] = factor;
+            for (x, p) in column.iter_mut().zip(pivot) {
+                *x = *x - *p * factor;
+            }
+        }
+    }
+    (factors, least > 0.0, least.sqrt())
+}
+
+/// The scalar product of two columns.
+#[inline(always)]
+fn product(a: &[Lanes], b: &[Lanes]) -> f64 {
+    let mut sum = Lanes::ZERO;
+    for (x, y) in a.iter().zip(b) {
+        sum = sum + *x * *y;
+    }
+    sum.sum()
+}
+
+/// WᵀHW of a lower triangle W, row by row.
+#[inline(always)]
+fn congruent(w: &[f64; 6], h: &[f64; 6]) -> Sym3 {
+    let [a, b, c, d, e, f] = *w;
+    // HW, column by column.
+    let first = [h[0] * a + h[1] * b + h[3] * d, h[1] * a + h[2] * b + h[4] * d, h[3] * a + h[4] * b + h[5] * d];
+    let second = [h[1] * c + h[3] * e, h[2] * c + h[4] * e, h[4] * c + h[5] * e];
+    let third = [h[3] * f, h[4] * f, h[5] * f];
+    Sym3([
+        a * first[0] + b * first[1] + d * first[2],
+        c * first[1] + e * first[2],
+        c * second[1] + e * second[2],
+        f * first[2],
+        f * second[2],
+        f * third[2],
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metric::random::{rotated, spd};
+    use proptest::prelude::*;
+
+    fn point() -> impl Strategy<Value = [f64; 3]> {
+        prop::array::uniform3(-1.0..1.0f64)
+    }
+
+    proptest! {
+        /// Points that were stretched along any axes up to a thousand times give the second derivatives of a quadratic function back.
+        #[test]
+        fn quadratics_are_met(
+            points in prop::collection::vec(point(), 24..80),
+            frame in rotated(),
+            logs in prop::array::uniform3(0.0..6.9f64),
+            h in spd(2.0), g in point(), sign in prop::bool::ANY,
+        ) {
+            let stretch = Sym3::from_eigen(&crate::metric::Eigen { values: logs.map(f64::exp), vectors: frame });
+            let back = stretch.inverse();
+            // In the coordinates before the stretch.
+            let h = if sign { h } else { h.times(-1.0) };
+            let mut quadratic = Quadratic::default();
+            for p in &points {
+                let value = g[0] * p[0] + g[1] * p[1] + g[2] * p[2] + 0.5 * h.quadratic(*p);
+                let [x, y, z] = stretch.apply(*p);
+                quadratic.push([x, y, z, value]);
+            }
+            let fitted = quadratic.fit().unwrap();
+            prop_assume!(fitted.quality > 0.05);
+            let found = fitted.hessian.congruent(&stretch);
+            let size = h.0.iter().fold(1.0f64, |a, x| a.max(x.abs()));
+            for i in 0..6 {
+                prop_assert!((found.0[i] - h.0[i]).abs() < 1e-8 * size, "{found:?} {h:?} {back:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn points_that_do_not_tell_are_no_fit_or_a_poor_one() {
+        let mut quadratic = Quadratic::default();
+        for i in 0..8 {
+            quadratic.push([f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2), 1.0]);
+        }
+        assert!(quadratic.fit().is_none(), "too few");
+        quadratic.clear();
+        (0..30).for_each(|i| quadratic.push([f64::from(i % 5), f64::from(i / 5), 0.0, 1.0]));
+        assert!(quadratic.fit().is_none(), "in a plane");
+        quadratic.clear();
+        for i in 0..50 {
+            let [x, y, z] = [i % 5 - 2, i / 5 % 5 - 2, i / 25].map(f64::from);
+            quadratic.push([x, y, z, x * x + z]);
+        }
+        // Two layers: z² is z.
+        assert!(quadratic.fit().is_none_or(|fitted| fitted.quality < 1e-6));
+    }
+}

@@ -1,0 +1,100 @@
+//! The neighbours of every vertex over an edge, as rows one after the other, and the tetrahedra at it.
+use super::seen::Seen;
+use crate::mesh::TetMesh;
+use crate::tasks::{Buckets, GRAIN, Team};
+
+/// Which vertices and tetrahedra are at each vertex.
+pub struct Rings {
+    /// Where the neighbours of each vertex begin, and the end of the last.
+    starts: Vec<u32>,
+    neighbours: Vec<u32>,
+    /// 4·tet + corner of the tetrahedra at each vertex.
+    corners: Buckets,
+}
+
+impl Rings {
+    /// Of a mesh of fewer than 2³⁰ tetrahedra.
+    pub fn of(team: Team<'_>, mesh: &TetMesh) -> Self {
+        let (vertices, tets) = (mesh.vertices.len(), &mesh.tets.nodes);
+        let corners = Buckets::of(team, vertices, tets.len(), |t| tets[t]);
+        let parts = team.chunks(GRAIN, vertices, |range| {
+            let (mut seen, mut ends, mut found) = (Seen::default(), Vec::with_capacity(range.len()), Vec::new());
+            for vertex in range {
+                seen.forget();
+                seen.insert(vertex as u32);
+                let nodes = corners.of_key(vertex).flat_map(|corner| tets[corner as usize / 4]);
+                nodes.filter(|&node| seen.insert(node)).for_each(|node| found.push(node));
+                ends.push(found.len() as u32);
+            }
+            (ends, found)
+        });
+        let mut starts = Vec::with_capacity(vertices + 1);
+        starts.push(0);
+        for (ends, _) in &parts {
+            let before = *starts.last().unwrap_or(&0);
+            starts.extend(ends.iter().map(|end| before + end));
+        }
+        let neighbours = team.join_slices(parts.iter().map(|(_, found)| found.as_slice()));
+        Self { starts, neighbours, corners }
+    }
+
+    /// The vertices that share an edge with this one.
+    #[inline]
+    pub fn neighbours(&self, vertex: u32) -> &[u32] {
+        let [start, end] = [vertex, vertex + 1].map(|v| self.starts[v as usize] as usize);
+        &self.neighbours[start..end]
+    }
+
+    /// The tetrahedra at a vertex.
+    #[inline]
+    pub fn tets(&self, vertex: u32) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.corners.of_key(vertex as usize).map(|corner| corner as usize / 4)
+    }
+
+    /// Whether tetrahedra lie all around a vertex. Their faces opposite to it are its link, a sphere just then: of F triangles it has F + 4
+    /// halves of vertices by Euler's formula, and more where it has a border or is in several pieces.
+    #[inline]
+    pub fn is_inside(&self, vertex: u32) -> bool {
+        2 * self.neighbours(vertex).len() == self.corners.of_key(vertex as usize).len() + 4
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::cube;
+
+    #[test]
+    fn neighbours_and_inside_of_a_cube() {
+        let mesh = cube(4);
+        let rings = Rings::of(Team::alone(), &mesh);
+        let edges = crate::mesh::adjacency::unique_edges(&mesh.tets.nodes);
+        for (vertex, p) in (0..).zip(&mesh.vertices) {
+            let mut found = rings.neighbours(vertex).to_vec();
+            found.sort_unstable();
+            let over = |&[a, b]: &[u32; 2]| (a == vertex).then_some(b).or((b == vertex).then_some(a));
+            let mut expected: Vec<u32> = edges.iter().filter_map(over).collect();
+            expected.sort_unstable();
+            assert_eq!(found, expected);
+            assert_eq!(rings.is_inside(vertex), p.iter().all(|&x| x > 0.0 && x < 1.0));
+        }
+    }
+
+    #[test]
+    fn a_vertex_where_two_cubes_touch_is_not_inside() {
+        // The middle of a cube whose two opposite corner cells are all that is left.
+        let mut mesh = cube(2);
+        let cells: Vec<[u32; 4]> = mesh
+            .tets
+            .nodes
+            .chunks(6)
+            .enumerate()
+            .filter(|(cell, _)| [0, 7].contains(cell))
+            .flat_map(|(_, tets)| tets.to_vec())
+            .collect();
+        mesh.tets.refs.truncate(cells.len());
+        mesh.tets.nodes = cells;
+        let rings = Rings::of(Team::alone(), &mesh);
+        assert!((0..27).all(|vertex| !rings.is_inside(vertex)));
+    }
+}
