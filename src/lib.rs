@@ -2,8 +2,8 @@
 //!
 //! The way of the data: a [`mesh::TetMesh`] is classified on a [`geometry::Model`], given a
 //! [`metric::Field`], adapted by [`adapt`], and comes out as a [`mesh::TetMesh`] again.
-//! [`image`] makes a first mesh of a 3D image.
-//! Imports go one way: `cli → { adapt, image } → { metric, geometry } → mesh → tasks`.
+//! [`sizing`] makes the metric that the model itself asks for, [`image`] makes a first mesh of a 3D image.
+//! Imports go one way: `cli → { adapt, image } → sizing → { metric, geometry } → mesh → tasks`.
 pub mod adapt;
 pub mod cli;
 pub mod geometry;
@@ -11,4 +11,5 @@ pub mod image;
 pub mod memory;
 pub mod mesh;
 pub mod metric;
+pub mod sizing;
 pub mod tasks;

@@ -52,3 +52,21 @@ fn cube_comes_out_as_it_lies_there() {
 fn filleted_block_comes_out_as_it_lies_there() {
     regenerates("filleted_block.py", "filleted-block.step");
 }
+
+#[test]
+fn shapes_of_known_curvature_come_out_as_they_lie_there() {
+    for name in ["sphere", "torus", "cylinder", "cone", "spheroid"] {
+        regenerates(&format!("{name}.py"), &format!("{name}.step"));
+    }
+}
+
+#[test]
+fn wing_comes_out_as_it_lies_there() {
+    regenerates("wing.py", "wing.step");
+}
+
+#[test]
+fn what_is_thin_or_near_comes_out_as_it_lies_there() {
+    regenerates("thin_plate.py", "thin-plate.step");
+    regenerates("slot.py", "slot.step");
+}

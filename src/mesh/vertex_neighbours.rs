@@ -1,4 +1,5 @@
 //! The vertices at the other ends of the edges of each vertex.
+use super::TetMesh;
 use super::adjacency::Edges;
 use crate::tasks::{Buckets, GRAIN, Team};
 
@@ -10,11 +11,32 @@ pub struct VertexNeighbours {
 }
 
 impl VertexNeighbours {
+    /// By the edges of a mesh's tetrahedra, or of its triangles where it has no tetrahedron.
+    pub fn of_mesh(team: Team<'_>, mesh: &TetMesh) -> Self {
+        if !mesh.tets.is_empty() {
+            return Self::of(team, &mesh.tets.nodes, mesh.vertices.len());
+        }
+        let mut edges = team.collect(GRAIN, mesh.triangles.len(), |range, found| {
+            for &[a, b, c] in &mesh.triangles.nodes[range] {
+                found.extend([[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]));
+            }
+        });
+        // Equal ones are beside each other then, whatever their order was.
+        team.sort_by(&mut edges, Ord::cmp);
+        edges.dedup();
+        Self::of_edges(team, &edges, mesh.vertices.len())
+    }
+
     /// In a mesh of so many vertices, with tetrahedra of fewer than 2³¹ edges in all.
     pub fn of(team: Team<'_>, tets: &[[u32; 4]], vertices: usize) -> Self {
         let edges = Edges::of(team, tets);
         let edges: Vec<[u32; 2]> =
             team.collect(GRAIN, edges.nodes(), |range, found| edges.for_each(range, |edge| found.push(edge)));
+        Self::of_edges(team, &edges, vertices)
+    }
+
+    /// By these edges, each once, sorted.
+    fn of_edges(team: Team<'_>, edges: &[[u32; 2]], vertices: usize) -> Self {
         // The edges are sorted by their lower ends, then by their upper ones: so an ascending row of edges is one of neighbours.
         let rows = Buckets::of(team, vertices, edges.len(), |edge| edges[edge]);
         let mut end = 0;
@@ -51,6 +73,21 @@ mod tests {
     use super::super::adjacency::unique_edges;
     use super::super::samples::cube;
     use super::*;
+
+    #[test]
+    fn a_surface_has_the_edges_of_its_triangles() {
+        let mut mesh = cube(2);
+        mesh.tets = Default::default();
+        let around = VertexNeighbours::of_mesh(Team::alone(), &mesh);
+        let mut edges: Vec<[u32; 2]> = Vec::new();
+        for &[a, b, c] in &mesh.triangles.nodes {
+            edges.extend([[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]]);
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        let rows = (0..mesh.vertices.len() as u32).flat_map(|v| around.of_vertex(v).iter().map(move |&w| [v, w]));
+        assert_eq!(rows.collect::<Vec<_>>(), edges);
+    }
 
     #[test]
     fn each_edge_is_seen_from_both_ends() {

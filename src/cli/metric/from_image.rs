@@ -15,7 +15,7 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The image: .nrrd or .nhdr, of 3 axes. Integers are labels: sizes are small at borders between them. Floating-point values are grey:
-    /// sizes follow their second derivatives
+    /// sizes follow their second derivatives. Without --hmin no size is below half a voxel
     image: PathBuf,
     /// The mesh, in the image's space: .mesh or .meshb. Its vertices are where the image is looked at: it should resolve what matters
     #[arg(long, value_name = "MESH")]
@@ -57,7 +57,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mesh = common::mesh(run, &arguments.mesh)?;
     let image = image::read(&arguments.image)?;
     let diameter = common::diameter(&mesh);
-    let limits = Limits { hmax: Some(limits.hmax.unwrap_or(diameter).min(diameter)), ..limits };
+    let hmax = limits.hmax.unwrap_or(diameter).min(diameter);
+    let half_voxel = 0.5 * image.frame.spacings().into_iter().fold(f64::INFINITY, f64::min);
+    // Finer the image says nothing.
+    let limits = Limits { hmin: Some(limits.hmin.unwrap_or(half_voxel.min(hmax))), hmax: Some(hmax), ..limits };
     let wish = Wish { complexity: arguments.complexity, limits, gradation: arguments.gradation.ratio() };
     let outside = outside(team, &image, &mesh);
     if outside > 0 {

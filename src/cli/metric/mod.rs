@@ -3,6 +3,7 @@ mod common;
 pub(super) mod fields;
 mod from_image;
 mod from_points;
+mod geometry;
 mod grade;
 mod implied;
 mod interpolate;
@@ -28,6 +29,8 @@ enum Command {
     FromImage(from_image::Arguments),
     /// The metric of a cloud of points: the ellipsoid about each vertex that holds its nearest points
     FromPoints(from_points::Arguments),
+    /// Make the metric that the geometry asks for: curvature, thin parts, gaps
+    Geometry(geometry::Arguments),
     /// Let sizes grow no faster than a ratio from an edge to the next
     Grade(grade::Arguments),
     /// The metric of a mesh itself: the one in which its edges have length one, as far as they can
@@ -51,6 +54,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     match &arguments.command {
         Command::FromImage(arguments) => from_image::run(arguments),
         Command::FromPoints(arguments) => from_points::run(arguments),
+        Command::Geometry(arguments) => geometry::run(arguments),
         Command::Grade(arguments) => grade::run(arguments),
         Command::Implied(arguments) => implied::run(arguments),
         Command::Interpolate(arguments) => interpolate::run(arguments),

@@ -43,14 +43,15 @@ pub struct Graded {
     pub changed: usize,
 }
 
-/// Grades ln M at the vertices, shape (n,), by a ratio r > 1. Vertices without a tetrahedron stay as they are, and so does, bit for
+/// Grades ln M at the vertices, shape (n,), by a ratio r > 1, along the edges of the
+/// tetrahedra, or of the triangles where there is no tetrahedron. Vertices without an edge stay as they are, and so does, bit for
 /// bit, every metric that is within bounds; what has been graded is.
 ///
 /// # Panics
 /// When there are not as many metrics as vertices.
 pub fn grade(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3], ratio: f64) -> Graded {
     assert_eq!(mesh.vertices.len(), logs.len(), "one ln M a vertex");
-    let around = VertexNeighbours::of(team, &mesh.tets.nodes, mesh.vertices.len());
+    let around = VertexNeighbours::of_mesh(team, mesh);
     Grading::new(team, &mesh.vertices, &around, logs, ratio.ln()).run()
 }
 

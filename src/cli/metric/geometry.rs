@@ -1,0 +1,202 @@
+//! `geo-adapt metric geometry`.
+use super::common::{self, Failure, GradationArgument, LimitArguments, OutputArgument, RunArguments};
+use crate::cli::table::{Table, figure, place};
+use crate::cli::{Outcome, load, positive};
+use crate::geometry::classify::{self, Classification};
+use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
+use crate::geometry::{Discrete, Geometry, Model};
+use crate::mesh::TetMesh;
+use crate::mesh::io::read_mesh;
+use crate::metric::Limits;
+use crate::metric::summary::Summary as Figures;
+use crate::sizing::{self, Options, Summary};
+use crate::tasks::{Plan, Team};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Arguments of `geo-adapt metric geometry`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The mesh, tetrahedra or triangles only: .mesh or .meshb
+    mesh: PathBuf,
+    /// The CAD model the boundary lies on: .step, .stp, .iges, .igs, .brep or .egads. Without it the curvature is estimated from the
+    /// mesh's own triangles
+    #[arg(long, value_name = "MODEL")]
+    cad: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgument,
+    /// Segments for a radian of curvature: the size is 1/(N κ), 2π N segments go round a circle
+    #[arg(long, value_name = "N", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
+    segments: f64,
+    /// Sizes. By default --hmax is a tenth of the diagonal of the model's box and --hmin 1e-5 of it: that is for apices and for what all but
+    /// touches, where sizes have no other end
+    #[command(flatten)]
+    limits: LimitArguments,
+    #[command(flatten)]
+    gradation: GradationArgument,
+    /// Cells across thin parts and gaps, between entities that come near and do not touch; or `off`
+    #[arg(long, value_name = "K", value_parser = cells, default_value = "2", allow_negative_numbers = true)]
+    feature_cells: Cells,
+    /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model states for an entity]
+    #[arg(long, value_name = "T", value_parser = positive, requires = "cad", allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+    /// Write what was found as JSON; there the indices count from 0
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+/// A number of cells, or off. (A type of its own, since clap would take an Option for an argument that may be left out.)
+#[derive(Clone, Copy)]
+struct Cells(Option<f64>);
+
+fn cells(text: &str) -> Result<Cells, String> {
+    match text {
+        "off" => Ok(Cells(None)),
+        _ => positive(text).map(|count| Cells(Some(count))).map_err(|_| "give a positive number, or off".into()),
+    }
+}
+
+/// What --report writes.
+#[derive(Serialize)]
+struct Report<'a> {
+    version: &'static str,
+    input: &'a Path,
+    cad: Option<&'a Path>,
+    output: &'a Path,
+    options: Options,
+    #[serde(flatten)]
+    summary: Summary,
+    metric: Figures,
+    seconds: Seconds,
+}
+
+/// Wall times, s.
+#[derive(Clone, Copy, Serialize)]
+struct Seconds {
+    read_and_classify: f64,
+    metric: f64,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let start = Instant::now();
+    let inputs: Vec<&Path> = std::iter::once(arguments.mesh.as_path()).chain(arguments.cad.as_deref()).collect();
+    arguments.output.check(&inputs)?;
+    if let Some(report) = &arguments.report {
+        common::check_output(report, &["json"], &inputs)?;
+    }
+    let limits = arguments.limits.limits()?;
+    let pool = arguments.run.pool()?;
+    let team = Team::new(&pool, Plan::default());
+    let mut read = read_mesh(&arguments.mesh)?;
+    let mesh = &mut read.content;
+    let added = complete_boundary(team, mesh);
+    if added > 0 {
+        read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
+    }
+    arguments.run.note(&read.notices);
+    let mesh = read.content;
+    let (model, lies) = lies(team, arguments, &mesh)?;
+    let read_and_classify = start.elapsed().as_secs_f64();
+    let options = options(arguments, &model, limits);
+    let (logs, summary) = sizing::geometry_metric(team, &mesh, &lies, &model, &options);
+    let metric = start.elapsed().as_secs_f64() - read_and_classify;
+    arguments.output.write_logs(team, &logs)?;
+    let report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        input: &arguments.mesh,
+        cad: arguments.cad.as_deref(),
+        output: &arguments.output.output,
+        options,
+        summary,
+        metric: Figures::of(team, &mesh, &logs),
+        seconds: Seconds { read_and_classify, metric },
+    };
+    if let Some(path) = &arguments.report {
+        common::write_json(path, &report)?;
+    }
+    arguments.run.print(&describe(&report, !mesh.tets.is_empty()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The model, and where the mesh lies on it.
+fn lies(team: Team<'_>, arguments: &Arguments, mesh: &TetMesh) -> Result<(Model, Classification), Failure> {
+    let name = arguments.mesh.display();
+    let Some(path) = &arguments.cad else {
+        let (model, place) =
+            Discrete::from_mesh(team, mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
+        let note =
+            "without --cad the curvature is an estimate from the mesh's triangles; it can be no better than they are";
+        arguments.run.note(&[note.into()]);
+        return Ok((Model::Discrete(model), place));
+    };
+    let model = load::model(path)?;
+    let options = classify::Options { tolerance: arguments.tolerance, ..classify::Options::default() };
+    let (place, report) = classify::classify(team, mesh, &model, &options)
+        .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
+    arguments.run.note(&report.notices);
+    Ok((model, place))
+}
+
+/// The defaults for the model where nothing else is given. A given size moves the default of the other, if that is beyond it.
+fn options(arguments: &Arguments, model: &Model, limits: Limits) -> Options {
+    let defaults = Options::of(model.topology());
+    let greatest = limits.hmax.unwrap_or(defaults.greatest.max(limits.hmin.unwrap_or(0.0)));
+    Options {
+        segments: arguments.segments,
+        least: limits.hmin.unwrap_or(defaults.least.min(greatest)),
+        greatest,
+        aspect_ratio: limits.aspect_ratio,
+        cells: arguments.feature_cells.0,
+        gradation: arguments.gradation.ratio(),
+    }
+}
+
+/// The text for people.
+fn describe(report: &Report, has_volume: bool) -> String {
+    let (options, summary, figures) = (&report.options, &report.summary, &report.metric);
+    let mut table = Table::new();
+    let Summary { on_vertices, on_edges, on_faces, inside, .. } = *summary;
+    table.row(
+        "vertices",
+        format_args!("{on_vertices} on model vertices, {on_edges} on edges, {on_faces} on faces, {inside} inside"),
+    );
+    table.row("sizes allowed", format_args!("{} to {}", figure(options.least), figure(options.greatest)));
+    let [least, greatest] = [figures.least_size.least, figures.greatest_size.greatest];
+    table.row("sizes", format_args!("{} to {}", figure(least), figure(greatest)));
+    table.row("greatest aspect ratio", figure(figures.aspect_ratio.greatest));
+    if summary.at_least_size > 0 {
+        table.row(
+            "at the least size",
+            format_args!(
+                "{} vertices: the geometry may ask for less there, give a smaller --hmin",
+                summary.at_least_size
+            ),
+        );
+    }
+    if summary.singular > 0 {
+        table.row("at poles and apices", format_args!("{} vertices", summary.singular));
+    }
+    if let Some(gap) = summary.nearest_gap {
+        let (far, at) = (figure(gap.distance), place(gap.at));
+        table.row("thin parts and gaps", format_args!("{} vertices", summary.at_gaps));
+        table.row("nearest gap", format_args!("{far}, from {} at {at} to {}", gap.from, gap.to));
+    }
+    if summary.between > 0 {
+        table.row("looked at between vertices", format_args!("{} places, for the mesh is coarse", summary.between));
+    }
+    if summary.graded > 0 {
+        table.row("made smaller by gradation", format_args!("{} vertices", summary.graded));
+    }
+    if has_volume {
+        table.row("complexity", figure(figures.complexity));
+    }
+    let Seconds { read_and_classify, metric } = report.seconds;
+    table.row("seconds", format_args!("{metric:.2}, after {read_and_classify:.2} of reading"));
+    table.row("written", report.output.display());
+    table.text().into()
+}

@@ -1,0 +1,247 @@
+//! Thin parts and gaps: entities that come near each other and do not touch.
+//!
+//! Each point of the boundary asks the other entities for their closest points, by the model itself and not by the mesh, so that a
+//! coarse mesh sees a gap as it is. Which entities may be near tells a tree of boxes over pieces of the model. The size is limited along
+//! the direction of the gap alone.
+use super::curvature::{Local, cut};
+use super::pieces::pieces;
+use super::sight::Sight;
+use super::touch::Touch;
+use super::tree::{Box3, Tree};
+use crate::geometry::classify::Classification;
+use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, Topology};
+use crate::mesh::TetMesh;
+use crate::mesh::vector::{Vec3, distance, dot, lerp, norm, scale, sub, unit};
+use crate::metric::Sym3;
+use crate::tasks::Team;
+use serde::Serialize;
+
+/// A gap goes across a face if its direction makes at most 60° with the normal,
+const ACROSS: f64 = 0.5;
+/// and the other face looks back, or at least not away by more than this cosine.
+const AWAY: f64 = 0.25;
+/// A gap goes across an edge if its direction makes at least 45° with the tangent.
+const ALONG: f64 = 0.707;
+/// What is nearer than this share of the diagonal touches, whether the model says so or not.
+const TOUCHING: f64 = 1e-7;
+
+/// Two entities that come near.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Gap {
+    /// How near, model units.
+    pub distance: f64,
+    /// From where.
+    pub at: Vec3,
+    /// On which entity that is.
+    pub from: Entity,
+    /// The other one.
+    pub to: Entity,
+}
+
+/// A point of the boundary.
+#[derive(Clone, Copy)]
+pub struct Place {
+    /// Where it is, on the model.
+    pub point: Vec3,
+    /// On what.
+    pub entity: Entity,
+    /// The mesh vertex there; none between vertices.
+    pub vertex: Option<u32>,
+    /// The mesh triangle there; none on an edge or at a vertex.
+    pub triangle: Option<u32>,
+}
+
+/// Another entity, as a place sees it.
+#[derive(Clone, Copy)]
+struct Other {
+    length: f64,
+    to: Entity,
+    /// Its closest point.
+    there: Vec3,
+    /// Its normal there, if it is a face.
+    normal: Option<Vec3>,
+}
+
+/// Scratch of one thread.
+#[derive(Default)]
+pub struct Pad {
+    entities: Vec<Entity>,
+    others: Vec<Other>,
+}
+
+/// The entities of a model and who is near whom.
+pub struct Near<'a> {
+    topology: &'a Topology,
+    mesh: &'a TetMesh,
+    place: &'a Classification,
+    touch: Touch<'a>,
+    sight: Sight<'a>,
+    pieces: Tree,
+    boxes: Vec<Box3>,
+    owners: Vec<Entity>,
+    cells: f64,
+    least: f64,
+    /// What is nearer touches.
+    touching: f64,
+    /// Whether normals tell the sides of a face apart: not where two solids may share it.
+    has_sides: bool,
+}
+
+impl<'a> Near<'a> {
+    /// So many cells across, no size below `least`.
+    pub fn new(
+        team: Team<'_>,
+        mesh: &'a TetMesh,
+        place: &'a Classification,
+        model: &'a Model,
+        cells: f64,
+        least: f64,
+    ) -> Self {
+        let topology = model.topology();
+        let (boxes, owners): (Vec<Box3>, Vec<Entity>) = pieces(team, model).into_iter().unzip();
+        Self {
+            topology,
+            mesh,
+            place,
+            touch: Touch::new(topology),
+            sight: Sight::new(team, mesh),
+            pieces: Tree::new(team, &boxes),
+            boxes,
+            owners,
+            cells,
+            least,
+            touching: topology.tolerance.max(TOUCHING * topology.diagonal()),
+            has_sides: topology.solids <= 1,
+        }
+    }
+
+    /// The metric at a place, limited across the gaps there; and the nearest of those that limit it. `local` tells how the entities at
+    /// the place lie.
+    pub fn limit(
+        &self,
+        evaluator: &mut Evaluator,
+        at: &Place,
+        local: &Local,
+        mut metric: Sym3,
+        Pad { entities, others }: &mut Pad,
+    ) -> (Sym3, Option<Gap>) {
+        let reach = self.cells / metric.eigen().values[0].sqrt();
+        entities.clear();
+        self.pieces.each_in(&[at.point.map(|x| x - reach), at.point.map(|x| x + reach)], |piece| {
+            let owner = self.owners[piece as usize];
+            if entities.last() != Some(&owner) && may_face(at, local, &self.boxes[piece as usize], owner) {
+                entities.push(owner);
+            }
+            true
+        });
+        entities.sort_unstable();
+        entities.dedup();
+        others.clear();
+        for &to in entities.iter().filter(|&&to| !self.touch.touches(at.entity, to)) {
+            let Some((there, normal)) = self.closest(evaluator, at, to) else { continue };
+            let length = distance(at.point, there);
+            if length < reach && length > self.touching {
+                others.push(Other { length, to, there, normal });
+            }
+        }
+        // The nearest first: it often leaves nothing to do for those behind it.
+        others.sort_unstable_by(|a, b| a.length.total_cmp(&b.length).then(a.to.cmp(&b.to)));
+        let mut nearest: Option<Gap> = None;
+        for &Other { length, to, there, normal } in others.iter() {
+            let way = scale(sub(there, at.point), 1.0 / length);
+            let across = across(way, at, local);
+            let share = norm(across);
+            let (g, size) = (unit(across), (share * length / self.cells).max(self.least));
+            // The sight is asked last: it costs most.
+            if share < ALONG || dot(g, metric.solve(g)) <= size * size || !self.is_facing(local, way, normal) {
+                continue;
+            }
+            let in_face = normal.is_none() && self.touch.share_face(at.entity, edge_of(to));
+            if in_face || self.sight.is_clear(at.point, there, |triangle| self.is_own(at, to, triangle)) {
+                metric = cut(metric, g, size);
+                nearest = nearest.or(Some(Gap { distance: length, at: at.point, from: at.entity, to }));
+            }
+        }
+        (metric, nearest)
+    }
+
+    /// The closest point of another entity, and the normal there of a face. From inside a face edges are not asked: the faces beside
+    /// them are.
+    fn closest(&self, evaluator: &mut Evaluator, at: &Place, to: Entity) -> Option<(Vec3, Option<Vec3>)> {
+        match to {
+            Entity::Face(face) => {
+                let on = evaluator.closest_on_face(face, at.point, None);
+                Some((on.point, Some(evaluator.face_normal(face, on.uv))))
+            }
+            Entity::Edge(edge) if at.entity.dimension() < 2 => {
+                Some((evaluator.closest_on_edge(edge, at.point, None).point, None))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a face with this normal lies opposite to one of the faces at the place, the way there along g. Of an edge (no normal) nothing
+    /// is asked.
+    fn is_facing(&self, local: &Local, g: Vec3, normal: Option<Vec3>) -> bool {
+        let Some(normal) = normal else { return true };
+        let faces = |&own: &Vec3| {
+            let cosine = dot(own, g);
+            let looks_away = self.has_sides && cosine.signum() * dot(normal, g) > AWAY;
+            cosine.abs() >= ACROSS && !looks_away
+        };
+        local.normals.is_empty() || local.normals.iter().any(faces)
+    }
+
+    /// Whether a triangle belongs to one end of a gap.
+    fn is_own(&self, at: &Place, to: Entity, triangle: u32) -> bool {
+        let face = self.place.faces[triangle as usize];
+        let beside = match to {
+            Entity::Face(other) => face == other,
+            Entity::Edge(edge) => self.topology.edges[edge as usize].faces.contains(&face),
+            Entity::Vertex(_) | Entity::Interior => false,
+        };
+        let here = match (at.vertex, at.triangle, at.entity) {
+            (Some(vertex), ..) => self.mesh.triangles.nodes[triangle as usize].contains(&vertex),
+            (None, Some(own), _) => own == triangle,
+            (None, None, Entity::Edge(edge)) => self.topology.edges[edge as usize].faces.contains(&face),
+            _ => false,
+        };
+        beside || here
+    }
+}
+
+/// Whether a gap to a point of this box may go across what lies at the place: if not for any piece of an entity, its closest point
+/// need not be looked for.
+fn may_face(at: &Place, local: &Local, piece: &Box3, owner: Entity) -> bool {
+    let middle = sub(lerp(piece[0], piece[1], 0.5), at.point);
+    let (radius, away) = (0.5 * distance(piece[0], piece[1]), norm(middle));
+    if away <= 1.5 * radius {
+        return true;
+    }
+    // Seen from the place the box is within this angle β of its middle.
+    let sine = radius / away;
+    let cosine = (1.0 - sine * sine).sqrt();
+    let along = |axis: Vec3| dot(axis, middle).abs() / away;
+    let beside = match (at.entity, &local.tangents[..]) {
+        // At least 45° − β from the tangent,
+        (Entity::Edge(_), &[tangent, ..]) => along(tangent) <= ALONG * (cosine + sine),
+        _ => true,
+    };
+    // and at most 60° + β from a normal; of an edge that is not asked.
+    let least = ACROSS * cosine - (1.0 - ACROSS * ACROSS).sqrt() * sine;
+    let faces = || local.normals.is_empty() || local.normals.iter().any(|&normal| along(normal) >= least);
+    beside && (owner.dimension() < 2 || faces())
+}
+
+/// What of a direction goes across the edge that a place lies on: near its end the way to another edge leans along it, and sizes along it
+/// are not the gap's.
+fn across(direction: Vec3, at: &Place, local: &Local) -> Vec3 {
+    match (at.entity, &local.tangents[..]) {
+        (Entity::Edge(_), &[tangent, ..]) => sub(direction, scale(tangent, dot(direction, tangent))),
+        _ => direction,
+    }
+}
+
+fn edge_of(entity: Entity) -> u32 {
+    if let Entity::Edge(edge) = entity { edge } else { u32::MAX }
+}

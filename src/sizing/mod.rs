@@ -1,0 +1,22 @@
+//! The sizes that a geometry asks for (METHOD.md §1): the curvature of its faces and edges, and what is thin or near.
+//!
+//! `curvature` makes the tensor of an entity at a point, `estimate` does where the model is a mesh's own surface; `feature` finds the
+//! entities that come near without touching (`touch`), by boxes over samples of the model (`pieces`, `tree`), where nothing stands between
+//! (`sight`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together.
+mod coarse;
+mod curvature;
+mod estimate;
+mod feature;
+mod field;
+mod options;
+mod pieces;
+mod sight;
+mod summary;
+mod touch;
+mod tree;
+
+pub use curvature::{Curvature, Local};
+pub use feature::Gap;
+pub use field::geometry_metric;
+pub use options::Options;
+pub use summary::Summary;

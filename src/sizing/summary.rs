@@ -1,0 +1,39 @@
+//! What was found on the way to a geometry metric.
+use super::Gap;
+use serde::Serialize;
+
+/// Counts of mesh vertices, and the nearest gap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Summary {
+    /// Mesh vertices on vertices of the model.
+    pub on_vertices: usize,
+    /// On its edges.
+    pub on_edges: usize,
+    /// On its faces.
+    pub on_faces: usize,
+    /// Inside.
+    pub inside: usize,
+    /// At poles, apices and the like, where the curvature is a limit.
+    pub singular: usize,
+    /// Where curvature or gap ask for the least size, or for less.
+    pub at_least_size: usize,
+    /// Limited by a gap or a thin part.
+    pub at_gaps: usize,
+    /// The nearest gap that limits sizes, at a vertex or between.
+    pub nearest_gap: Option<Gap>,
+    /// Places between the vertices of coarse triangles and edges that were looked at.
+    pub between: usize,
+    /// Vertices whose sizes gradation has made smaller.
+    pub graded: usize,
+}
+
+impl Summary {
+    /// Takes the nearer of the gaps.
+    pub(super) fn note(&mut self, gap: Option<Gap>) {
+        if let Some(gap) = gap
+            && self.nearest_gap.is_none_or(|known| gap.distance < known.distance)
+        {
+            self.nearest_gap = Some(gap);
+        }
+    }
+}
