@@ -1,34 +1,62 @@
 //! Limits and gradation, and the scale at which the complexity is met with them.
 use super::reach::{NEARLY, Unreachable, reach, reach_within};
-use super::{Error, Options, Summary};
+use super::{Error, Measure, Summary};
 use crate::mesh::TetMesh;
-use crate::metric::{Limits, Sym3, gradation};
+use crate::metric::{Limits, Sym3, gradation, intersect_all};
 use crate::tasks::{GRAIN, Team, stage};
 
 /// Logarithm of the scale with which a metric of the complexity wanted has it after gradation too, as a first guess.
 const USUAL_SCALE: f64 = -0.2;
 
-/// The metric within limits and graded, at the scale at which it has the complexity wanted, from ln M without them.
+/// The complexity of a metric, and what bounds its sizes.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds<'f> {
+    /// The complexity C that is met, to 1 %, with all that follows.
+    pub complexity: f64,
+    /// How C is measured from ln M at the vertices.
+    pub measure: Measure,
+    /// Greatest growth of sizes, above 1; none for no gradation.
+    pub gradation: Option<f64>,
+    /// Bounds of the sizes.
+    pub limits: Limits,
+    /// ln of a metric that is intersected whatever the scale, shape (n,): what the geometry asks for, or sizes in some places.
+    pub fixed: Option<&'f [Sym3]>,
+}
+
+impl Bounds<'_> {
+    /// Limits and intersects ln M at the vertices; returns at how many the limits changed it.
+    pub fn apply(&self, team: Team<'_>, logs: &mut [Sym3]) -> usize {
+        let limited = self.limits.apply(team, logs);
+        if let Some(fixed) = self.fixed {
+            intersect_all(team, logs, fixed);
+        }
+        limited
+    }
+}
+
+/// The metric within bounds and graded, at the scale at which it has the complexity wanted, from ln M without them.
+///
+/// # Errors
+/// [`Error::Unreachable`] when there is no such scale.
 pub fn bounded(
     team: Team<'_>,
     mesh: &TetMesh,
     raw: &[Sym3],
-    limits: &Limits,
-    options: &Options,
+    bounds: &Bounds<'_>,
 ) -> Result<(Vec<Sym3>, Summary), Error> {
-    let target = options.complexity;
+    let target = bounds.complexity;
     let scaled = |logs: &[Sym3], scale: f64| {
         let mut scaled = team.map(GRAIN, logs.len(), |v| logs[v].plus_identity(scale));
-        let limited = limits.apply(team, &mut scaled);
+        let limited = bounds.apply(team, &mut scaled);
         (scaled, limited)
     };
-    let complexity = |logs: &[Sym3]| options.measure.of(team, mesh, logs);
+    let complexity = |logs: &[Sym3]| bounds.measure.of(team, mesh, logs);
     let unreachable = |Unreachable { nearest }| Error::Unreachable { target, nearest };
     let (mut logs, mut scale, mut rounds) = (Vec::new(), 0.0, 0);
-    if let Some(ratio) = options.gradation {
-        (logs, scale, rounds) = graded(team, mesh, raw, limits, (ratio, options)).map_err(unreachable)?;
+    if let Some(ratio) = bounds.gradation {
+        (logs, scale, rounds) = graded(team, mesh, raw, (ratio, bounds)).map_err(unreachable)?;
     }
-    let of = if options.gradation.is_some() { std::mem::take(&mut logs) } else { raw.to_vec() };
+    let of = if bounds.gradation.is_some() { std::mem::take(&mut logs) } else { raw.to_vec() };
     let (more, again) = reach(target, |more| {
         logs = scaled(&of, more).0;
         complexity(&logs)
@@ -40,7 +68,7 @@ pub fn bounded(
         complexity: complexity(&logs),
         limited,
         unfitted: 0,
-        rounds: if options.gradation.is_some() { rounds } else { again },
+        rounds: if bounds.gradation.is_some() { rounds } else { again },
     };
     Ok((logs, summary))
 }
@@ -55,13 +83,12 @@ fn graded(
     team: Team<'_>,
     mesh: &TetMesh,
     raw: &[Sym3],
-    limits: &Limits,
-    (ratio, options): (f64, &Options),
+    (ratio, bounds): (f64, &Bounds<'_>),
 ) -> Result<(Vec<Sym3>, f64, u32), Unreachable> {
     let ratio = ratio.powf(1.0 - NEARLY / 3.0);
     let (mut logs, mut last) = (Vec::new(), f64::NEG_INFINITY);
-    let (scale, rounds) = reach_within(NEARLY, options.complexity, USUAL_SCALE, |scale| {
-        if scale < last && limits.hmin.is_none() {
+    let (scale, rounds) = reach_within(NEARLY, bounds.complexity, USUAL_SCALE, |scale| {
+        if scale < last && bounds.limits.hmin.is_none() {
             team.fill(GRAIN, &mut logs, |_, logs: &mut [Sym3]| {
                 logs.iter_mut().for_each(|log| *log = log.plus_identity(scale - last));
             });
@@ -69,10 +96,10 @@ fn graded(
             logs = team.map(GRAIN, raw.len(), |v| raw[v].plus_identity(scale));
         }
         last = scale;
-        limits.apply(team, &mut logs);
+        bounds.apply(team, &mut logs);
         gradation::grade(team, mesh, &mut logs, ratio);
         stage("graded");
-        options.measure.of(team, mesh, &logs)
+        bounds.measure.of(team, mesh, &logs)
     })?;
     Ok((logs, scale, rounds))
 }

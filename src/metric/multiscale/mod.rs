@@ -15,14 +15,14 @@ mod sensor;
 #[cfg(test)]
 mod tests;
 
+pub use bounded::{Bounds, bounded};
 pub use norm::Norm;
 
 use super::recovery::{Recovery, Rings};
-use super::{Limits, Sym3, field};
+use super::{Limits, Sym3, field, intersect_all};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
-use bounded::bounded;
 use optimal::Spectrum;
 pub use reach::Unreachable;
 pub(super) use reach::reach;
@@ -30,19 +30,13 @@ use serde::Serialize;
 
 /// Which metric is made.
 #[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// The complexity C that is met, to 1 %, with limits and gradation.
-    pub complexity: f64,
-    /// How C is measured from ln M at the vertices.
-    pub measure: Measure,
+pub struct Options<'f> {
     /// How Hessians are recovered.
     pub recovery: Recovery,
     /// The norm of the error.
     pub norm: Norm,
-    /// Greatest growth of sizes, above 1; none for no gradation.
-    pub gradation: Option<f64>,
-    /// Bounds of the sizes; none is ever above the diameter of the mesh's box.
-    pub limits: Limits,
+    /// Complexity, growth and bounds of the sizes; none is ever above the diameter of the mesh's box.
+    pub bounds: Bounds<'f>,
 }
 
 /// How the complexity is measured.
@@ -124,14 +118,14 @@ pub fn multiscale(
     team: Team<'_>,
     mesh: &TetMesh,
     sensors: &[Vec<&[f64]>],
-    options: &Options,
+    options: &Options<'_>,
 ) -> Result<(Vec<Sym3>, Summary), Error> {
     if sensors.is_empty() || sensors.iter().any(Vec::is_empty) {
         return Err(Error::Nothing);
     }
     let diameter = diameter(team, mesh);
-    let hmax = options.limits.hmax.unwrap_or(diameter).min(diameter);
-    let limits = Limits { hmax: Some(hmax), ..options.limits };
+    let hmax = options.bounds.limits.hmax.unwrap_or(diameter).min(diameter);
+    let bounds = Bounds { limits: Limits { hmax: Some(hmax), ..options.bounds.limits }, ..options.bounds };
     let rings = Rings::of(team, mesh);
     stage("rings");
     let (mut raw, mut unfitted) = (Vec::new(), 0);
@@ -144,15 +138,11 @@ pub fn multiscale(
         if raw.is_empty() {
             raw = logs;
         } else {
-            team.fill(GRAIN, &mut raw, |start, raw| {
-                raw.iter_mut()
-                    .zip(&logs[start..])
-                    .for_each(|(log, other)| *log = log.exp().intersect(&other.exp()).ln());
-            });
+            intersect_all(team, &mut raw, &logs);
         }
     }
     drop(rings);
-    let (logs, summary) = bounded(team, mesh, &raw, &limits, options)?;
+    let (logs, summary) = bounded(team, mesh, &raw, &bounds)?;
     Ok((logs, Summary { unfitted, ..summary }))
 }
 
@@ -161,17 +151,17 @@ fn optimal_logs(
     team: Team<'_>,
     mesh: &TetMesh,
     found: &sensor::Absolute,
-    options: &Options,
+    options: &Options<'_>,
     hmax: f64,
 ) -> Result<Vec<Sym3>, Error> {
     let spectra = team.map(GRAIN, found.hessians.len(), |v| Spectrum::of(&found.hessians[v], found.floor));
     let mut logs = Vec::new();
     // Without sizes at their bound the second round is right.
-    let reached = reach(options.complexity, |scale| {
+    let reached = reach(options.bounds.complexity, |scale| {
         logs = team.map(GRAIN, spectra.len(), |v| spectra[v].log_metric(options.norm, scale, hmax));
-        options.measure.of(team, mesh, &logs)
+        options.bounds.measure.of(team, mesh, &logs)
     });
-    reached.map_err(|Unreachable { nearest }| Error::Unreachable { target: options.complexity, nearest })?;
+    reached.map_err(|Unreachable { nearest }| Error::Unreachable { target: options.bounds.complexity, nearest })?;
     Ok(logs)
 }
 

@@ -4,15 +4,12 @@ use crate::mesh::samples::cube;
 use crate::metric::Eigen;
 use crate::tasks::{Plan, Pool};
 
-fn options(complexity: f64) -> Options {
-    Options {
-        complexity,
-        measure: Measure::AtVertices,
-        recovery: Recovery::Fit,
-        norm: Norm::default(),
-        gradation: None,
-        limits: Limits::default(),
-    }
+fn options(complexity: f64) -> Options<'static> {
+    Options { recovery: Recovery::Fit, norm: Norm::default(), bounds: bounds(complexity) }
+}
+
+fn bounds(complexity: f64) -> Bounds<'static> {
+    Bounds { complexity, measure: Measure::AtVertices, gradation: None, limits: Limits::default(), fixed: None }
 }
 
 fn values(mesh: &TetMesh, u: impl Fn(Vec3) -> f64) -> Vec<f64> {
@@ -66,7 +63,11 @@ fn limits_and_gradation_keep_the_complexity() {
     for recovery in [Recovery::Fit, Recovery::L2] {
         for gradation in [None, Some(1.5)] {
             for measure in [Measure::AtVertices, Measure::Between] {
-                let options = Options { recovery, gradation, limits, measure, ..options(4000.0) };
+                let options = Options {
+                    recovery,
+                    bounds: Bounds { gradation, limits, measure, ..bounds(4000.0) },
+                    ..options(4000.0)
+                };
                 let (logs, summary) = made(&mesh, &u, &options);
                 let found = measure.of(Team::alone(), &mesh, &logs);
                 assert!((found / 4000.0 - 1.0).abs() < 0.01 && found == summary.complexity, "{found}");
@@ -124,7 +125,11 @@ fn what_tells_no_size_is_refused() {
     }
     let mut u = values(&mesh, |p| p[0] * p[0]);
     let limits = Limits { hmin: Some(0.1), ..Limits::default() };
-    let Error::Unreachable { nearest, .. } = of(&u, &Options { limits, ..options(1e5) }) else { panic!() };
+    let Error::Unreachable { nearest, .. } =
+        of(&u, &Options { bounds: Bounds { limits, ..bounds(1e5) }, ..options(1e5) })
+    else {
+        panic!()
+    };
     assert!(nearest < 1.0, "{nearest}");
     u[17] = f64::NAN;
     assert_eq!(of(&u, &options(100.0)), Error::NotFinite { sensor: 0, step: 0, vertex: 17 });
@@ -136,9 +141,29 @@ fn the_same_on_any_number_of_threads() {
     let mesh = cube(14);
     let (u, v) =
         (values(&mesh, |[x, y, z]| (5.0 * x * y).sin() + z), values(&mesh, |[x, y, z]| (9.0 * (z - x * y)).tanh()));
-    let options = Options { gradation: Some(1.4), ..options(3000.0) };
+    let options = Options { bounds: Bounds { gradation: Some(1.4), ..bounds(3000.0) }, ..options(3000.0) };
     let of = |team: Team<'_>| multiscale(team, &mesh, &[vec![&u, &v], vec![&v]], &options).unwrap();
     let alone = of(Team::alone());
     let pool = Pool::new(3).unwrap();
     assert!(of(Team::new(&pool, Plan::default())) == alone);
+}
+
+#[test]
+fn what_is_fixed_holds_whatever_the_complexity() {
+    let mesh = cube(9);
+    let u = values(&mesh, |[x, y, z]| (9.0 * (x + 0.3 * y - 0.6)).tanh() + 0.1 * z * z);
+    let size = |p: &Vec3| if p[2] < 0.2 { 0.04 } else { 1.7 };
+    let fixed: Vec<Sym3> = mesh.vertices.iter().map(|p| Sym3::ZERO.plus_identity(-2.0 * f64::ln(size(p)))).collect();
+    for gradation in [None, Some(1.5)] {
+        let bounds = Bounds { gradation, fixed: Some(&fixed), ..bounds(9000.0) };
+        let (logs, summary) = made(&mesh, &u, &Options { bounds, ..options(9000.0) });
+        assert!((summary.complexity / 9000.0 - 1.0).abs() < 0.01, "{}", summary.complexity);
+        for (log, p) in logs.iter().zip(&mesh.vertices) {
+            assert!(log.exp().sizes()[0] < size(p) * (1.0 + 1e-6), "{p:?}");
+        }
+    }
+    // Where it asks for more by itself, no scale will do.
+    let bounds = Bounds { fixed: Some(&fixed), ..bounds(100.0) };
+    let error = multiscale(Team::alone(), &mesh, &[vec![&u]], &Options { bounds, ..options(100.0) }).unwrap_err();
+    assert!(matches!(error, Error::Unreachable { nearest, .. } if nearest > 1000.0), "{error}");
 }
