@@ -45,6 +45,13 @@ impl Smoothed {
         Ok(Self { frame: image.frame, sizes: image.sizes, values })
     }
 
+    /// Second derivatives up to this are rounding of the values, which are kept in single precision.
+    pub fn rounding(&self) -> f64 {
+        let greatest = self.values.iter().fold(0.0f32, |a, x| a.max(x.abs()));
+        let least = self.frame.spacings().into_iter().fold(f64::INFINITY, f64::min);
+        2.0 * f64::from(f32::EPSILON) * f64::from(greatest) / (least * least)
+    }
+
     /// The value at an index, trilinear between voxels; beyond the border that at the border.
     pub fn value_at(&self, index: Vec3) -> f64 {
         let (mut first, mut part) = ([0; 3], [0.0; 3]);

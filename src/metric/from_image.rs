@@ -37,7 +37,7 @@ impl Wish {
 }
 
 /// ln M of the L² metric det(|H|)^(−1/7) |H| of second derivatives at the vertices, shape (n,) (Loseille & Alauzet 2011), scaled to what
-/// is wished. None when all second derivatives vanish.
+/// is wished. Second derivatives up to `rounding` are noise, value/length²; none when all are.
 ///
 /// # Errors
 /// [`Unreachable`] when the limits do not let the complexity come near.
@@ -45,6 +45,7 @@ pub fn of_hessians(
     team: Team<'_>,
     mesh: &TetMesh,
     hessians: &[Sym3],
+    rounding: f64,
     wish: &Wish,
 ) -> Result<Option<Vec<Sym3>>, Unreachable> {
     let absolute = team.map(GRAIN, hessians.len(), |v| {
@@ -52,12 +53,13 @@ pub fn of_hessians(
         Eigen { values: values.map(f64::abs), vectors }
     });
     let greatest = absolute.iter().flat_map(|eigen| eigen.values).fold(0.0, f64::max);
-    if !(greatest > 0.0 && greatest.is_finite()) {
+    if greatest <= rounding {
         return Ok(None);
     }
+    let floor = rounding.max(NOISE * greatest);
     let raw = team.map(GRAIN, absolute.len(), |v| {
         let Eigen { values, vectors } = absolute[v];
-        let values = values.map(|x| x.max(NOISE * greatest).ln());
+        let values = values.map(|x| x.max(floor).ln());
         Sym3::from_eigen(&Eigen { values, vectors }).plus_identity(-values.iter().sum::<f64>() / 7.0)
     });
     wish.meet(team, mesh, |scale| team.map(GRAIN, raw.len(), |v| raw[v].plus_identity(scale))).map(Some)
@@ -126,11 +128,11 @@ mod tests {
     fn second_derivatives_give_anisotropy() {
         let mesh = cube(8);
         let hessians = vec![Sym3::diagonal(100.0, -4.0, 1.0); mesh.vertices.len()];
-        let logs = of_hessians(Team::alone(), &mesh, &hessians, &WISH).unwrap().unwrap();
+        let logs = of_hessians(Team::alone(), &mesh, &hessians, 0.0, &WISH).unwrap().unwrap();
         assert!((complexity(&mesh, &logs) / 2000.0 - 1.0).abs() < 1e-2);
         let h = logs[0].exp().sizes();
         assert!((h[0] / h[2] - 10.0).abs() < 1e-6 && (h[1] / h[2] - 5.0).abs() < 1e-6, "{h:?}");
         let flat = vec![Sym3::ZERO; mesh.vertices.len()];
-        assert!(of_hessians(Team::alone(), &mesh, &flat, &WISH).unwrap().is_none());
+        assert!(of_hessians(Team::alone(), &mesh, &flat, 0.0, &WISH).unwrap().is_none());
     }
 }

@@ -95,7 +95,8 @@ fn grey(
         format!("{name}: voxel ({i}, {j}, {k}) is no finite number; replace it")
     })?;
     let hessians = team.map(GRAIN / 16, mesh.vertices.len(), |v| Sym3(smoothed.hessian(mesh.vertices[v])));
-    let logs = of_hessians(team, mesh, &hessians, wish).map_err(|error| unreachable(arguments, error.nearest))?;
+    let logs = of_hessians(team, mesh, &hessians, smoothed.rounding(), wish)
+        .map_err(|error| unreachable(arguments, error.nearest))?;
     logs.ok_or_else(|| {
         format!(
             "{name}: its second derivatives are 0 at all vertices of {}; do both lie in the same space?",
