@@ -1,4 +1,5 @@
 //! Where the metric of a run comes from: a file, an analytic field, or a field whose multiscale metric is made.
+use crate::cli::metric::fields;
 use crate::metric::Analytic;
 use std::path::PathBuf;
 
@@ -17,8 +18,11 @@ pub struct FieldArguments {
     pub field: Vec<PathBuf>,
 }
 
-/// Lets the options of the multiscale metric be given with --field only.
+/// Lets the options of the multiscale metric and of the geometry's be given with --field only, and bounds of the sizes not with an
+/// analytic field.
 pub fn only_with_field(command: clap::Command) -> clap::Command {
-    let options = crate::cli::metric::fields::OPTIONS;
-    options.into_iter().fold(command, |command, name| command.mut_arg(name, |option| option.requires("field")))
+    let options = fields::OPTIONS.into_iter().chain(["segments", "feature_cells", "no_geometry"]);
+    let command = options.fold(command, |command, name| command.mut_arg(name, |option| option.requires("field")));
+    let bounds = fields::BOUNDS.into_iter().chain(["local"]);
+    bounds.fold(command, |command, name| command.mut_arg(name, |option| option.conflicts_with("analytic")))
 }

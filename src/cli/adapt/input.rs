@@ -1,21 +1,27 @@
 //! What a run begins with: the mesh, where it lies on its model, and the metric.
 use super::super::load;
 use super::field::FieldArguments;
+use super::parts::{self, Local};
 use crate::adapt;
 use crate::cli::metric::fields::{Made, MultiscaleArguments};
+use crate::cli::metric::geometry::GeometryArguments;
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
 use crate::geometry::{Discrete, Model};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, io};
-use crate::metric::multiscale::Measure;
-use crate::metric::{Background, Field, Source, Sym3, field};
-use crate::tasks::{Team, stage};
+use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
+use crate::metric::{Background, Field, Source, Sym3, field, grade};
+use crate::sizing;
+use crate::tasks::{GRAIN, Team, stage};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Twelve tetrahedra for each unit of complexity, numbered with 32 bits; some numbers lie idle.
 const GREATEST_COMPLEXITY: f64 = 2e8;
+
+/// Of the complexity the geometry's sizes take no more than this share, so that some is left for the field.
+const GEOMETRY_SHARE: f64 = 0.5;
 
 /// The inputs of a run.
 #[derive(clap::Args)]
@@ -33,8 +39,16 @@ pub struct InputArguments {
     /// How far a vertex of the input may be from the model, in its units
     #[arg(long, value_name = "T", value_parser = crate::cli::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    #[command(flatten, next_help_heading = "The metric of --field")]
+    /// Greatest size on a surface or in a region, by reference: 3:h=0.01, region:2:h=0.05
+    #[arg(long, value_name = "REF:h=H,…", value_delimiter = ',', allow_negative_numbers = true)]
+    local: Vec<Local>,
+    #[command(flatten, next_help_heading = "The metric of --field (gradation and bounds of sizes: of --metric too)")]
     multiscale: MultiscaleArguments,
+    #[command(flatten)]
+    geometry: GeometryArguments,
+    /// Leaves the geometry out, whose sizes are intersected when there is a --cad
+    #[arg(long, conflicts_with_all = ["segments", "feature_cells"])]
+    no_geometry: bool,
 }
 
 /// A mesh with the metric at its vertices, if that is what the metric is known by.
@@ -92,10 +106,10 @@ impl InputArguments {
             notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
         }
         let mesh = Arc::new(mesh);
-        let (mut source, made) = self.source(team, (&mesh, faces), logs, notices)?;
-        stage("metric ready");
         let (model, place) = self.place(team, &mesh, cad, notices)?;
         stage("classified");
+        let (mut source, made) = self.source(team, (&mesh, faces), logs, (&place, &model), notices)?;
+        stage("metric ready");
         self.scale(team, &mesh, &mut source, made.is_some())?;
         stage("complexity");
         Ok(Input { mesh, place, model, source, made })
@@ -108,24 +122,92 @@ impl InputArguments {
         team: Team<'_>,
         (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
         logs: Option<Vec<Sym3>>,
+        on: (&Classification, &Model),
         notices: &mut Vec<String>,
     ) -> Result<(Source, Option<Made>), Error> {
         if let Some(field) = self.field.analytic {
             return Ok((Source::Analytic { field, log_scale: 0.0 }, None));
         }
+        let named = |error: String| format!("{}: {error}", self.mesh.display());
         if mesh.tets.is_empty() {
-            return Err(format!("{}: {}", self.mesh.display(), adapt::Error::Empty).into());
+            return Err(named(adapt::Error::Empty.to_string()).into());
         }
         let (logs, made) = match logs {
-            Some(logs) => (logs, None),
+            Some(logs) if !self.is_bounded() => (logs, None),
+            Some(logs) => (self.bounded(team, mesh, logs).map_err(named)?, None),
             None => {
                 let complexity = self.complexity.ok_or("--field needs a --complexity")?;
+                let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
                 let wanted = (complexity, Measure::Between);
-                let (logs, made) = self.multiscale.make(team, mesh, &self.field.field, wanted, notices)?;
+                let (logs, made) =
+                    self.multiscale.make(team, mesh, &self.field.field, wanted, fixed.as_deref(), notices)?;
                 (logs, Some(made))
             }
         };
         Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), made))
+    }
+
+    /// Whether the metric of a file is to be changed by more than a scale.
+    fn is_bounded(&self) -> bool {
+        !self.local.is_empty() || self.multiscale.bounds_are_given()
+    }
+
+    /// ln of the metric of a file within the bounds that are given, graded, and of the complexity that is asked for.
+    fn bounded(&self, team: Team<'_>, mesh: &TetMesh, mut logs: Vec<Sym3>) -> Result<Vec<Sym3>, String> {
+        let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth());
+        let fixed = self.local_sizes(team, mesh)?;
+        let complexity = self.complexity.unwrap_or(1.0);
+        let bounds = Bounds { complexity, measure: Measure::Between, gradation, limits, fixed: fixed.as_deref() };
+        if self.complexity.is_some() {
+            return bounded(team, mesh, &logs, &bounds).map(|found| found.0).map_err(|error| error.to_string());
+        }
+        bounds.apply(team, &mut logs);
+        if let Some(ratio) = gradation {
+            grade(team, mesh, &mut logs, ratio);
+        }
+        Ok(logs)
+    }
+
+    /// ln of the metric that the local sizes ask for, all else as large as can be; none without any.
+    fn local_sizes(&self, team: Team<'_>, mesh: &TetMesh) -> Result<Option<Vec<Sym3>>, String> {
+        if self.local.is_empty() {
+            return Ok(None);
+        }
+        let mut logs = vec![Sym3::ZERO.plus_identity(-2.0 * diameter(team, mesh).ln()); mesh.vertices.len()];
+        parts::apply(&self.local, mesh, &mut logs)?;
+        Ok(Some(logs))
+    }
+
+    /// ln of the metric that holds whatever the field says: that of the geometry, on a CAD model, and of the local sizes.
+    fn fixed(
+        &self,
+        team: Team<'_>,
+        mesh: &TetMesh,
+        (place, model): (&Classification, &Model),
+        complexity: f64,
+        notices: &mut Vec<String>,
+    ) -> Result<Option<Vec<Sym3>>, String> {
+        if self.cad.is_none() || self.no_geometry {
+            return self.local_sizes(team, mesh);
+        }
+        let options = self.geometry.options(model, self.multiscale.limits()?, self.multiscale.growth());
+        let (mut logs, _) = sizing::geometry_metric(team, mesh, place, model, &options);
+        let own = field::complexity_between(team, mesh, &logs);
+        let most = GEOMETRY_SHARE * complexity;
+        if own > most {
+            let log_factor = field::complexity_factor(own, most).ln();
+            team.fill(GRAIN, &mut logs, |_, logs| {
+                logs.iter_mut().for_each(|log| *log = log.plus_identity(log_factor));
+            });
+            notices.push(format!(
+                "the geometry alone asks for a complexity of {own:.0}: its sizes are multiplied by {:.2}, to leave half of \
+                 {complexity} to the field (a greater --complexity keeps them, --no-geometry leaves them out)",
+                (-0.5 * log_factor).exp()
+            ));
+        }
+        parts::apply(&self.local, mesh, &mut logs)?;
+        stage("geometry");
+        Ok(Some(logs))
     }
 
     /// Scales the source to the complexity that is asked for, which one that was made for it has; and refuses one that no mesh can have.
@@ -134,7 +216,7 @@ impl InputArguments {
             return Ok(());
         }
         let own = source.complexity(team, mesh);
-        if let Some(target) = self.complexity.filter(|_| !is_made) {
+        if let Some(target) = self.complexity.filter(|_| !is_made && !self.is_bounded()) {
             source.scale(team, field::complexity_factor(own, target).ln());
         }
         let complexity = self.complexity.unwrap_or(own);

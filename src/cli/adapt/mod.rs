@@ -1,8 +1,8 @@
 //! `geo-adapt adapt`.
 pub mod field;
 mod files;
-mod freeze;
 pub mod input;
+mod parts;
 mod progress;
 mod report;
 
@@ -45,7 +45,7 @@ pub struct Arguments {
     points: PointCreation,
     /// Surfaces and regions that stay as they are, by reference: 3 or surface:3, region:2
     #[arg(long, value_name = "REF,…", value_delimiter = ',', allow_negative_numbers = true)]
-    freeze: Vec<freeze::Part>,
+    freeze: Vec<parts::Part>,
     /// How the threads share the work
     #[arg(long, value_enum, default_value_t = Scheduler::default())]
     scheduler: Scheduler,
@@ -93,7 +93,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let progress = Progress::new(!arguments.quiet, stop.clone());
         let Input { mesh, place, model, source, .. } = &input;
         let named = |error| format!("{}: {error}", arguments.input.mesh.display());
-        let options = arguments.options(plan, freeze::frozen(&arguments.freeze, mesh).map_err(named)?);
+        let options = arguments.options(plan, parts::frozen(&arguments.freeze, mesh).map_err(named)?);
         let adapted = adapt::adapt(mesh, place, model, source, &options, &pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();

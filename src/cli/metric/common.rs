@@ -115,15 +115,23 @@ impl LimitArguments {
 /// How fast sizes may grow.
 #[derive(clap::Args)]
 pub struct GradationArgument {
-    /// Greatest growth of the sizes from an edge to the next (Alauzet 2010, mixed space), or `off`
-    #[arg(long, value_name = "R", value_parser = gradation, default_value = "1.5", allow_negative_numbers = true)]
-    gradation: Gradation,
+    /// Greatest growth of the sizes from an edge to the next (Alauzet 2010, mixed space), or `off` [default: 1.5]
+    #[arg(long, value_name = "R", value_parser = gradation, allow_negative_numbers = true)]
+    gradation: Option<Gradation>,
 }
+
+/// Growth of the sizes where none is given.
+const USUAL_GROWTH: f64 = 1.5;
 
 impl GradationArgument {
     /// The ratio; none when off.
     pub fn ratio(&self) -> Option<f64> {
-        self.gradation.0
+        self.gradation.map_or(Some(USUAL_GROWTH), |gradation| gradation.0)
+    }
+
+    /// Whether one was given.
+    pub fn is_given(&self) -> bool {
+        self.gradation.is_some()
     }
 }
 

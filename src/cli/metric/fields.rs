@@ -2,9 +2,9 @@
 use super::common::{Failure, GradationArgument, LimitArguments};
 use crate::mesh::TetMesh;
 use crate::mesh::io::{FieldKind, Read, Solution, SolutionField, read_solution};
-use crate::metric::Sym3;
-use crate::metric::multiscale::{self, Measure, Norm, Options, Summary, multiscale};
+use crate::metric::multiscale::{self, Bounds, Measure, Norm, Options, Summary, multiscale};
 use crate::metric::recovery::Recovery;
+use crate::metric::{Limits, Sym3};
 use crate::tasks::Team;
 use clap::ValueEnum;
 use serde::Serialize;
@@ -45,8 +45,11 @@ pub struct MultiscaleArguments {
 /// The steps in time of each sensor, each with a value a vertex.
 type Sensors<'f> = Vec<Vec<&'f [f64]>>;
 
-/// The names of the options, as [`MultiscaleArguments`] has them.
-pub const OPTIONS: [&str; 8] = ["norm", "hessian", "component", "combine", "gradation", "hmin", "hmax", "aspect_ratio"];
+/// The options that say how the metric is made, as [`MultiscaleArguments`] has them.
+pub const OPTIONS: [&str; 4] = ["norm", "hessian", "component", "combine"];
+
+/// Those that bound sizes.
+pub const BOUNDS: [&str; 4] = ["gradation", "hmin", "hmax", "aspect_ratio"];
 
 /// The metric that was made, for tables and JSON.
 #[derive(Clone, Serialize)]
@@ -65,13 +68,30 @@ pub struct Made {
 }
 
 impl MultiscaleArguments {
-    /// ln M at the vertices of the mesh, shape (n,), made from the fields of these files, and what was done. Notices are added.
+    /// The bounds of the sizes.
+    pub fn limits(&self) -> Result<Limits, String> {
+        self.limits.limits()
+    }
+
+    /// Greatest growth; none when off.
+    pub fn growth(&self) -> Option<f64> {
+        self.gradation.ratio()
+    }
+
+    /// Whether a bound or a growth was given.
+    pub fn bounds_are_given(&self) -> bool {
+        self.gradation.is_given() || self.limits.limits() != Ok(Limits::default())
+    }
+
+    /// ln M at the vertices of the mesh, shape (n,), made from the fields of these files, and what was done; `fixed`, ln of
+    /// another metric, is intersected at any scale. Notices are added.
     pub fn make(
         &self,
         team: Team<'_>,
         mesh: &TetMesh,
         paths: &[PathBuf],
         (complexity, measure): (f64, Measure),
+        fixed: Option<&[Sym3]>,
         notices: &mut Vec<String>,
     ) -> Result<(Vec<Sym3>, Made), Failure> {
         let limits = self.limits.limits()?;
@@ -83,7 +103,8 @@ impl MultiscaleArguments {
         }
         let (sensors, names) = self.sensors(paths, &files)?;
         let (norm, recovery, gradation) = (self.norm, self.hessian, self.gradation.ratio());
-        let options = Options { complexity, measure, recovery, norm, gradation, limits };
+        let bounds = Bounds { complexity, measure, gradation, limits, fixed };
+        let options = Options { recovery, norm, bounds };
         let (logs, summary) = multiscale(team, mesh, &sensors, &options).map_err(|error| match error {
             multiscale::Error::Flat { sensor } | multiscale::Error::NotFinite { sensor, .. } => {
                 format!("{}: {error}", names[sensor])

@@ -27,18 +27,14 @@ pub struct Arguments {
     cad: Option<PathBuf>,
     #[command(flatten)]
     output: OutputArgument,
-    /// Segments for a radian of curvature: the size is 1/(N κ), 2π N segments go round a circle
-    #[arg(long, value_name = "N", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
-    segments: f64,
+    #[command(flatten)]
+    sizes: GeometryArguments,
     /// Sizes. By default --hmax is a tenth of the diagonal of the model's box and --hmin 1e-5 of it: that is for apices and for what all but
     /// touches, where sizes have no other end
     #[command(flatten)]
     limits: LimitArguments,
     #[command(flatten)]
     gradation: GradationArgument,
-    /// Cells across thin parts and gaps, between entities that come near and do not touch; or `off`
-    #[arg(long, value_name = "K", value_parser = cells, default_value = "2", allow_negative_numbers = true)]
-    feature_cells: Cells,
     /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model states for an entity]
     #[arg(long, value_name = "T", value_parser = positive, requires = "cad", allow_negative_numbers = true)]
     tolerance: Option<f64>,
@@ -47,6 +43,17 @@ pub struct Arguments {
     report: Option<PathBuf>,
     #[command(flatten)]
     run: RunArguments,
+}
+
+/// What a geometry asks for; `adapt --field` has it too.
+#[derive(clap::Args)]
+pub struct GeometryArguments {
+    /// Segments for a radian of curvature: the size is 1/(N κ), 2π N segments go round a circle
+    #[arg(long, value_name = "N", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
+    segments: f64,
+    /// Cells across thin parts and gaps, between entities that come near and do not touch; or `off`
+    #[arg(long, value_name = "K", value_parser = cells, default_value = "2", allow_negative_numbers = true)]
+    feature_cells: Cells,
 }
 
 /// A number of cells, or off. (A type of its own, since clap would take an Option for an argument that may be left out.)
@@ -102,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mesh = read.content;
     let (model, lies) = lies(team, arguments, &mesh)?;
     let read_and_classify = start.elapsed().as_secs_f64();
-    let options = options(arguments, &model, limits);
+    let options = arguments.sizes.options(&model, limits, arguments.gradation.ratio());
     let (logs, summary) = sizing::geometry_metric(team, &mesh, &lies, &model, &options);
     let metric = start.elapsed().as_secs_f64() - read_and_classify;
     arguments.output.write_logs(team, &logs)?;
@@ -142,17 +149,19 @@ fn lies(team: Team<'_>, arguments: &Arguments, mesh: &TetMesh) -> Result<(Model,
     Ok((model, place))
 }
 
-/// The defaults for the model where nothing else is given. A given size moves the default of the other, if that is beyond it.
-fn options(arguments: &Arguments, model: &Model, limits: Limits) -> Options {
-    let defaults = Options::of(model.topology());
-    let greatest = limits.hmax.unwrap_or(defaults.greatest.max(limits.hmin.unwrap_or(0.0)));
-    Options {
-        segments: arguments.segments,
-        least: limits.hmin.unwrap_or(defaults.least.min(greatest)),
-        greatest,
-        aspect_ratio: limits.aspect_ratio,
-        cells: arguments.feature_cells.0,
-        gradation: arguments.gradation.ratio(),
+impl GeometryArguments {
+    /// The defaults for the model where nothing else is given. A given size moves the default of the other, if that is beyond it.
+    pub fn options(&self, model: &Model, limits: Limits, gradation: Option<f64>) -> Options {
+        let defaults = Options::of(model.topology());
+        let greatest = limits.hmax.unwrap_or(defaults.greatest.max(limits.hmin.unwrap_or(0.0)));
+        Options {
+            segments: self.segments,
+            least: limits.hmin.unwrap_or(defaults.least.min(greatest)),
+            greatest,
+            aspect_ratio: limits.aspect_ratio,
+            cells: self.feature_cells.0,
+            gradation,
+        }
     }
 }
 

@@ -3,7 +3,7 @@ mod common;
 pub(super) mod fields;
 mod from_image;
 mod from_points;
-mod geometry;
+pub(super) mod geometry;
 mod grade;
 mod implied;
 mod interpolate;

@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mesh = common::mesh(&arguments.run, &arguments.mesh)?;
     stage("mesh read");
     let (mut notices, wanted) = (Vec::new(), (arguments.complexity, Measure::AtVertices));
-    let (logs, made) = arguments.multiscale.make(team, &mesh, &arguments.fields, wanted, &mut notices)?;
+    let (logs, made) = arguments.multiscale.make(team, &mesh, &arguments.fields, wanted, None, &mut notices)?;
     arguments.run.note(&notices);
     arguments.output.write_logs(team, &logs)?;
     stage("written");

@@ -135,34 +135,3 @@ proptest! {
         prop_assert_eq!(&logs, &once);
     }
 }
-
-/// Run with `--ignored --nocapture` on an optimised build: a million vertices, sizes from 1e-3 to 1.
-#[test]
-#[ignore = "a measurement"]
-fn a_million_vertices() {
-    let mesh = cube(100);
-    type OfPlace = fn(&Vec3) -> Sym3;
-    let fields: [(&str, OfPlace); 4] = [
-        ("uniform", |_| Sym3::IDENTITY),
-        ("spot", |p| Sym3::IDENTITY.times(if norm(sub(*p, [0.5; 3])) < 1e-9 { 1e6 } else { 1.0 })),
-        ("layer", |p| Sym3::diagonal(1.0, 4.0, if (p[2] - 0.5).abs() < 1e-9 { 1e6 } else { 1.0 })),
-        ("waves", |p| {
-            let s = (17.0 * p[0] + 23.0 * p[1]).sin();
-            let (c, d) = ((5.0 * p[2]).cos(), (5.0 * p[2]).sin());
-            Sym3::from_sizes([[c, d, 0.0], [-d, c, 0.0], [0.0, 0.0, 1.0]], [10f64.powf(1.5 * s - 1.5), 0.3, 1.0])
-        }),
-    ];
-    for (name, field) in fields {
-        let field: Vec<Sym3> = mesh.vertices.iter().map(|p| field(p).ln()).collect();
-        for threads in [1, 2] {
-            let pool = Pool::new(threads).unwrap();
-            let mut logs = field.clone();
-            let start = std::time::Instant::now();
-            let graded = grade(Team::new(&pool, Plan::default()), &mesh, &mut logs, RATIO);
-            println!("{name} {threads} threads: {:.2} s, {graded:?}", start.elapsed().as_secs_f64());
-        }
-    }
-    let start = std::time::Instant::now();
-    VertexNeighbours::of(Team::alone(), &mesh.tets.nodes, mesh.vertices.len());
-    println!("neighbours {:.2} s", start.elapsed().as_secs_f64());
-}

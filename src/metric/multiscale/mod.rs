@@ -166,7 +166,7 @@ fn optimal_logs(
 }
 
 /// The diagonal of the box of the vertices that tetrahedra have.
-fn diameter(team: Team<'_>, mesh: &TetMesh) -> f64 {
+pub fn diameter(team: Team<'_>, mesh: &TetMesh) -> f64 {
     let (none, tets) = (([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), &mesh.tets.nodes);
     let join = |(low, high): (Vec3, Vec3), (l, h): (Vec3, Vec3)| -> (Vec3, Vec3) {
         (std::array::from_fn(|i| low[i].min(l[i])), std::array::from_fn(|i| high[i].max(h[i])))
