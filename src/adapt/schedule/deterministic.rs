@@ -21,12 +21,18 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 /// Their words fit in a byte.
 pub const MOST_PARTS: usize = 64;
 
-/// Items a part, at least.
+/// Items a part in the first round, at least, where that leaves more than [`FEW`] parts: the larger the fewer meet another part.
 /// Few in the unit tests, whose meshes are small.
-const ITEMS: usize = if cfg!(test) { 6 } else { 4096 };
+const ITEMS: usize = if cfg!(test) { 12 } else { 4096 };
+
+/// Parts of short lists, if they have [`FEWEST_ITEMS`] each.
+const FEW: usize = 4;
+
+/// Items a part, at least.
+const FEWEST_ITEMS: usize = if cfg!(test) { 6 } else { 1024 };
 
 /// What is left is one thread's when it is less than this part of all items.
-const LITTLE: f64 = 0.02;
+const LITTLE: f64 = 0.008;
 
 /// Vertices or tetrahedra that are looked at in one task.
 const GRAIN: usize = 1 << 13;
@@ -58,13 +64,12 @@ pub fn run<'m, O: Operation>(
 ) -> Counts {
     let mut counts = Counts::default();
     let mut left: Vec<u32> = (0..items.len() as u32).collect();
-    let mut most = MOST_PARTS;
+    let (mut parts, mut shared) = (first_parts(items.len()), false);
     loop {
-        let parts = parts_for(left.len()).min(most);
         if parts < 2 || (left.len() as f64) < LITTLE * items.len() as f64 {
             let rest: Vec<_> = left.iter().map(|&i| items[i as usize]).collect();
             counts.add(&sequential::run(operation, &rest, context, &mut states[0], advance));
-            if left.len() < items.len() || most < MOST_PARTS {
+            if shared {
                 give_back(&context.store, (pool, plan));
             }
             return counts;
@@ -72,7 +77,8 @@ pub fn run<'m, O: Operation>(
         let mut round = Round { operation, items, context, pool, plan, left, parts };
         left = round.run(states, &mut counts, advance);
         // What is left lies between the parts of this round: fewer and larger parts have less between them.
-        most = parts / 2;
+        parts = (parts / 2).min(power(left.len() / FEWEST_ITEMS));
+        shared = true;
     }
 }
 
@@ -89,9 +95,14 @@ fn owner(store: &Store, v: VertexId) -> u8 {
     store.owner(v).load(Relaxed)
 }
 
-fn parts_for(items: usize) -> usize {
-    let parts = (items / ITEMS).max(1);
-    1 << parts.ilog2()
+/// Parts of the first round: large ones, but some for a few threads however short the list.
+fn first_parts(items: usize) -> usize {
+    power(items / ITEMS).max(FEW.min(power(items / FEWEST_ITEMS))).min(MOST_PARTS)
+}
+
+/// The greatest power of two that is no more than n, and no less than 1.
+fn power(n: usize) -> usize {
+    1 << n.max(1).ilog2()
 }
 
 struct Round<'r, 'm, O: Operation> {

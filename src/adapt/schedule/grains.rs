@@ -27,12 +27,9 @@ impl Grains {
 }
 
 impl Default for Grains {
-    /// Measured on two threads; between 32 and 512 hardly anything depends on them.
+    /// Measured on two threads: smaller ones cost claims and cold caches, whatever the back-end (ARCHITECTURE.md has the table).
     fn default() -> Self {
-        let mut grains = Self::uniform(64);
-        grains.set(Kind::Split, 128);
-        grains.set(Kind::Reconnect, 128);
-        grains
+        Self::uniform(512)
     }
 }
 
@@ -86,7 +83,7 @@ mod tests {
         assert_eq!(grains.to_string().parse(), Ok(grains));
         assert_eq!("12".parse(), Ok(Grains::uniform(12)));
         let some: Grains = "reconnection=9, smoothing=8".parse().expect("two of them");
-        assert_eq!([Kind::Reconnect, Kind::Smooth, Kind::Split].map(|kind| some.of(kind)), [9, 8, 128]);
+        assert_eq!([Kind::Reconnect, Kind::Smooth, Kind::Split].map(|kind| some.of(kind)), [9, 8, 512]);
         for wrong in ["", "0", "smoothing=0", "swapping=3", "smoothing=3,4", "smoothing=-1"] {
             assert!(wrong.parse::<Grains>().is_err(), "{wrong}");
         }

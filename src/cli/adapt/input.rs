@@ -11,9 +11,9 @@ use crate::geometry::{Discrete, Model};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, io};
 use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
-use crate::metric::{Background, Field, Source, Sym3, field, grade};
+use crate::metric::{Background, Field, Limits, Source, Sym3, field, grade};
 use crate::sizing;
-use crate::tasks::{GRAIN, Team, stage};
+use crate::tasks::{Team, stage};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -190,19 +190,22 @@ impl InputArguments {
         if self.cad.is_none() || self.no_geometry {
             return self.local_sizes(team, mesh);
         }
-        let options = self.geometry.options(model, self.multiscale.limits()?, self.multiscale.growth());
-        let (mut logs, _) = sizing::geometry_metric(team, mesh, place, model, &options);
+        let gradation = self.multiscale.growth();
+        let options = self.geometry.options(model, self.multiscale.limits()?, None);
+        let (raw, _) = sizing::geometry_metric(team, mesh, place, model, &options);
+        let mut logs = raw.clone();
+        if let Some(ratio) = gradation {
+            grade(team, mesh, &mut logs, ratio);
+        }
         let own = field::complexity_between(team, mesh, &logs);
         let most = GEOMETRY_SHARE * complexity;
         if own > most {
-            let log_factor = field::complexity_factor(own, most).ln();
-            team.fill(GRAIN, &mut logs, |_, logs| {
-                logs.iter_mut().for_each(|log| *log = log.plus_identity(log_factor));
-            });
+            let limits = Limits::default();
+            let bounds = Bounds { complexity: most, measure: Measure::Between, gradation, limits, fixed: None };
+            logs = bounded(team, mesh, &raw, &bounds).map_err(|error| format!("the geometry's metric: {error}"))?.0;
             notices.push(format!(
-                "the geometry alone asks for a complexity of {own:.0}: its sizes are multiplied by {:.2}, to leave half of \
-                 {complexity} to the field (a greater --complexity keeps them, --no-geometry leaves them out)",
-                (-0.5 * log_factor).exp()
+                "the geometry alone asks for a complexity of {own:.0}: its sizes are enlarged, to leave half of {complexity} to \
+                 the field (a greater --complexity keeps them, --no-geometry leaves them out)"
             ));
         }
         parts::apply(&self.local, mesh, &mut logs)?;
