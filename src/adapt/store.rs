@@ -88,11 +88,10 @@ fn save<const N: usize>(to: &[AtomicU64; N], values: [f64; N]) {
     }
 }
 
-/// Records that a task of [`rehouse`] moves, two megabytes of tetrahedra: threads that touch the same huge page first wait for each other.
-/// And tasks at a time.
-const MOVED: usize = 1 << 15;
+/// Records that a task of [`rehouse`] moves, and tasks at a time.
+const MOVED: usize = 1 << 13;
 /// See [`MOVED`].
-const AT_ONCE: usize = 8;
+const AT_ONCE: usize = 16;
 
 /// Moves the used records to an array of another capacity; needs them exclusively, so between sweeps only. They go from the back, and
 /// the old array gives back its memory as it gets shorter, so that they never are there twice.
