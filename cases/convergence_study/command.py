@@ -1,0 +1,97 @@
+"""How fast the interpolation error falls on meshes adapted to analytic scalars (Tsolakis 2021, figure 49).
+
+For sinfun3, tanh3 and sinatan3 on the unit cube, from a uniform mesh of 64 vertices: the scalar at the vertices, `geo-adapt adapt --field`
+(multiscale metric of the L2 norm), again; the complexity is doubled every few cycles. Printed for each complexity: vertices and L2 error of the
+linear interpolant against the exact function (means over the last three cycles), and the error of a uniform mesh of as many vertices; then
+the order p of error ∝ N^-p over the last three complexities (2/3 is second order). What follows the options goes to geo-adapt.
+
+Exit code: 0 when what study's floors ask for is reached (only asked of complexities from 64 000 on), 1 else, 2 on a wrong command line.
+Under out/convergence: result.json, convergence.png, and the last mesh of each complexity in SCALAR/C.meshb.
+"""
+
+import argparse
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from convergence_study import plot, study  # noqa: E402
+from convergence_study.scalars import SCALARS  # noqa: E402
+from judging import cycles  # noqa: E402
+
+OUT = cycles.ROOT / "out" / "convergence"
+# Issue 5: the least order of each scalar, and how many times less the error than a uniform mesh's, from this complexity on.
+HELD_FROM = 64_000
+ORDER = {"sinfun3": 0.62, "tanh3": 0.62, "sinatan3": 0.62}
+TIMES_LESS = {"sinatan3": 20}
+# Parts of the error that the quadrature may be off by.
+DOUBT = 0.02
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="cases/convergence", allow_abbrev=False, description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--fields", nargs="+", choices=SCALARS, default=list(SCALARS), help="which scalars (default: all)")
+    parser.add_argument("--complexity", type=float, default=64_000, metavar="MAX", help="the greatest (default: 64 000)")
+    parser.add_argument("--cycles", type=int, default=6, help="at each complexity (default %(default)s)")
+    parser.add_argument("--out", type=Path, default=OUT, help="where files go (default: out/convergence)")
+    parser.add_argument("--program", type=Path, required=True, help="a geo-adapt that is built (default: it is built, release)")
+    options, extra = parser.parse_known_args()
+    if not options.program.is_file():
+        parser.error(f"{options.program} is not there")
+    if options.cycles < 1:
+        parser.error("--cycles: at least 1")
+    if not options.complexity >= 100:
+        parser.error("--complexity: at least 100")
+    return options, extra
+
+
+def line(name, step, of):
+    """A row of the table."""
+    return (f"{name:<10}{step.complexity:>10.0f}{step.vertices:>10.0f}{step.error:>12.3e}{step.uniform_vertices:>10}{step.uniform_error:>12.3e}"
+            f"{step.uniform_error / step.error:>8.1f}   {' '.join(f'{cycle.error:.3e}' for cycle in of)}")
+
+
+def lost(name, result):
+    """What is not reached, one line each."""
+    found = []
+    if result["doubt"] > DOUBT:
+        found.append(f"{name}: the quadrature may be off by {100 * result['doubt']:.2g} % of the error")
+    last = result["steps"][-1]
+    if last["complexity"] < HELD_FROM:
+        return found
+    order, times = result["order"], last["uniform_error"] / last["error"]
+    if order < ORDER[name]:
+        found.append(f"{name}: order {order:.3f} < {ORDER[name]}")
+    if times < TIMES_LESS.get(name, 1):
+        found.append(f"{name}: {times:.1f} times less error than on a uniform mesh, wanted {TIMES_LESS[name]}")
+    return found
+
+
+def main():
+    options, extra = arguments()
+    options.out.mkdir(parents=True, exist_ok=True)
+    stamp = {"when": time.strftime("%Y-%m-%d %H:%M:%S"), "cores": os.cpu_count(), "cycles": options.cycles, "options": extra}
+    cycles.say(f"{'scalar':<10}{'complexity':>10}{'vertices':>10}{'L2 error':>12}{'uniform':>10}{'its error':>12}{'ratio':>8}   error of each cycle")
+    results, faults = {}, []
+    for name in options.fields:
+        one = study.Study(name, SCALARS[name], options.program.resolve(), options.out / name, extra)
+        for complexity in study.complexities(options.complexity):
+            cycles.say(line(name, one.run(complexity, options.cycles), one.cycles[-options.cycles :]))
+            results[name] = one.result()
+            (options.out / "result.json").write_text(json.dumps(stamp | {"scalars": results}, indent=1))
+        order = results[name]["order"]
+        if order is not None:
+            cycles.say(f"{name:<10}error ∝ N^-{order:.3f} over the last {study.FITTED} complexities; {one.seconds:.0f} s")
+        faults += lost(name, results[name])
+    plot.draw(options.out / "convergence.png", results)
+    cycles.say(f"wrote {options.out}/convergence.png, result.json and meshes")
+    for fault in faults:
+        cycles.say(f"LOST  {fault}")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
