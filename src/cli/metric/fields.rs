@@ -42,7 +42,10 @@ pub struct MultiscaleArguments {
     limits: LimitArguments,
 }
 
-/// The long names of the options, as [`MultiscaleArguments`] has them.
+/// The steps in time of each sensor, each with a value a vertex.
+type Sensors<'f> = Vec<Vec<&'f [f64]>>;
+
+/// The names of the options, as [`MultiscaleArguments`] has them.
 pub const OPTIONS: [&str; 8] = ["norm", "hessian", "component", "combine", "gradation", "hmin", "hmax", "aspect_ratio"];
 
 /// The metric that was made, for tables and JSON.
@@ -134,12 +137,7 @@ impl MultiscaleArguments {
     }
 
     /// The scalars as sensors with their steps, and what each is called in errors.
-    #[allow(clippy::type_complexity)]
-    fn sensors<'f>(
-        &self,
-        paths: &[PathBuf],
-        files: &'f [Vec<Vec<f64>>],
-    ) -> Result<(Vec<Vec<&'f [f64]>>, Vec<String>), String> {
+    fn sensors<'f>(&self, paths: &[PathBuf], files: &'f [Vec<Vec<f64>>]) -> Result<(Sensors<'f>, Vec<String>), String> {
         let field = |path: &Path, number: usize, of: usize| match of {
             1 => path.display().to_string(),
             _ => format!("{}: field {}", path.display(), number + 1),

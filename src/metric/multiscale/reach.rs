@@ -72,7 +72,7 @@ pub fn reach_within(
             next
         };
         // Closed to rounding: a jump. Far away: a bound. Neither: a complexity that is no number.
-        if above - below < 1e-9 || !(scale.abs() <= FARTHEST) {
+        if above - below < 1e-9 || scale.is_nan() || scale.abs() > FARTHEST {
             break;
         }
     }

@@ -6,8 +6,8 @@ use crate::metric::recovery::{Recovery, Rings};
 use crate::metric::{Eigen, Sym3};
 use crate::tasks::{GRAIN, Team};
 
-/// Second differences of values are no more than rounding up to so many units in the last place of the greatest value.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// Second differences that are this share of the greatest value are no more than its rounding, which a fit to points on one side multiplies.
+const ROUNDING: f64 = 1e-12;
 
 /// What is found of a sensor.
 pub struct Absolute {
