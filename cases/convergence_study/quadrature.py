@@ -13,7 +13,7 @@ TOLERANCE = 0.02
 # Halvings at most, tetrahedra at a time, and tetrahedra halved at most in a level.
 LEVELS, CHUNK, MOST = 10, 4_000, 200_000
 # Coarser meshes are halved first: few rules may agree by chance.
-LEAST = 5_000
+LEAST = 40_000
 
 
 def _orbit(place, weight):
