@@ -94,11 +94,12 @@ class Study(unittest.TestCase):
     def test_what_is_not_reached_is_said(self):
         def result(order, times, complexity=64_000.0, doubt=0.01):
             return {"order": order, "doubt": doubt, "steps": [{"complexity": complexity, "error": 1.0, "uniform_error": times}]}
-        low, times = command.ORDER["sinatan3"], command.TIMES_LESS["sinatan3"]
-        self.assertEqual(command.lost("sinatan3", result(low, times)), [])
-        self.assertEqual(len(command.lost("sinatan3", result(low - 0.01, times - 0.1))), 2)
-        self.assertEqual(command.lost("sinatan3", result(low - 0.01, times - 0.1, 32_000.0)), [], "held from 64 000 on")
-        self.assertEqual(len(command.lost("tanh3", result(command.ORDER["tanh3"], 2.0, doubt=0.03))), 1)
+        order, times = (bound.floor for bound in command.BOUNDS["sinatan3"])
+        self.assertEqual(command.hold("sinatan3", result(order, times))[1], [])
+        self.assertEqual(len(command.hold("sinatan3", result(order - 0.01, times - 0.1))[1]), 2)
+        self.assertEqual(command.hold("sinatan3", result(order - 0.01, times - 0.1, 32_000.0)), ([], []), "held from 64 000 on")
+        self.assertEqual(len(command.hold("tanh3", result(1.0, 2.0, doubt=0.03))[1]), 1)
+        self.assertIn("not reached", command.hold("sinatan3", result(order, 0.9 * 20))[0][1])
 
 
 if __name__ == "__main__":
