@@ -13,6 +13,9 @@ use multiversion::multiversion;
 /// The terms: 1, three linear ones, then ½y₁², y₁y₂, ½y₂², y₁y₃, y₂y₃, ½y₃², as a tensor has them.
 const TERMS: usize = 10;
 
+/// The products of two coordinates, and the squares of these.
+const PRODUCTS: [(usize, [usize; 2]); 3] = [(5, [4, 6]), (7, [4, 9]), (8, [6, 9])];
+
 /// Those that are not quadratic.
 const LINEAR: usize = 4;
 
@@ -34,7 +37,8 @@ pub struct Quadratic {
 pub struct Fitted {
     /// The second derivatives.
     pub hessian: Sym3,
-    /// How well the points tell the terms apart, in [0, 1]: the least share of a term's column that is no combination of those before.
+    /// How well the points tell the terms apart, in [0, 1]: the least share of a term's column that is no combination of those before,
+    /// where a product of two coordinates counts as small as it is beside their squares.
     pub quality: f64,
 }
 
@@ -136,6 +140,11 @@ fn orthogonalise(height: usize, columns: &mut [Lanes]) -> ([[f64; TERMS + 1]; TE
     let mut lengths = [0.0; TERMS];
     for (length, column) in lengths.iter_mut().zip(columns.chunks_exact(height)) {
         *length = product(column, column);
+    }
+    // At a corner of the domain, where all points may lie on its three sides, a product is nothing but the rounding of the coordinates:
+    // beside itself that is as good a column as any, so it is held against what Cauchy and Schwarz let it be.
+    for (term, [first, second]) in PRODUCTS {
+        lengths[term] = lengths[term].max((lengths[first] * lengths[second]).sqrt());
     }
     let mut least = f64::INFINITY;
     for k in 0..TERMS {
@@ -241,6 +250,29 @@ mod tests {
             quadratic.push([x, y, z, x * x + z]);
         }
         // Two layers: z² is z.
+        assert!(quadratic.fit().is_none_or(|fitted| fitted.quality < 1e-6));
+    }
+
+    #[test]
+    fn a_product_that_is_rounding_is_not_told() {
+        // A corner whose points lie on its three sides, two of them beside one by a rounding: xy is nowhere but there.
+        let mut quadratic = Quadratic::default();
+        quadratic.start();
+        let tiny = f64::EPSILON;
+        for [x, y, z] in [
+            [0.0, 0.0, 0.13],
+            [0.11, 0.0, 0.0],
+            [0.0, 0.0, 0.077],
+            [0.049, 0.0, 0.0],
+            [0.053, tiny, 0.04],
+            [0.064, tiny, 0.064],
+            [0.0, 0.049, 0.057],
+            [0.0, 0.075, 0.0],
+            [0.0, 0.125, 0.0],
+            [0.02, 0.0, 0.09],
+        ] {
+            quadratic.push([x, y, z, (3.0 * x + 2.0 * y - z).sin()]);
+        }
         assert!(quadratic.fit().is_none_or(|fitted| fitted.quality < 1e-6));
     }
 }
