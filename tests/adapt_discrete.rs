@@ -306,15 +306,6 @@ fn triangles_look_to_the_side_that_they_looked_to() {
     }
 }
 
-/// A cube in two halves, the regions 1 and 2.
-fn in_halves(n: u32) -> TetMesh {
-    let mut mesh = one(n);
-    for (nodes, region) in mesh.tets.nodes.iter().zip(&mut mesh.tets.refs) {
-        *region = if nodes.iter().map(|&v| mesh.vertices[v as usize][0]).sum::<f64>() < 2.0 { 1 } else { 2 };
-    }
-    mesh
-}
-
 fn of_reference<const N: usize>(mesh: &TetMesh, elements: &Elements<N>, wanted: i32) -> BTreeSet<Vec<String>> {
     let listed: Vec<u32> =
         elements.refs.iter().zip(0..).filter(|&(&reference, _)| reference == wanted).map(|(_, e)| e).collect();
@@ -324,7 +315,7 @@ fn of_reference<const N: usize>(mesh: &TetMesh, elements: &Elements<N>, wanted: 
 #[test]
 fn what_is_frozen_stays_when_everything_around_it_changes() {
     let work = Workplace::new();
-    let input = in_halves(6);
+    let input = two_regions(6);
     for size in [0.6, 0.09] {
         let metric = work.metric(&input, |_| isotropic(size));
         let mesh = work.adapt(&work.mesh(&input), &["--metric", &metric, "--freeze", "6,region:2"]).mesh;
