@@ -1,13 +1,14 @@
 //! `geo-adapt tune`: which back-end, strategy and grain are the fastest, on the user's case and machine.
 use super::Outcome;
 use super::adapt::input::{Input, InputArguments};
+use super::metric::common::check_output;
 use crate::adapt::{self, Counts, Grains, Kind, Observer, Options, Scheduler};
 use crate::mesh::io;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team};
 use clap::ValueEnum;
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The operations whose tasks have a grain worth measuring.
@@ -93,6 +94,12 @@ struct Bench<'b> {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
+    if let Some(report) = &arguments.report {
+        let given = &arguments.input;
+        let inputs = [Some(&given.mesh), given.cad.as_ref(), given.field.metric.as_ref()];
+        let inputs: Vec<&Path> = inputs.into_iter().flatten().chain(&given.field.field).map(PathBuf::as_path).collect();
+        check_output(report, &["json"], &inputs)?;
+    }
     let pool = Pool::new(arguments.threads.map_or_else(super::cores, usize::from))?;
     let backends = match &arguments.backends[..] {
         [] => Backend::ALL.into_iter().filter(|backend| backend.is_built()).collect(),

@@ -1,5 +1,5 @@
 //! `geo-adapt metric`: metric fields made, combined and measured; one file a subcommand.
-mod common;
+pub(super) mod common;
 pub(super) mod fields;
 mod from_image;
 mod from_points;
