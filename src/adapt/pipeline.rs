@@ -1,4 +1,5 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
+mod growth;
 mod thinning;
 
 use super::context::{Context, LONG, Limits};
@@ -94,6 +95,10 @@ pub struct Pipeline<'c, 'm> {
     /// When each kind of operation last looked at everything, on the store's clock.
     looked: [u32; KINDS],
     pass: usize,
+    /// Vertices of the mesh that was given.
+    input: usize,
+    /// Whether the mesh has more vertices than its metric accounts for, so that nothing is inserted any more.
+    pub overgrown: bool,
     /// Tetrahedra when the store was last renumbered.
     ordered: usize,
 }
@@ -107,7 +112,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         criterion: Criterion,
         waiting: Vec<VertexId>,
     ) -> Self {
-        let ordered = context.store.tet_bound();
+        let (input, ordered) = (context.store.vertex_bound(), context.store.tet_bound());
         let states = (0..crew.pool.threads()).map(|_| State::new(context)).collect();
         Self {
             context,
@@ -121,6 +126,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             waiting,
             looked: [0; KINDS],
             pass: 0,
+            input,
+            overgrown: false,
             ordered,
         }
     }
@@ -132,7 +139,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.thin();
         }
         for _ in 0..SIZE_PASSES {
-            if self.size_pass() || self.observer.stop() {
+            if self.size_pass() || self.overgrown || self.observer.stop() {
                 break;
             }
             self.pass += 1;
@@ -260,7 +267,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Whether so many changes are few for a mesh of this size.
     fn is_little(&self, changes: u64) -> bool {
-        (changes as f64) < LITTLE * self.context.store.live_vertices().count() as f64
+        (changes as f64) < LITTLE * self.live() as f64
     }
 
     fn changes(&self) -> u64 {
@@ -269,6 +276,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Splits long edges, or refines in another way, and reconnects.
     fn refine(&mut self) {
+        if !self.may_grow() {
+            return;
+        }
         let refined = match self.points {
             PointCreation::Edge => false,
             PointCreation::Centroid => self.create(),
@@ -283,6 +293,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Splits long edges and brings what lies on the model there.
     fn split(&mut self) {
+        if !self.may_grow() {
+            return;
+        }
         self.keep_order();
         let items = self.long_edges();
         if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
@@ -400,8 +413,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
         let room = store.room();
         if room.0 < vertices || room.1 < tets {
-            // More than is needed, so that it is not needed again soon: untouched pages cost no memory.
-            store.reserve(team, vertices + store.vertex_bound(), tets + store.tet_bound());
+            // More than is needed, so that it is not needed again soon: untouched pages cost no memory. Without memory the mesh stays
+            // as large as it is.
+            self.overgrown |= !store.reserve(team, vertices + store.vertex_bound(), tets + store.tet_bound());
         }
     }
 

@@ -56,6 +56,9 @@ pub struct Adapted {
     pub work: [Work; KINDS],
     /// Boundary vertices that could not be put on the model.
     pub off_model: usize,
+    /// Whether the mesh stopped growing, since it had far more vertices than the metric's complexity accounts for, or since
+    /// there was no memory for more.
+    pub overgrown: bool,
 }
 
 /// Adapts a classified mesh to the metric of `source`, on `model`. The boundary triangles are complete
@@ -90,7 +93,7 @@ pub fn adapt(
     pipeline.points = options.points;
     pipeline.crowded = crowded;
     pipeline.run();
-    let (work, off_model) = (pipeline.work, pipeline.waiting.len());
+    let (work, off_model, overgrown) = (pipeline.work, pipeline.waiting.len(), pipeline.overgrown);
     drop(pipeline);
     context.store.trim();
     stage("passes");
@@ -101,7 +104,7 @@ pub fn adapt(
     };
     let extracted = extract::extract(team, &context, mesh, &refs);
     stage("extracted");
-    Ok(Adapted { extracted, work, off_model })
+    Ok(Adapted { extracted, work, off_model, overgrown })
 }
 
 /// The mesh in a store, made coarse on the way where it is crowded, and whether that was so.

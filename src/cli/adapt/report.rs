@@ -52,6 +52,7 @@ pub struct Report {
     statistics: Statistics,
     fidelity: Fidelity,
     off_model: usize,
+    overgrown: bool,
     operations: BTreeMap<&'static str, Operation>,
     /// Wall times.
     pub seconds: Seconds,
@@ -88,6 +89,7 @@ impl Report {
             statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
             fidelity,
             off_model: adapted.off_model,
+            overgrown: adapted.overgrown,
             operations: operations(&adapted.work),
             seconds: Seconds::default(),
             mesh,
@@ -106,6 +108,13 @@ impl Report {
         table.fidelity(&self.fidelity);
         if self.off_model > 0 {
             table.row("found no room on the model", format_args!("{} vertices", self.off_model));
+        }
+        if self.overgrown {
+            table.row(
+                "stopped growing",
+                "far more vertices than the metric's complexity accounts for: it asks on a curved wall for cells",
+            );
+            table.row("", "much flatter than the wall bends within an edge; bound it by --aspect-ratio or --hmax, or give --cad and --field");
         }
         table.line("");
         table.line(&format!("{:<14}{:>12}{:>12}{:>9}{:>10}", "operation", "attempts", "done", "sweeps", "seconds"));
