@@ -1,7 +1,9 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
 mod growth;
+mod surface;
 mod thinning;
 
+use super::bend::SurfaceBounds;
 use super::context::{Context, LONG, Limits};
 use super::create::{self, PointCreation};
 use super::criteria::Criterion;
@@ -9,6 +11,7 @@ use super::edges;
 use super::extend;
 use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
+use super::mend::GAIN;
 use super::outcome::Counts;
 use super::schedule::{
     self, Collapse, Create, Crew, Extend, Mend, Operation, Project, Reconnect, Retire, Smooth, Split,
@@ -88,6 +91,8 @@ pub struct Pipeline<'c, 'm> {
     pub points: PointCreation,
     /// Whether the mesh had far too many vertices, some of which may be left.
     pub crowded: bool,
+    /// How far surface triangles may stray from the model.
+    pub surface: SurfaceBounds,
     /// By kind of operation.
     pub work: [Work; KINDS],
     /// Boundary vertices that are not on the model yet.
@@ -122,6 +127,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             criterion,
             points: PointCreation::default(),
             crowded: false,
+            surface: SurfaceBounds::default(),
             work: [Work::default(); KINDS],
             waiting,
             looked: [0; KINDS],
@@ -134,7 +140,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
-        self.context.limits = size_limits();
+        self.limit(size_limits());
         if self.crowded {
             self.thin();
         }
@@ -146,13 +152,13 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
         self.looked = [0; KINDS];
         self.reorder();
-        self.context.limits = shape_limits();
+        self.limit(shape_limits());
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth();
         let mut before = self.cost();
         for pass in 0..SHAPE_PASSES {
             self.pass += 1;
-            self.context.limits = shape_limits();
+            self.limit(shape_limits());
             self.shape_pass();
             self.mend();
             self.settle(pass);
@@ -230,6 +236,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         // Long edges that were refused are tried again: room may have come from farther away.
         self.looked[Kind::Split as usize] = 0;
         self.split();
+        self.unbend();
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth();
     }
@@ -237,8 +244,15 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// The end-game on the tetrahedra below the limit, with edges a little longer than elsewhere allowed.
     fn mend(&mut self) {
         let looked = self.looked;
-        self.context.limits =
-            Limits { improve_below: MEND_BELOW, flip_below: MEND_BELOW, longest_new: 1.3 * LONG, ..shape_limits() };
+        self.limit(Limits {
+            improve_below: MEND_BELOW,
+            flip_below: MEND_BELOW,
+            longest_new: 1.3 * LONG,
+            shortest_new: 0.0,
+            insert_floor: 1.0,
+            insert_loss: GAIN,
+            ..shape_limits()
+        });
         for _ in 0..3 {
             let mut items = self.tets(|store, t| store.quality(t) < MEND_BELOW);
             let store = &self.context.store;
@@ -288,6 +302,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             return;
         }
         self.split();
+        self.unbend();
         self.reconnect(self.criterion, 1);
     }
 

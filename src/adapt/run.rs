@@ -1,4 +1,5 @@
 //! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
+use super::bend::SurfaceBounds;
 use super::build::{self, Filled};
 use super::coarsen;
 use super::context::Context;
@@ -17,6 +18,7 @@ use crate::mesh::TetMesh;
 use crate::metric::Source;
 use crate::tasks::{Plan, Pool, Team, stage};
 use std::collections::HashMap;
+use std::time::Duration;
 
 /// How to adapt.
 #[derive(Clone, Debug)]
@@ -33,6 +35,8 @@ pub struct Options {
     pub grains: Grains,
     /// What must not change.
     pub freeze: Freeze,
+    /// How far surface triangles may stray from the model.
+    pub surface: SurfaceBounds,
 }
 
 impl Default for Options {
@@ -44,6 +48,7 @@ impl Default for Options {
             plan: Plan::default(),
             grains: Grains::default(),
             freeze: Freeze::default(),
+            surface: SurfaceBounds::default(),
         }
     }
 }
@@ -59,6 +64,10 @@ pub struct Adapted {
     /// Whether the mesh stopped growing, since it had far more vertices than the metric's complexity accounts for, or since
     /// there was no memory for more.
     pub overgrown: bool,
+    /// Surface triangles that stray from the model by more than the bounds that were given.
+    pub astray: usize,
+    /// Time in the model's evaluators during the passes, of all threads together.
+    pub geometry: Duration,
 }
 
 /// Adapts a classified mesh to the metric of `source`, on `model`. The boundary triangles are complete
@@ -92,8 +101,11 @@ pub fn adapt(
     );
     pipeline.points = options.points;
     pipeline.crowded = crowded;
+    pipeline.surface = options.surface;
     pipeline.run();
     let (work, off_model, overgrown) = (pipeline.work, pipeline.waiting.len(), pipeline.overgrown);
+    let geometry = pipeline.states.iter().map(|state| state.evaluator.spent).sum();
+    let astray = pipeline.astray();
     drop(pipeline);
     context.store.trim();
     stage("passes");
@@ -104,7 +116,7 @@ pub fn adapt(
     };
     let extracted = extract::extract(team, &context, mesh, &refs);
     stage("extracted");
-    Ok(Adapted { extracted, work, off_model, overgrown })
+    Ok(Adapted { extracted, work, off_model, overgrown, astray, geometry })
 }
 
 /// The mesh in a store, made coarse on the way where it is crowded, and whether that was so.

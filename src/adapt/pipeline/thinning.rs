@@ -18,7 +18,7 @@ fn thin_limits() -> Limits {
 impl Pipeline<'_, '_> {
     /// Removes vertices that are too near to others, with flips where that gets stuck.
     pub(super) fn thin(&mut self) {
-        self.context.limits = thin_limits();
+        self.limit(thin_limits());
         for round in 0..THINNINGS {
             if round > 0 {
                 self.reconnect(self.criterion, 1);
@@ -26,7 +26,7 @@ impl Pipeline<'_, '_> {
             self.thin_in_sweeps();
         }
         self.reorder();
-        self.context.limits = size_limits();
+        self.limit(size_limits());
     }
 
     /// Sweeps over the vertices whose neighbourhood changed, until few of them go.

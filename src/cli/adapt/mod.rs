@@ -7,7 +7,7 @@ mod progress;
 mod report;
 
 use super::Outcome;
-use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler};
+use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
 use crate::metric::Field;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
 use input::{Given, Input, InputArguments};
@@ -46,6 +46,12 @@ pub struct Arguments {
     /// Surfaces and regions that stay as they are, by reference: 3 or surface:3, region:2
     #[arg(long, value_name = "REF,…", value_delimiter = ',', allow_negative_numbers = true)]
     freeze: Vec<parts::Part>,
+    /// Greatest angle in degrees between a boundary triangle and the model: triangles that deviate more are split, whatever the metric
+    #[arg(long, value_name = "DEG", value_parser = deviation, allow_negative_numbers = true)]
+    normal_deviation: Option<f64>,
+    /// Greatest chord error, the distance of boundary triangles from the model: triangles that are farther are split, whatever the metric
+    #[arg(long, value_name = "H", value_parser = chord, allow_negative_numbers = true)]
+    hausdorff: Option<f64>,
     /// How the threads share the work
     #[arg(long, value_enum, default_value_t = Scheduler::default())]
     scheduler: Scheduler,
@@ -64,6 +70,18 @@ pub struct Arguments {
     /// No progress and no table; errors only
     #[arg(short, long)]
     quiet: bool,
+}
+
+/// An angle that triangles can be held to.
+fn deviation(text: &str) -> Result<f64, String> {
+    let angle: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.1..=89.0).contains(&angle) { Ok(angle) } else { Err("an angle from 0.1 to 89 degrees".into()) }
+}
+
+/// A distance from the model.
+fn chord(text: &str) -> Result<f64, String> {
+    let distance: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if distance > 0.0 && distance.is_finite() { Ok(distance) } else { Err("a distance above 0".into()) }
 }
 
 /// Runs the subcommand.
@@ -121,6 +139,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
 impl Arguments {
     fn options(&self, plan: Plan, freeze: Freeze) -> Options {
         let scheduler = if self.deterministic { Scheduler::Deterministic } else { self.scheduler };
-        Options { criterion: self.criterion, points: self.points, scheduler, plan, grains: self.grain, freeze }
+        let surface = SurfaceBounds { normal_deviation: self.normal_deviation, hausdorff: self.hausdorff };
+        Options { criterion: self.criterion, points: self.points, scheduler, plan, grains: self.grain, freeze, surface }
     }
 }

@@ -22,6 +22,8 @@ pub struct Seconds {
     pub read_and_classify: f64,
     /// Adaptation.
     pub adapt: f64,
+    /// In the model's evaluators during the adaptation, of all threads together.
+    pub geometry: f64,
     /// Everything, the writing of this report apart.
     pub total: f64,
 }
@@ -53,6 +55,8 @@ pub struct Report {
     fidelity: Fidelity,
     off_model: usize,
     overgrown: bool,
+    /// Surface triangles beyond --normal-deviation or --hausdorff.
+    astray: usize,
     operations: BTreeMap<&'static str, Operation>,
     /// Wall times.
     pub seconds: Seconds,
@@ -90,8 +94,9 @@ impl Report {
             fidelity,
             off_model: adapted.off_model,
             overgrown: adapted.overgrown,
+            astray: adapted.astray,
             operations: operations(&adapted.work),
-            seconds: Seconds::default(),
+            seconds: Seconds { geometry: adapted.geometry.as_secs_f64(), ..Seconds::default() },
             mesh,
             metrics: extracted.metrics,
         }
@@ -109,6 +114,12 @@ impl Report {
         if self.off_model > 0 {
             table.row("found no room on the model", format_args!("{} vertices", self.off_model));
         }
+        if self.astray > 0 {
+            table.row(
+                "beyond the bounds",
+                format_args!("{} surface triangles: no room to split them, or their vertices must stay", self.astray),
+            );
+        }
         if self.overgrown {
             table.row(
                 "stopped growing",
@@ -123,10 +134,13 @@ impl Report {
             let line = format!("{:<14}{:>12}{:>12}{:>9}{:>10.2}", kind.name(), o.attempts, o.done, o.sweeps, o.seconds);
             table.line(&line);
         }
-        let Seconds { read_and_classify, adapt, total } = self.seconds;
+        let Seconds { read_and_classify, adapt, geometry, total } = self.seconds;
         table.row(
             "seconds",
-            format_args!("{total:.2} (reading {read_and_classify:.2}, adapting {adapt:.2}), {} threads", self.threads),
+            format_args!(
+                "{total:.2} (reading {read_and_classify:.2}, adapting {adapt:.2}, of that {geometry:.2} thread seconds in the model), {} threads",
+                self.threads
+            ),
         );
         let metric = files::metric_path(arguments);
         table.row("written", format_args!("{}, {}", self.output.display(), metric.display()));
