@@ -5,7 +5,7 @@ mod common;
 use common::adapting::{Adapted, Workplace, areas, isotropic, stderr, text};
 use common::program;
 use geo_adapt::geometry::classify::{Options, classify};
-use geo_adapt::geometry::{Geometry, Model, fidelity};
+use geo_adapt::geometry::{Evaluate, Geometry, Model, fidelity};
 use geo_adapt::mesh::{TetMesh, io};
 use geo_adapt::metric::Sym3;
 use geo_adapt::tasks::Team;

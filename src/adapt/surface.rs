@@ -69,6 +69,9 @@ impl MeanParameters {
     }
 }
 
+/// A triangle that turns from another by less than this cosine lies as that one did.
+const STILL: f64 = 0.97;
+
 impl<A: Access> Worker<'_, '_, A> {
     /// The entity of a point on the edge a–b; the shell of the edge is in `state.shell`.
     pub fn entity_of_edge(&self, a: VertexId, b: VertexId) -> Entity {
@@ -231,6 +234,18 @@ impl<A: Access> Worker<'_, '_, A> {
         let facing = self.facing(&old);
         self.state.star.surface = old;
         self.check_star_normals(facing, slack)
+    }
+
+    /// Whether each new surface triangle of the star lies nearly as one of its face that goes.
+    pub fn turns_little(&self) -> bool {
+        let normal = |triangle: [VertexId; 3]| {
+            let [a, b, c] = triangle.map(|v| self.store.position(v));
+            unit(area2(a, b, c))
+        };
+        self.state.replacement.faces.iter().all(|&(new, tag)| {
+            let old = self.state.star.surface.iter().filter(|(_, of)| *of == tag);
+            old.map(|&(triangle, _)| dot(normal(triangle), normal(new))).any(|cosine| cosine > STILL)
+        })
     }
 
     /// As [`Worker::check_normals`], when the old triangles were looked at before.
