@@ -52,7 +52,7 @@ impl Case {
         for farthest in [fidelity.from_model, fidelity.from_entity] {
             assert!(farthest.unwrap().distance < 1e-9, "{farthest:?}");
         }
-        assert_eq!(found.report["off_model"], 0);
+        assert_eq!(found.report["off_model"], serde_json::json!([]));
         self.check_entities(mesh);
         assert_eq!(regions(mesh), regions(&self.mesh));
         self.check_areas(mesh);

@@ -59,8 +59,6 @@ pub struct Adapted {
     pub extracted: Extracted,
     /// Time and counts by operation, in the order of [`super::Kind`].
     pub work: [Work; KINDS],
-    /// Boundary vertices that could not be put on the model.
-    pub off_model: usize,
     /// Whether the mesh stopped growing, since it had far more vertices than the metric's complexity accounts for, or since
     /// there was no memory for more.
     pub overgrown: bool,
@@ -103,7 +101,7 @@ pub fn adapt(
     pipeline.crowded = crowded;
     pipeline.surface = options.surface;
     pipeline.run();
-    let (work, off_model, overgrown) = (pipeline.work, pipeline.waiting.len(), pipeline.overgrown);
+    let (work, waiting, overgrown) = (pipeline.work, std::mem::take(&mut pipeline.waiting), pipeline.overgrown);
     let geometry = pipeline.states.iter().map(|state| state.evaluator.spent).sum();
     let astray = pipeline.astray();
     drop(pipeline);
@@ -114,9 +112,9 @@ pub fn adapt(
         inward: inward_faces(team, mesh, place, model),
         edges: edge_refs(mesh, place, model),
     };
-    let extracted = extract::extract(team, &context, mesh, &refs);
+    let extracted = extract::extract(team, &context, mesh, &refs, &waiting);
     stage("extracted");
-    Ok(Adapted { extracted, work, off_model, overgrown, astray, geometry })
+    Ok(Adapted { extracted, work, overgrown, astray, geometry })
 }
 
 /// The mesh in a store, made coarse on the way where it is crowded, and whether that was so.

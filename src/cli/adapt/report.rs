@@ -3,7 +3,7 @@ use super::input::Input;
 use super::{Arguments, files};
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
-use crate::cli::table::Table;
+use crate::cli::table::{Table, place};
 use crate::geometry::Model;
 #[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
@@ -53,7 +53,8 @@ pub struct Report {
     input_tets: usize,
     statistics: Statistics,
     fidelity: Fidelity,
-    off_model: usize,
+    /// Boundary vertices, from 0, that found no room on the model: their tetrahedra would be inverted at its closest point.
+    off_model: Vec<u32>,
     overgrown: bool,
     /// Surface triangles beyond --normal-deviation or --hausdorff.
     astray: usize,
@@ -92,7 +93,7 @@ impl Report {
             input_tets: input.mesh.tets.len(),
             statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
             fidelity,
-            off_model: adapted.off_model,
+            off_model: extracted.off_model,
             overgrown: adapted.overgrown,
             astray: adapted.astray,
             operations: operations(&adapted.work),
@@ -111,8 +112,13 @@ impl Report {
         }
         table.statistics(&self.statistics);
         table.fidelity(&self.fidelity);
-        if self.off_model > 0 {
-            table.row("found no room on the model", format_args!("{} vertices", self.off_model));
+        if let [first, ..] = self.off_model[..] {
+            let (count, at) = (self.off_model.len(), place(self.mesh.vertices[first as usize]));
+            let what = "their tetrahedra would be inverted there";
+            table.row(
+                "found no room on the model",
+                format_args!("{count} vertices, {what}; the first: {} at {at}", first + 1),
+            );
         }
         if self.astray > 0 {
             table.row(
