@@ -39,7 +39,7 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 4] = ["cpp/load.cpp", "cpp/damage.cpp", "cpp/model.cpp", "cpp/evaluate.cpp"];
+    const SOURCES: [&str; 5] = ["cpp/load.cpp", "cpp/damage.cpp", "cpp/model.cpp", "cpp/evaluate.cpp", "cpp/write.cpp"];
 
     /// Toolkits that the bridge calls, callers first.
     const LIBRARIES: [&str; 14] = [

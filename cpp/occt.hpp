@@ -62,6 +62,7 @@ public:
   std::array<double, 6> bounds() const;
   double face_area(std::uint32_t face) const;
   double edge_length(std::uint32_t edge) const;
+  void write_brep(rust::Str path) const;
 
   TopoDS_Face face(std::uint32_t index) const; // FORWARD, as its p-curves want it
   TopoDS_Edge edge(std::uint32_t index) const; // FORWARD

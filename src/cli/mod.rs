@@ -4,6 +4,7 @@ use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
 mod adapt;
+mod bootstrap;
 mod classify;
 mod image_mesh;
 mod inspect;
@@ -25,6 +26,8 @@ struct Arguments {
 enum Command {
     /// Adapt a mesh to a metric
     Adapt(adapt::Arguments),
+    /// Make the first mesh of a CAD model
+    Bootstrap(bootstrap::Arguments),
     /// Put a mesh's boundary on the entities of a CAD model
     Classify(classify::Arguments),
     /// Mesh the regions of a 3D image
@@ -53,6 +56,7 @@ pub fn main() -> ExitCode {
     }
     let outcome = match Arguments::parse().command {
         Command::Adapt(arguments) => adapt::run(&arguments),
+        Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

@@ -33,6 +33,20 @@ impl Model {
         Err(super::Error::Model { path: path.into(), message: message.into() })
     }
 
+    /// Writes the model as OpenCASCADE's BREP text, its entities in our order.
+    ///
+    /// # Errors
+    /// [`super::Error::Model`] when it is no CAD model or the file cannot be written.
+    pub fn write_brep(&self, path: &std::path::Path) -> Result<(), super::Error> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.write_brep(path),
+            Model::Discrete(_) => {
+                Err(super::Error::Model { path: path.into(), message: "a mesh's own surface is no CAD model".into() })
+            }
+        }
+    }
+
     /// Area of a face, in the square of the model's unit; none where the backend does not tell.
     pub fn face_area(&self, face: u32) -> Option<f64> {
         match self {

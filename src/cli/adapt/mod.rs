@@ -1,10 +1,10 @@
 //! `geo-adapt adapt`.
 pub mod field;
-mod files;
+pub mod files;
 pub mod input;
-mod parts;
-mod progress;
-mod report;
+pub mod parts;
+pub mod progress;
+pub mod report;
 
 use super::Outcome;
 use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler};
@@ -12,12 +12,13 @@ use crate::metric::Field;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
 use input::{Given, Input, InputArguments};
 use progress::Progress;
+use report::{Asked, Report};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 /// Exit code after an interrupt: 128 + SIGINT, as shells have it. The last valid mesh is written all the same.
-const INTERRUPTED: u8 = 130;
+pub const INTERRUPTED: u8 = 130;
 
 /// Arguments of `geo-adapt adapt`.
 #[derive(clap::Args)]
@@ -80,6 +81,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let plan = Plan { backend: arguments.backend, strategy: arguments.strategy, ..Plan::default() };
     let team = Team::new(&pool, plan);
     stage("start");
+    let asked = arguments.asked(threads);
     let mut notices = Vec::new();
     let mut given = arguments.input.read(team, &mut notices)?;
     let (mut cad, mut start) = (None, Some(start));
@@ -98,15 +100,16 @@ pub fn run(arguments: &Arguments) -> Outcome {
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
         let finished = start.elapsed();
-        let report = report::Report::new(team, arguments, &input, adapted, threads);
+        let report = Report::new(team, &asked, &input, adapted);
         stage("report");
-        let mut report = files::write(arguments, report, [prepared, finished, start.elapsed()])?;
+        let json = arguments.report.as_deref();
+        let mut report = files::write(&asked, json, report, [prepared, finished, start.elapsed()])?;
         stage("written");
         if !arguments.quiet {
             if arguments.cycles > 1 {
                 super::print(&format!("cycle {cycle} of {}\n", arguments.cycles));
             }
-            super::print(&report.text(arguments));
+            super::print(&report.text());
         }
         if progress.interrupted() {
             return Ok(ExitCode::from(INTERRUPTED));
@@ -119,6 +122,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
+    /// What the report says was asked for.
+    fn asked(&self, threads: usize) -> Asked {
+        let (input, output) = (self.input.mesh.clone(), self.output.clone());
+        Asked { input, output, threads, complexity_wanted: self.input.complexity }
+    }
+
     fn options(&self, plan: Plan, freeze: Freeze) -> Options {
         let scheduler = if self.deterministic { Scheduler::Deterministic } else { self.scheduler };
         Options { criterion: self.criterion, points: self.points, scheduler, plan, grains: self.grain, freeze }

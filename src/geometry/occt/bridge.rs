@@ -70,6 +70,7 @@ pub mod ffi {
         fn bounds(self: &Model) -> Result<[f64; 6]>;
         fn face_area(self: &Model, face: u32) -> Result<f64>;
         fn edge_length(self: &Model, edge: u32) -> Result<f64>;
+        fn write_brep(self: &Model, path: &str) -> Result<()>;
 
         type Evaluator;
         fn new_evaluator(model: &SharedPtr<Model>) -> Result<UniquePtr<Evaluator>>;

@@ -32,6 +32,14 @@ pub fn read(path: &Path) -> Result<OcctModel, Error> {
     entities::build(occt).map_err(|error| fail(format!("OpenCASCADE cannot use the model: {}", error.what())))
 }
 
+/// Writes a model: see [`OcctModel::write_brep`].
+pub fn write(occt: &ffi::Model, path: &Path) -> Result<(), Error> {
+    let fail = |message: String| Error::Model { path: path.into(), message };
+    let name = path.to_str().ok_or_else(|| fail("the file's name is not UTF-8; rename it".into()))?;
+    let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
+    occt.write_brep(name).map_err(|error| fail(error.what().into()))
+}
+
 /// The format by the file's extension.
 fn format_of(path: &Path) -> Option<Format> {
     match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {

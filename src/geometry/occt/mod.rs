@@ -62,6 +62,14 @@ impl OcctModel {
     pub fn edge_length(&self, edge: u32) -> Option<f64> {
         (edge < self.topology.edges.len() as u32).then(|| self.occt.edge_length(edge).ok()).flatten()
     }
+
+    /// Writes the model as OpenCASCADE's BREP text, for another program: faces, edges and vertices in our order.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when the file cannot be written.
+    pub fn write_brep(&self, path: &std::path::Path) -> Result<(), Error> {
+        load::write(&self.occt, path)
+    }
 }
 
 impl Geometry for OcctModel {
