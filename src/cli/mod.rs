@@ -11,6 +11,7 @@ mod inspect;
 mod load;
 mod metric;
 mod model;
+mod names;
 mod table;
 mod tune;
 
@@ -51,7 +52,7 @@ const BAD_INPUT: u8 = 2;
 
 /// Parses the command line, runs the subcommand, prints its error.
 pub fn main() -> ExitCode {
-    if let Some(code) = load::probe() {
+    if let Some(code) = load::probe().or_else(bootstrap::domain::child) {
         return code;
     }
     let outcome = match Arguments::parse().command {

@@ -44,7 +44,7 @@ pub struct Arguments {
     /// Where refinement puts new vertices
     #[arg(long, value_enum, default_value_t = PointCreation::Edge)]
     points: PointCreation,
-    /// Surfaces and regions that stay as they are, by reference: 3 or surface:3, region:2
+    /// Surfaces and regions that stay as they are, by reference or name: 3 or surface:3, inlet, region:2
     #[arg(long, value_name = "REF,…", value_delimiter = ',', allow_negative_numbers = true)]
     freeze: Vec<parts::Part>,
     /// How the threads share the work
@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let progress = Progress::new(!arguments.quiet, stop.clone());
         let Input { mesh, place, model, source, .. } = &input;
         let named = |error| format!("{}: {error}", arguments.input.mesh.display());
-        let options = arguments.options(plan, parts::frozen(&arguments.freeze, mesh).map_err(named)?);
+        let options = arguments.options(plan, parts::frozen(&arguments.freeze, mesh, &input.names).map_err(named)?);
         let adapted = adapt::adapt(mesh, place, model, source, &options, &pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
@@ -115,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             return Ok(ExitCode::from(INTERRUPTED));
         }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
-        given = Given { mesh: std::mem::take(&mut report.mesh), logs };
+        given = Given { mesh: std::mem::take(&mut report.mesh), logs, names: report.names.clone() };
         cad = arguments.input.cad.is_some().then_some(input.model);
     }
     Ok(ExitCode::SUCCESS)

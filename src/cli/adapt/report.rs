@@ -3,10 +3,10 @@ use super::input::Input;
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
 use crate::cli::table::Table;
-use crate::geometry::Model;
 #[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
 use crate::geometry::fidelity::{self, Fidelity};
+use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
@@ -76,6 +76,9 @@ pub struct Report {
     /// The adapted mesh.
     #[serde(skip)]
     pub mesh: TetMesh,
+    /// What its references are called.
+    #[serde(skip)]
+    pub names: Names,
     /// The metric at its vertices.
     #[serde(skip)]
     pub metrics: Vec<Sym3>,
@@ -85,12 +88,15 @@ impl Report {
     /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it.
     pub fn new(team: Team<'_>, asked: &Asked, input: &Input, adapted: Adapted) -> Self {
         let extracted = adapted.extracted;
-        let (mut mesh, model) = (extracted.mesh, &input.model);
+        let (mut mesh, model, mut names) = (extracted.mesh, &input.model, input.names.clone());
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &extracted.classification),
             #[cfg(feature = "occt")]
             Model::Occt(_) => {
-                associate(&mut mesh, &extracted.classification);
+                // References that are the numbers of the faces now have the names of the model.
+                if associate(&mut mesh, &extracted.classification).references_replaced {
+                    names.triangles.clone_from(&model.names().triangles);
+                }
             }
         }
         let fidelity = fidelity::measure(team, &mesh, model, &extracted.classification);
@@ -106,6 +112,7 @@ impl Report {
             operations: operations(&adapted.work),
             seconds: Seconds::default(),
             mesh,
+            names,
             metrics: extracted.metrics,
         }
     }

@@ -15,7 +15,7 @@ pub const VARIABLE: &str = "GEO_ADAPT_GMSH";
 pub const REMEDY: &str = "sudo apt install gmsh";
 
 /// Least size, of the model's diagonal: the curvature at an apex has no bound.
-const LEAST: f64 = 1e-3;
+const LEAST: f64 = 1e-4;
 
 /// Its name of an algorithm for surfaces.
 pub fn algorithm(number: u32) -> &'static str {

@@ -2,6 +2,7 @@
 //!
 //! A mesher that is started as a program makes some valid mesh of the model (`ladder`), and our own kernel adapts it to the metric of the
 //! geometry (`refine`). The model goes to the mesher as we have it in memory, so that its numbers of faces, edges and solids are ours.
+pub mod domain;
 mod driver;
 mod gmsh;
 mod ladder;
@@ -12,7 +13,7 @@ mod refine;
 use super::adapt::report::Asked;
 use super::metric::common::check_output;
 use super::metric::geometry::GeometryArguments;
-use super::{Outcome, load};
+use super::{Outcome, load, names};
 use crate::geometry::classify::associate;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::io;
@@ -22,6 +23,12 @@ use ladder::{Meshed, Wish};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
+
+/// Help on --far-field.
+const FAR_FIELD: &str = "Mesh the space around the solids instead, for external flow: box:XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX, or box:FACTOR \
+(so many extents of the body beyond it on all sides), sphere:RADIUS (about the body's middle) or sphere:X,Y,Z,RADIUS, without them. Its \
+faces are called farfield, those of the body as in the model, else wall. This domain is written beside the mesh as .brep, with its names \
+as .names.json, for `adapt --cad`. On the body sizes are at most a tenth of its diagonal";
 
 /// Arguments of `geo-adapt bootstrap`.
 #[derive(clap::Args)]
@@ -39,6 +46,12 @@ pub struct Arguments {
     /// Greatest complexity, about half the number of vertices: where the geometry asks for more its sizes are enlarged
     #[arg(long, value_name = "C", value_parser = super::positive, default_value = "100000", allow_negative_numbers = true)]
     complexity: f64,
+    /// Mesh the space around the solids instead, for external flow: a box or a sphere without them
+    #[arg(long, value_name = "box:…|sphere:…", long_help = FAR_FIELD)]
+    far_field: Option<domain::Spec>,
+    /// The body is one half: cut the far field at the plane face where the body ends in this direction, and call that symmetry
+    #[arg(long, value_enum, value_name = "AXIS", requires = "far_field")]
+    symmetry: Option<domain::Axis>,
     /// Leave the mesh as the mesher made it
     #[arg(long)]
     no_adapt: bool,
@@ -66,8 +79,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let threads = arguments.threads.map_or_else(super::cores, usize::from);
     let pool = Pool::new(threads)?;
     let team = Team::new(&pool, Plan::default());
-    let model = load::model(&arguments.model)?;
-    check_solids(&arguments.model, &model)?;
+    let domain = arguments.far_field.as_ref();
+    let domain = domain.map(|spec| domain::build(&arguments.model, spec, arguments.symmetry, &arguments.output));
+    let domain = domain.transpose()?;
+    let path = domain.as_ref().unwrap_or(&arguments.model);
+    let model = load::model(path)?;
+    check_solids(path, &model)?;
     stage("model read");
     let options = arguments.sizes.options(&model, arguments.limits(), None);
     let wish = Wish {
@@ -111,6 +128,9 @@ impl Arguments {
         check_output(&self.output, &["mesh", "meshb"], &inputs)?;
         check_output(&self.output.with_extension("solb"), &["solb"], &inputs)?;
         check_output(&self.log(), &["log"], &inputs)?;
+        if self.far_field.is_some() {
+            check_output(&domain::path(&self.output), &["brep"], &inputs)?;
+        }
         self.report.as_ref().map_or(Ok(()), |report| check_output(report, &["json"], &inputs))
     }
 
@@ -128,6 +148,7 @@ impl Arguments {
         let mut mesh = meshed.mesh.clone();
         associate(&mut mesh, &meshed.place);
         io::write_mesh(&self.output, &mesh)?;
+        names::write(&self.output, model.names())?;
         if !self.quiet {
             let solids = model.topology().solids;
             super::print(&format!(

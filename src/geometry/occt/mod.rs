@@ -11,7 +11,7 @@ mod project;
 mod range;
 mod surface;
 
-use super::{Error, Geometry, Topology};
+use super::{Error, FarField, Geometry, Names, Topology};
 use bridge::ffi;
 use cells::Cell;
 use curve::Curve;
@@ -35,6 +35,7 @@ impl<T> Shape<T> {
 /// A B-rep model read by OpenCASCADE. Coordinates are the numbers that the file states, whatever their unit.
 pub struct OcctModel {
     topology: Topology,
+    names: Names,
     occt: cxx::SharedPtr<ffi::Model>,
     surfaces: Vec<Shape<Surface>>,
     curves: Vec<Shape<Curve>>,
@@ -51,6 +52,25 @@ impl OcctModel {
     /// [`Error::Open`] when there is no such file; [`Error::Model`] when it is of another kind, damaged, or without faces.
     pub fn read(path: &std::path::Path) -> Result<Self, Error> {
         load::read(path)
+    }
+
+    /// The names and colours of its edges, faces and solids.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
+    /// Gives it other names.
+    pub fn rename(&mut self, names: Names) {
+        self.names = names;
+    }
+
+    /// The far field without this body. Faces of the body that have no name are called wall, those of the far field farfield, that in
+    /// the plane of symmetry symmetry, the solid fluid.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when OpenCASCADE cannot subtract the body.
+    pub fn domain(&self, far: &FarField) -> Result<Self, Error> {
+        load::domain(&self.occt, far)
     }
 
     /// Area of a face, in the square of the model's unit; none where OCCT finds none.
