@@ -48,6 +48,13 @@ impl Rung {
         })
     }
 
+    /// How many times finer than wished.
+    pub fn finer(self) -> f64 {
+        match self {
+            Self::Gmsh { finer, .. } | Self::Netgen { finer } => finer,
+        }
+    }
+
     /// The program.
     pub fn program(self) -> &'static str {
         match self {
@@ -59,21 +66,16 @@ impl Rung {
 
 impl std::fmt::Display for Rung {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let finer = match self {
-            Self::Gmsh { surface, volume, finer } => {
-                write!(f, "gmsh ({} surfaces, {} volumes", gmsh::algorithm(*surface), gmsh::algorithm_3d(*volume))?;
-                *finer
+        match *self {
+            Self::Gmsh { surface, volume, .. } => {
+                write!(f, "gmsh ({} surfaces, {} volumes", gmsh::algorithm(surface), gmsh::algorithm_3d(volume))?;
             }
-            Self::Netgen { finer } => {
-                write!(f, "netgen (")?;
-                *finer
-            }
-        };
-        match (self, finer > 1.0) {
-            (_, true) => write!(f, "{} times finer)", finer).map(|()| ()),
-            (Self::Gmsh { .. }, _) => write!(f, ")"),
-            (Self::Netgen { .. }, _) => write!(f, "usual size)"),
+            Self::Netgen { .. } => write!(f, "netgen (its usual algorithms")?,
         }
+        if self.finer() > 1.0 {
+            write!(f, ", {} times finer", self.finer())?;
+        }
+        write!(f, ")")
     }
 }
 

@@ -38,6 +38,8 @@ pub struct Meshed {
 enum Miss {
     /// No such program.
     NotThere(String),
+    /// It took too long.
+    TooLong(String),
     /// It failed, or its mesh was not good.
     Failed(String),
 }
@@ -52,9 +54,10 @@ pub fn climb(team: Team<'_>, model: &Model, wish: &Wish, choice: Choice, log: &P
     let brep = place.file("model.brep");
     model.write_brep(&brep).map_err(|error| error.to_string())?;
     let (mut missing, mut failed): (Vec<String>, Vec<(Rung, String)>) = (Vec::new(), Vec::new());
-    let mut gone = Vec::new();
+    let (mut gone, mut slow) = (Vec::new(), Vec::new());
     for rung in Rung::of(choice) {
-        if gone.contains(&rung.program()) {
+        // What was too long once is not tried finer.
+        if gone.contains(&rung.program()) || rung.finer() > 1.0 && slow.contains(&rung.program()) {
             continue;
         }
         match attempt(team, model, wish, rung, &place, &brep, log) {
@@ -65,6 +68,10 @@ pub fn climb(team: Team<'_>, model: &Model, wish: &Wish, choice: Choice, log: &P
             Err(Miss::NotThere(why)) => {
                 gone.push(rung.program());
                 missing.push(why);
+            }
+            Err(Miss::TooLong(why)) => {
+                slow.push(rung.program());
+                failed.push((rung, why));
             }
             Err(Miss::Failed(why)) => failed.push((rung, why)),
         }
@@ -124,7 +131,10 @@ fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Pa
             Ok(()) => return Ok(()),
             Err(Failure::NotStarted(_)) => {}
             Err(Failure::Ended(status)) if status.code() == Some(NO_MODULE) && matches!(rung, Rung::Netgen { .. }) => {}
-            Err(failure) => return Err(Miss::Failed(format!("it {failure}: {}", process::last_lines(log)))),
+            Err(failure) => {
+                let why = format!("it {failure}: {}", process::last_lines(log));
+                return Err(if matches!(failure, Failure::TooLong(_)) { Miss::TooLong(why) } else { Miss::Failed(why) });
+            }
         }
     }
     Err(Miss::NotThere(format!("{} was not found ({remedy}, or let {variable} name it)", rung.program())))
@@ -166,5 +176,6 @@ fn judge(team: Team<'_>, mut mesh: TetMesh, model: &Model) -> Result<(TetMesh, C
         return Err(format!("its mesh has no tetrahedra in solid {solid} of {}", topology.solids));
     }
     let (place, _) = classify(team, &mesh, model, &Options::default()).map_err(|error| error.to_string())?;
+    mesh.triangles.refs = place.faces.iter().map(|&face| face as i32 + 1).collect();
     Ok((mesh, place))
 }
