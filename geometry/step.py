@@ -24,16 +24,31 @@ def write(workplane, name, folder):
     STEPControl_Writer()
     Interface_Static.SetCVal_s("write.step.product.name", name)
     cadquery.exporters.export(cadquery.Workplane(solids[0]), str(path))
+    fix_time(path)
+    return path
+
+
+def write_assembly(assembly, name, folder):
+    """Writes the solids of a cadquery `assembly`, with their names and colours and those of their faces, to `folder/name.step`."""
+    from cadquery.occ_impl.exporters.assembly import exportStepMeta
+
+    path = Path(folder) / f"{name}.step"
+    exportStepMeta(assembly, str(path))
+    fix_time(path)
+    return path
+
+
+def fix_time(path):
+    """Replaces the time stamp in the header of a STEP file."""
     text, times = HEADER_TIME.subn(f"'{FIXED_TIME}'", path.read_text(encoding="ascii"))
     if times != 1:
         sys.exit(f"{path}: expected one time stamp in the header, found {times}: OCCT writes another header now, adapt HEADER_TIME")
     path.write_text(text, encoding="ascii", newline="\n")
-    return path
 
 
-def main(build, name):
+def main(build, name, writer=write):
     """The command line of a model script: `[-o FOLDER]`, this folder by default."""
     parser = argparse.ArgumentParser(description=f"Writes {name}.step.")
     parser.add_argument("-o", "--output", default=Path(__file__).parent, help="folder to write to (default: this one)")
-    path = write(build(), name, parser.parse_args().output)
+    path = writer(build(), name, parser.parse_args().output)
     print(f"wrote {path}")

@@ -70,3 +70,9 @@ fn what_is_thin_or_near_comes_out_as_it_lies_there() {
     regenerates("thin_plate.py", "thin-plate.step");
     regenerates("slot.py", "slot.step");
 }
+
+#[test]
+fn models_of_several_solids_come_out_as_they_lie_there() {
+    regenerates("two_materials.py", "two-materials.step");
+    regenerates("block_on_plate.py", "block-on-plate.step");
+}

@@ -4,12 +4,14 @@ use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
 mod adapt;
+mod bootstrap;
 mod classify;
 mod image_mesh;
 mod inspect;
 mod load;
 mod metric;
 mod model;
+mod names;
 mod table;
 mod tune;
 
@@ -25,6 +27,8 @@ struct Arguments {
 enum Command {
     /// Adapt a mesh to a metric
     Adapt(adapt::Arguments),
+    /// Make the first mesh of a CAD model
+    Bootstrap(bootstrap::Arguments),
     /// Put a mesh's boundary on the entities of a CAD model
     Classify(classify::Arguments),
     /// Mesh the regions of a 3D image
@@ -48,11 +52,12 @@ const BAD_INPUT: u8 = 2;
 
 /// Parses the command line, runs the subcommand, prints its error.
 pub fn main() -> ExitCode {
-    if let Some(code) = load::probe() {
+    if let Some(code) = load::probe().or_else(bootstrap::domain::child) {
         return code;
     }
     let outcome = match Arguments::parse().command {
         Command::Adapt(arguments) => adapt::run(&arguments),
+        Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

@@ -223,7 +223,7 @@ fn a_cube_refined_in_any_way_is_a_valid_mesh_with_edges_of_unit_length() {
         let adapted = adapt(&mesh, &place, &model, &source, &options, &pool, &Silent).expect("the cube is valid");
         let refined = &adapted.extracted.mesh;
         assert_valid_cube(refined);
-        assert_eq!(adapted.extracted.off_model, []);
+        assert!(adapted.extracted.off_model.is_empty());
         let statistics =
             crate::metric::statistics::Statistics::in_metric(Team::alone(), refined, &adapted.extracted.metrics);
         let unit = statistics.metric.expect("there is a metric").unit_edges;

@@ -1,19 +1,19 @@
 //! What was done: the table on the terminal and the JSON.
 use super::input::Input;
-use super::{Arguments, files};
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
 use crate::cli::table::{Table, place};
-use crate::geometry::Model;
 #[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
 use crate::geometry::fidelity::{self, Fidelity};
+use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
 use crate::tasks::Team;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// Wall times, s.
 #[derive(Default, Serialize)]
@@ -38,14 +38,32 @@ struct Operation {
     seconds: f64,
 }
 
+/// What a run was asked for, as the report has it.
+#[derive(Clone, Serialize)]
+pub struct Asked {
+    /// The mesh, or the model that the mesh was made of.
+    pub input: PathBuf,
+    /// Where the adapted mesh goes.
+    pub output: PathBuf,
+    /// Threads.
+    pub threads: usize,
+    /// The complexity.
+    pub complexity_wanted: Option<f64>,
+}
+
+impl Asked {
+    /// The metric of the adapted mesh goes beside it.
+    pub fn metric_path(&self) -> PathBuf {
+        self.output.with_extension("solb")
+    }
+}
+
 /// The report of a run.
 #[derive(Serialize)]
 pub struct Report {
     version: &'static str,
-    input: std::path::PathBuf,
-    output: std::path::PathBuf,
-    threads: usize,
-    complexity_wanted: Option<f64>,
+    #[serde(flatten)]
+    asked: Asked,
     /// How the metric was made, with --field.
     #[serde(skip_serializing_if = "Option::is_none")]
     multiscale: Option<Made>,
@@ -64,6 +82,9 @@ pub struct Report {
     /// The adapted mesh.
     #[serde(skip)]
     pub mesh: TetMesh,
+    /// What its references are called.
+    #[serde(skip)]
+    pub names: Names,
     /// The metric at its vertices.
     #[serde(skip)]
     pub metrics: Vec<Sym3>,
@@ -71,23 +92,23 @@ pub struct Report {
 
 impl Report {
     /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it.
-    pub fn new(team: Team<'_>, arguments: &Arguments, input: &Input, adapted: Adapted, threads: usize) -> Self {
+    pub fn new(team: Team<'_>, asked: &Asked, input: &Input, adapted: Adapted) -> Self {
         let extracted = adapted.extracted;
-        let (mut mesh, model) = (extracted.mesh, &input.model);
+        let (mut mesh, model, mut names) = (extracted.mesh, &input.model, input.names.clone());
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &extracted.classification),
             #[cfg(feature = "occt")]
             Model::Occt(_) => {
-                associate(&mut mesh, &extracted.classification);
+                // References that are the numbers of the faces now have the names of the model.
+                if associate(&mut mesh, &extracted.classification).references_replaced {
+                    names.triangles.clone_from(&model.names().triangles);
+                }
             }
         }
         let fidelity = fidelity::measure(team, &mesh, model, &extracted.classification);
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            input: arguments.input.mesh.clone(),
-            output: arguments.output.clone(),
-            threads,
-            complexity_wanted: arguments.input.complexity,
+            asked: asked.clone(),
             multiscale: input.made.clone(),
             input_vertices: input.mesh.vertices.len(),
             input_tets: input.mesh.tets.len(),
@@ -99,12 +120,13 @@ impl Report {
             operations: operations(&adapted.work),
             seconds: Seconds { geometry: adapted.geometry.as_secs_f64(), ..Seconds::default() },
             mesh,
+            names,
             metrics: extracted.metrics,
         }
     }
 
     /// The table for the terminal.
-    pub fn text(&self, arguments: &Arguments) -> String {
+    pub fn text(&self) -> String {
         let mut table = Table::new();
         table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
         if let Some(made) = &self.multiscale {
@@ -145,11 +167,11 @@ impl Report {
             "seconds",
             format_args!(
                 "{total:.2} (reading {read_and_classify:.2}, adapting {adapt:.2}, of that {geometry:.2} thread seconds in the model), {} threads",
-                self.threads
+                self.asked.threads
             ),
         );
-        let metric = files::metric_path(arguments);
-        table.row("written", format_args!("{}, {}", self.output.display(), metric.display()));
+        let metric = self.asked.metric_path();
+        table.row("written", format_args!("{}, {}", self.asked.output.display(), metric.display()));
         table.text().to_owned()
     }
 }
