@@ -174,7 +174,18 @@ fn a_page_loads_nothing_and_holds_the_mesh() {
         r##"{"triangles": {"2": {"name": "</script>east & west", "color": "#12ab34"}}, "tetrahedra": {"5": {"name": "core"}}}"##,
     )
     .unwrap();
-    place.run(&["-o", "page.html", "--field", "heat.solb", "--metric", "m.solb", "--title", "A <b> & c", "--cut", "x=0.3"]);
+    place.run(&[
+        "-o",
+        "page.html",
+        "--field",
+        "heat.solb",
+        "--metric",
+        "m.solb",
+        "--title",
+        "A <b> & c",
+        "--cut",
+        "x=0.3",
+    ]);
     let page = place.page();
     for wanting in ["http:", "https:", "src=", "href=\"", "url(", "@import", "import(", "fetch(", "XMLHttpRequest"] {
         assert!(!page.text.replace("\"http://www.w3.org/2000/svg\"", "").contains(wanting), "{wanting}");
@@ -201,7 +212,10 @@ fn a_page_loads_nothing_and_holds_the_mesh() {
     let head = &page.head;
     assert_eq!(head["fields"][0]["name"], "heat");
     assert_eq!(head["fields"][1]["name"], "size");
-    assert_eq!((&head["surfaces"][1]["name"], &head["surfaces"][1]["colour"]), (&"</script>east & west".into(), &"#12ab34".into()));
+    assert_eq!(
+        (&head["surfaces"][1]["name"], &head["surfaces"][1]["colour"]),
+        (&"</script>east & west".into(), &"#12ab34".into())
+    );
     assert_eq!((head["regions"][1]["name"].as_str(), head["regions"][1]["count"].as_u64()), (Some("core"), Some(192)));
     assert_eq!(head["start"]["plane"], serde_json::json!([[1.0, 0.0, 0.0], 0.3]));
     let counted: u64 = head["histogram"].as_array().unwrap().iter().map(|count| count.as_u64().unwrap()).sum();
@@ -229,7 +243,8 @@ fn a_picture_shows_the_surface_and_a_cut_its_inside() {
     let covered = 600 * 450 - whole.count(white);
     assert!((30_000..120_000).contains(&covered), "{covered}");
     // Three sides are seen, each of its colour: those of the references are far apart.
-    let hues: std::collections::BTreeSet<[u8; 3]> = whole.pixels.iter().copied().filter(|p| p.iter().max() != p.iter().min()).collect();
+    let hues: std::collections::BTreeSet<[u8; 3]> =
+        whole.pixels.iter().copied().filter(|p| p.iter().max() != p.iter().min()).collect();
     assert!(hues.len() > 3);
 
     // From +x only the side of reference 2 is seen; behind the cut only the inside.
@@ -264,7 +279,9 @@ fn a_cut_is_coloured_by_quality_and_by_fields() {
     let red = |p: [i32; 3]| p[0] > p[2] + 60;
     let blue = |p: [i32; 3]| p[2] > p[0] + 25;
     let quality = middle(&["--color", "quality"]);
-    let legend = |p: &Picture| (p.pixels.iter().enumerate().filter(|(i, _)| i % 600 < 460)).map(|(_, p)| p.map(i32::from)).collect::<Vec<_>>();
+    let legend = |p: &Picture| {
+        (p.pixels.iter().enumerate().filter(|(i, _)| i % 600 < 460)).map(|(_, p)| p.map(i32::from)).collect::<Vec<_>>()
+    };
     let shown = legend(&quality);
     assert!(shown.iter().filter(|&&p| red(p)).count() > 1_000 && shown.iter().filter(|&&p| blue(p)).count() > 20_000);
     // The field is about 0.5 all over the cut: one colour but for the shade.

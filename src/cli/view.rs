@@ -217,13 +217,7 @@ impl Arguments {
     }
 
     /// Distances of the vertices from what they lie on; where the mesh does not fit the model, from its nearest face.
-    fn distances(
-        &self,
-        team: Team<'_>,
-        mesh: &TetMesh,
-        model: &Model,
-        figures: &mut Vec<[String; 2]>,
-    ) -> ScalarField {
+    fn distances(&self, team: Team<'_>, mesh: &TetMesh, model: &Model, figures: &mut Vec<[String; 2]>) -> ScalarField {
         let distances = match classify::classify(team, mesh, model, &classify::Options::default()) {
             Ok((classification, report)) => {
                 self.run.note(&report.notices);
@@ -244,7 +238,8 @@ impl Arguments {
     /// How it is to look.
     fn options(&self, scene: &Scene<'_>) -> Result<Options, Failure> {
         let look = &self.look;
-        if let Some(unknown) = look.hide.iter().find(|&&one| scene.surfaces.iter().all(|known| known.reference != one)) {
+        if let Some(unknown) = look.hide.iter().find(|&&one| scene.surfaces.iter().all(|known| known.reference != one))
+        {
             let known: Vec<String> = scene.surfaces.iter().take(20).map(|one| one.reference.to_string()).collect();
             let (name, known) = (self.mesh.display(), known.join(", "));
             return Err(format!("{name}: --hide: no triangle has the reference {unknown}; there are {known}").into());

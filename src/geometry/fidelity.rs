@@ -124,7 +124,8 @@ pub fn distances_from_faces(team: Team<'_>, mesh: &TetMesh, model: &Model) -> Ve
         let mut evaluator = model.evaluator();
         let to_faces = |vertex: usize| {
             let p = mesh.vertices[vertex];
-            let far = on_surface[vertex].then(|| distance_from_model(model.topology(), &mut evaluator, p, f64::INFINITY));
+            let far =
+                on_surface[vertex].then(|| distance_from_model(model.topology(), &mut evaluator, p, f64::INFINITY));
             far.unwrap_or(f64::NAN)
         };
         range.map(to_faces).collect()

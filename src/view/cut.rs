@@ -77,9 +77,8 @@ impl Part {
     /// Finds it.
     pub fn of(&self, team: Team<'_>, scene: &Scene<'_>) -> Shown {
         let mesh = scene.mesh;
-        let behind = team.map(GRAIN, mesh.vertices.len(), |v| {
-            self.plane.is_none_or(|plane| plane.is_behind(mesh.vertices[v]))
-        });
+        let behind =
+            team.map(GRAIN, mesh.vertices.len(), |v| self.plane.is_none_or(|plane| plane.is_behind(mesh.vertices[v])));
         let is_behind = |v: u32| behind[v as usize];
         let kept = |tet: u32| tet != NONE && mesh.tets.nodes[tet as usize].iter().any(|&v| is_behind(v));
         let surface = &scene.surface;
@@ -114,9 +113,8 @@ impl Part {
         });
         let on_shown = self.vertices(scene);
         let edges = team.collect(GRAIN, scene.ridges.len(), |range, found| {
-            let seen = |nodes: [u32; 2]| {
-                nodes.iter().any(|&v| is_behind(v)) && nodes.iter().all(|&v| on_shown[v as usize])
-            };
+            let seen =
+                |nodes: [u32; 2]| nodes.iter().any(|&v| is_behind(v)) && nodes.iter().all(|&v| on_shown[v as usize]);
             found.extend(range.filter(|&e| seen(scene.ridges.nodes[e])).map(|e| e as u32));
         });
         Shown { triangles, faces, edges }

@@ -61,7 +61,8 @@ impl Names {
                     Some(value) => value.as_str().map(Some).ok_or_else(|| wrong(place())),
                 };
                 let name = text("name")?.map(String::from);
-                let colour = text("color")?.map(|text| colour::parse(text).ok_or_else(|| wrong(place()))).transpose()?;
+                let colour =
+                    text("color")?.map(|text| colour::parse(text).ok_or_else(|| wrong(place()))).transpose()?;
                 found.insert(number, Named { name, colour });
             }
             Ok(found)
@@ -79,10 +80,9 @@ mod tests {
 
     #[test]
     fn names_and_colours() {
-        let names = Names::from_json(
-            br##"{"triangles": {"3": {"name": "wing", "color": "#ff0000"}, "-1": {}}, "more": 1}"##,
-        )
-        .unwrap();
+        let names =
+            Names::from_json(br##"{"triangles": {"3": {"name": "wing", "color": "#ff0000"}, "-1": {}}, "more": 1}"##)
+                .unwrap();
         assert_eq!(names.triangles[&3], Named { name: Some("wing".into()), colour: Some([1.0, 0.0, 0.0]) });
         assert_eq!(names.triangles[&-1], Named::default());
         assert!(names.tetrahedra.is_empty());

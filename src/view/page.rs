@@ -172,8 +172,7 @@ fn packed<'t>(team: Team<'t>, scene: &Scene<'_>) -> Packer<'t> {
     });
     let triangles = &scene.surface.triangles;
     packer.numbers("triangles", &triangles.nodes);
-    packer
-        .numbers("surfaces", &team.map(GRAIN, triangles.len(), |t| [place(&scene.surfaces, triangles.refs[t])]));
+    packer.numbers("surfaces", &team.map(GRAIN, triangles.len(), |t| [place(&scene.surfaces, triangles.refs[t])]));
     packer.numbers("sides", &scene.surface.sides);
     packer.numbers("edges", &scene.ridges.nodes);
     for (number, field) in scene.given.fields.iter().enumerate() {

@@ -74,8 +74,7 @@ fn draw(team: Team<'_>, scene: &Scene<'_>, options: &Options) -> Image {
     let unit = (width as f64 / 1200.0).min(height as f64 / 900.0).max(0.5);
     let shown = options.part.of(team, scene);
     let mut camera = Camera::from(options.view.unwrap_or_else(|| usual_view(options.part.plane)));
-    let visible = options.part.vertices(scene);
-    let points = scene.mesh.vertices.iter().zip(visible).filter(|(_, visible)| *visible).map(|(&p, _)| p);
+    let points = in_view(scene, options, &shown).into_iter().map(|v| scene.mesh.vertices[v as usize]);
     let room = [30.0, 76.0, width as f64 / unit - 240.0, height as f64 / unit - 150.0].map(|x| x * unit);
     camera.fit(points, room, options.zoom);
     if let Some(at) = options.at {
@@ -97,6 +96,16 @@ fn draw(team: Team<'_>, scene: &Scene<'_>, options: &Options) -> Image {
     sheet.image
 }
 
+/// The vertices that are to fit in: those of all that is shown, but where surfaces are hidden, of the others alone, since the tetrahedra
+/// behind a cut reach as far as the hidden ones did.
+fn in_view(scene: &Scene<'_>, options: &Options, shown: &Shown) -> Vec<u32> {
+    let surface = shown.triangles.iter().flat_map(|&t| scene.surface.triangles.nodes[t as usize]);
+    let inside = shown.faces.iter().filter(|_| options.part.hidden.is_empty());
+    let inside = inside.flat_map(|&side| scene.mesh.tets.nodes[side as usize / 4]);
+    let found: Vec<u32> = surface.chain(inside).collect();
+    if found.is_empty() { scene.surface.triangles.nodes.iter().flatten().copied().collect() } else { found }
+}
+
 /// The first of the views that sees the cut.
 fn usual_view(plane: Option<Plane>) -> [f64; 2] {
     let sees = |view: &[f64; 2]| plane.is_none_or(|plane| dot(plane.normal, Camera::from(*view).toward) > 0.4);
@@ -110,7 +119,7 @@ fn triangles(team: Team<'_>, scene: &Scene<'_>, options: &Options, shown: &Shown
         let normal = unit(area2(points[0], points[1], points[2]));
         // Both sides are bright.
         let normal = if dot(normal, camera.toward) < 0.0 { scale(normal, -1.0) } else { normal };
-        let shade = (0.46 + 0.56 * dot(normal, light).max(0.0)).min(1.0) as f32;
+        let shade = (0.58 + 0.44 * dot(normal, light).max(0.0)).min(1.0) as f32;
         Triangle { corners: points.map(|p| camera.place(p)), shade, fill }
     };
     let flat = |q: f32| Fill::Flat(if q.is_nan() { colour::NOTHING } else { colour::between(&colour::QUALITY, q) });
@@ -151,9 +160,10 @@ fn lines(scene: &Scene<'_>, options: &Options, shown: &Shown, camera: &Camera, u
         lift: 1.2 * unit,
         colour,
     };
-    let ridges = shown.edges.iter().map(|&e| {
-        line(scene.ridges.nodes[e as usize].map(|v| scene.mesh.vertices[v as usize]), RIDGE, 0.75)
-    });
+    let ridges = shown
+        .edges
+        .iter()
+        .map(|&e| line(scene.ridges.nodes[e as usize].map(|v| scene.mesh.vertices[v as usize]), RIDGE, 0.75));
     let behind = |ends: &&[Vec3]| options.part.plane.is_none_or(|plane| ends.iter().all(|&p| plane.is_behind(p)));
     let model = scene.given.model_edges.iter().flat_map(|polygon| polygon.windows(2));
     let model = model.filter(|_| options.part.hidden.is_empty()).filter(behind);
@@ -197,7 +207,12 @@ impl Sheet<'_> {
         let scene = self.scene;
         self.text(&scene.given.title, [30.0, 40.0], 13.0, INK);
         let [tets, triangles] = [scene.mesh.tets.len(), scene.surface.triangles.len()];
-        let mut line = format!("{} vertices   {} tetrahedra   {} triangles", grouped(scene.mesh.vertices.len()), grouped(tets), grouped(triangles));
+        let mut line = format!(
+            "{} vertices   {} tetrahedra   {} triangles",
+            grouped(scene.mesh.vertices.len()),
+            grouped(tets),
+            grouped(triangles)
+        );
         if let Some(Plane { normal: [x, y, z], offset }) = self.options.part.plane {
             let normal = match [x, y, z].map(|x| x.abs() == 1.0) {
                 [true, ..] => format!("x = {}", short(offset * x)),
@@ -223,7 +238,12 @@ impl Sheet<'_> {
             let colour = [[0.78, 0.20, 0.18], [0.16, 0.55, 0.24], [0.16, 0.36, 0.75]][axis];
             let end = [origin[0] + 26.0 * right, origin[1] - 26.0 * up];
             self.stroke([origin, end], colour);
-            self.text(["x", "y", "z"][axis], [origin[0] + 36.0 * right - 3.0, origin[1] - 36.0 * up + 3.5], 9.0, colour);
+            self.text(
+                ["x", "y", "z"][axis],
+                [origin[0] + 36.0 * right - 3.0, origin[1] - 36.0 * up + 3.5],
+                9.0,
+                colour,
+            );
         }
     }
 

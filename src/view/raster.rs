@@ -111,7 +111,8 @@ impl Band {
     fn triangle(&mut self, triangle: &Triangle, drawing: &Drawing<'_>) {
         let scaled = |p: [f64; 3]| p.map(|x| x * SAMPLES as f64);
         let corners = triangle.corners.map(scaled);
-        let [low, high] = [f64::min, f64::max].map(|f| [0, 1].map(|i| corners.map(|p| p[i]).into_iter().reduce(f).unwrap_or(0.0)));
+        let [low, high] =
+            [f64::min, f64::max].map(|f| [0, 1].map(|i| corners.map(|p| p[i]).into_iter().reduce(f).unwrap_or(0.0)));
         let rows = Self::span(low[1], high[1], self.rows);
         if rows.is_empty() {
             return;
@@ -177,7 +178,8 @@ impl Band {
             let y = row as f64 + 0.5;
             // The part of the line that is within reach of the row.
             let ends = [y - reach, y + reach].map(|y| if v[1] == 0.0 { f64::NAN } else { (y - a[1]) / v[1] });
-            let (from, to) = if v[1] == 0.0 { (0.0, 1.0) } else { (ends[0].min(ends[1]).max(0.0), ends[0].max(ends[1]).min(1.0)) };
+            let (from, to) =
+                if v[1] == 0.0 { (0.0, 1.0) } else { (ends[0].min(ends[1]).max(0.0), ends[0].max(ends[1]).min(1.0)) };
             let [left, right] = [from, to].map(|t| a[0] + t * v[0]);
             let start = (row - self.rows[0]) * self.width;
             for column in Self::span(left.min(right) - reach, left.max(right) + reach, [0, self.width]) {
@@ -228,7 +230,8 @@ fn smooth(x: f64, [from, to]: [f64; 2]) -> f32 {
 impl Image {
     /// Fills a rectangle: left, top, width and height in pixels; its borders may lie within pixels.
     pub fn rectangle(&mut self, [left, top, width, height]: [f64; 4], colour: Rgb) {
-        let share = |i: usize, from: f64, to: f64| ((i as f64 + 1.0).min(to) - (i as f64).max(from)).clamp(0.0, 1.0) as f32;
+        let share =
+            |i: usize, from: f64, to: f64| ((i as f64 + 1.0).min(to) - (i as f64).max(from)).clamp(0.0, 1.0) as f32;
         for y in top.max(0.0) as usize..((top + height).ceil().max(0.0) as usize).min(self.height) {
             for x in left.max(0.0) as usize..((left + width).ceil().max(0.0) as usize).min(self.width) {
                 let cover = share(x, left, left + width) * share(y, top, top + height);
@@ -345,7 +348,10 @@ mod tests {
         let mut image = drawn(&[], &[]);
         let end = image.text("Ag", [5.0, 40.0], 20.0, [0.0; 3]);
         let ink = |columns: std::ops::Range<usize>| {
-            columns.flat_map(|x| (0..60).map(move |y| (x, y))).filter(|&(x, y)| image.pixels[y * 60 + x][0] < 0.5).count()
+            columns
+                .flat_map(|x| (0..60).map(move |y| (x, y)))
+                .filter(|&(x, y)| image.pixels[y * 60 + x][0] < 0.5)
+                .count()
         };
         assert!(ink(0..4) == 0 && ink(4..20) > 30 && ink(end as usize + 2..60) == 0);
     }

@@ -127,8 +127,9 @@ fn bounds(team: Team<'_>, mesh: &TetMesh) -> [Vec3; 2] {
     let join = |[low, high]: [Vec3; 2], [l, h]: [Vec3; 2]| {
         [std::array::from_fn(|i| low[i].min(l[i])), std::array::from_fn(|i| high[i].max(h[i]))]
     };
-    let parts = team
-        .chunks(GRAIN, mesh.vertices.len(), |range| mesh.vertices[range].iter().fold(empty, |all, &p| join(all, [p, p])));
+    let parts = team.chunks(GRAIN, mesh.vertices.len(), |range| {
+        mesh.vertices[range].iter().fold(empty, |all, &p| join(all, [p, p]))
+    });
     let all = parts.into_iter().fold(empty, join);
     if all[0][0] <= all[1][0] { all } else { [[0.0; 3]; 2] }
 }

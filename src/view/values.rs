@@ -24,9 +24,10 @@ impl ScalarField {
     /// Of values.
     pub fn new(team: Team<'_>, name: String, values: Vec<f32>) -> Self {
         let parts = team.chunks(GRAIN, values.len(), |range| {
-            values[range].iter().filter(|x| x.is_finite()).fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &x| {
-                [low.min(x), high.max(x)]
-            })
+            values[range]
+                .iter()
+                .filter(|x| x.is_finite())
+                .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
         });
         let all = |[low, high]: [f32; 2], part: [f32; 2]| [low.min(part[0]), high.max(part[1])];
         let range = parts.into_iter().fold([f32::INFINITY, f32::NEG_INFINITY], all);

@@ -25,7 +25,7 @@ void main() {
   vec3 p = position - target;
   gl_Position = vec4(vec3(dot(p, right), dot(p, up), -dot(p, toward)) / size, 1.0);
   vec3 n = dot(normal, toward) < 0.0 ? -normal : normal;
-  shade = min(1.0, 0.46 + 0.56 * max(0.0, dot(n, light)));
+  shade = min(1.0, 0.58 + 0.44 * max(0.0, dot(n, light)));
   at = corner;
   number = value;
 }`,
@@ -52,7 +52,7 @@ void main() {
   vec3 slope = sqrt(dFdx(at) * dFdx(at) + dFdy(at) * dFdy(at)) * pixel;
   vec3 far = at / max(slope, vec3(1e-20));
   float lowest = 1.0 / max(max(slope.x, slope.y), max(slope.z, 1e-20));
-  float line = clamp((0.42 - min(min(far.x, far.y), far.z)) * pixel + 0.5, 0.0, 1.0);
+  float line = clamp((0.3 - min(min(far.x, far.y), far.z)) * pixel + 0.5, 0.0, 1.0);
   float dark = wire * line * smoothstep(2.0, 7.0, lowest);
   result = vec4(colour * shade * (1.0 - dark), 1.0);
 }`,

@@ -67,7 +67,7 @@ function drawLegend({ name, stops, range, logarithmic, histogram }) {
     });
     svg.append(makeSvg("text", { x: 8, y: high + 16, style: "fill: var(--pale)" }, "number, log scale"));
   }
-  legend.replaceChildren(make("p", { textContent: name }), svg);
+  legend.replaceChildren(...name.split(", ").map((line) => make("p", { textContent: line })), svg);
   legend.hidden = false;
 }
 
