@@ -38,7 +38,7 @@ impl Browser {
         // "ChromeDriver was started successfully on port 12345."
         let port = lines
             .by_ref()
-            .find_map(|line| line.ok()?.rsplit_once("on port ")?.1.trim_end_matches('.').parse().ok())
+            .find_map(|line| line.ok()?.rsplit_once("successfully on port ")?.1.trim_end_matches('.').parse().ok())
             .expect("chromedriver names its port");
         // It goes on writing: nobody else reads it.
         std::thread::spawn(move || lines.for_each(drop));
@@ -154,7 +154,7 @@ impl Drop for Browser {
     fn drop(&mut self) {
         // After a failed test there may be no answer: then the driver's end is the browser's too.
         if !self.session.is_empty() && !std::thread::panicking() {
-            self.command("DELETE", "", None);
+            self.ask("DELETE", &format!("/session/{}", self.session), None);
         }
         let _ = self.driver.kill();
         let _ = self.driver.wait();

@@ -33,22 +33,23 @@ class Model {
   /** Chooses what is seen: a plane {normal, offset} about the middle of the box or null, surfaces that are hidden (by their place in
    * the list), and a mean ratio below which tetrahedra stand alone, or null. The rules are those of src/view/cut.rs. */
   show({ plane, hidden, below }) {
-    const { points, tets, behind, triangles, sides, masks } = this;
+    const { points, tets, behind, triangles, sides, masks, quality } = this;
     if (plane) {
-      const [x, y, z] = plane.normal;
+      const [x, y, z] = plane.normal, { offset } = plane;
       for (let v = 0; v < this.vertexCount; v++) {
-        behind[v] = x * points[3 * v] + y * points[3 * v + 1] + z * points[3 * v + 2] < plane.offset ? 1 : 0;
+        behind[v] = x * points[3 * v] + y * points[3 * v + 1] + z * points[3 * v + 2] < offset ? 1 : 0;
       }
     } else behind.fill(1);
     const reaches = (tet) => behind[tets[4 * tet]] | behind[tets[4 * tet + 1]] | behind[tets[4 * tet + 2]] | behind[tets[4 * tet + 3]];
+    const someHidden = hidden.size > 0;
     const onShown = new Uint8Array(this.vertexCount);
     this.shown = new Uint32Array(this.triangleCount);
     let count = 0;
     for (let t = 0; t < this.triangleCount; t++) {
-      if (hidden.has(this.surfaces[t])) continue;
-      const [a, b, c] = [triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2]];
+      if (someHidden && hidden.has(this.surfaces[t])) continue;
+      const a = triangles[3 * t], b = triangles[3 * t + 1], c = triangles[3 * t + 2];
       onShown[a] = onShown[b] = onShown[c] = 1;
-      const [first, second] = [sides[2 * t], sides[2 * t + 1]];
+      const first = sides[2 * t], second = sides[2 * t + 1];
       const seen = first === NONE ? behind[a] | behind[b] | behind[c] : reaches(first) | (second !== NONE && reaches(second));
       if (seen && below === null) this.shown[count++] = t;
     }
@@ -57,11 +58,12 @@ class Model {
     if (below !== null) {
       const limit = 65535 * below;
       for (let tet = 0; tet < this.tetCount; tet++) {
-        if (this.quality[tet] < limit && reaches(tet)) faces.push(4 * tet, 4 * tet + 1, 4 * tet + 2, 4 * tet + 3);
+        if (quality[tet] < limit && reaches(tet)) faces.push(4 * tet, 4 * tet + 1, 4 * tet + 2, 4 * tet + 3);
       }
     } else if (plane) {
-      for (let tet = 0; tet < this.tetCount; tet++) {
-        const [a, b, c, d] = [behind[tets[4 * tet]], behind[tets[4 * tet + 1]], behind[tets[4 * tet + 2]], behind[tets[4 * tet + 3]]];
+      const count = this.tetCount;
+      for (let tet = 0; tet < count; tet++) {
+        const a = behind[tets[4 * tet]], b = behind[tets[4 * tet + 1]], c = behind[tets[4 * tet + 2]], d = behind[tets[4 * tet + 3]];
         if (a + b + c + d !== 1) continue;
         const face = b + 2 * c + 3 * d;
         if (!(masks[tet] >> face & 1)) faces.push(4 * tet + face);
@@ -70,7 +72,7 @@ class Model {
     this.faces = Uint32Array.from(faces);
     const lines = [];
     for (let e = 0; e < this.edgeCount; e++) {
-      const [a, b] = [this.edges[2 * e], this.edges[2 * e + 1]];
+      const a = this.edges[2 * e], b = this.edges[2 * e + 1];
       if ((behind[a] | behind[b]) && onShown[a] && onShown[b]) lines.push(e);
     }
     this.lines = lines;
@@ -99,9 +101,9 @@ class Model {
       nodesOf(t, nodes);
       for (let i = 0; i < 3; i++) for (let k = 0; k < 3; k++) positions[9 * t + 3 * i + k] = points[3 * nodes[i] + k];
       const p = 9 * t;
-      const [ux, uy, uz] = [positions[p + 3] - positions[p], positions[p + 4] - positions[p + 1], positions[p + 5] - positions[p + 2]];
-      const [vx, vy, vz] = [positions[p + 6] - positions[p], positions[p + 7] - positions[p + 1], positions[p + 8] - positions[p + 2]];
-      const [x, y, z] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+      const ux = positions[p + 3] - positions[p], uy = positions[p + 4] - positions[p + 1], uz = positions[p + 5] - positions[p + 2];
+      const vx = positions[p + 6] - positions[p], vy = positions[p + 7] - positions[p + 1], vz = positions[p + 8] - positions[p + 2];
+      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
       const scale = 32767 / (Math.sqrt(x * x + y * y + z * z) || 1);
       for (let i = 0; i < 3; i++) {
         normals[12 * t + 4 * i] = x * scale;
