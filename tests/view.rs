@@ -99,7 +99,7 @@ impl Page {
                 let mut before = 0u32;
                 for row in 0..rows {
                     let byte = |rank: usize| u32::from(own[(column * width + rank) * rows + row]) << (8 * rank);
-                    let mut word = (0..width).map(byte).sum();
+                    let mut word: u32 = (0..width).map(byte).sum();
                     if entry["delta"] == true {
                         let difference = if word & 1 == 0 { word >> 1 } else { !(word >> 1) };
                         before = before.wrapping_add(difference);

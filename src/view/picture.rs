@@ -8,7 +8,7 @@ use super::scene::{Reference, Scene};
 use super::values::ScalarField;
 use crate::mesh::adjacency::FACES;
 use crate::mesh::io::{self, Error};
-use crate::mesh::vector::{Vec3, area2, dot, scale, unit};
+use crate::mesh::vector::{Vec3, area2, distance, dot, scale, unit};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
 
@@ -164,10 +164,26 @@ fn lines(scene: &Scene<'_>, options: &Options, shown: &Shown, camera: &Camera, u
         .edges
         .iter()
         .map(|&e| line(scene.ridges.nodes[e as usize].map(|v| scene.mesh.vertices[v as usize]), RIDGE, 0.75));
-    let behind = |ends: &&[Vec3]| options.part.plane.is_none_or(|plane| ends.iter().all(|&p| plane.is_behind(p)));
+    // Edges of the model belong to no surface of the mesh: where some are hidden, those about the others are drawn.
+    let some_hidden = !options.part.hidden.is_empty();
+    let [low, high] = if some_hidden { box_of_shown(scene, options) } else { scene.bounds };
+    let margin = 0.01 * distance(low, high);
+    let within = |p: Vec3| {
+        options.part.plane.is_none_or(|plane| plane.is_behind(p))
+            && (!some_hidden || (0..3).all(|i| p[i] > low[i] - margin && p[i] < high[i] + margin))
+    };
     let model = scene.given.model_edges.iter().flat_map(|polygon| polygon.windows(2));
-    let model = model.filter(|_| options.part.hidden.is_empty()).filter(behind);
+    let model = model.filter(|ends| ends.iter().all(|&p| within(p)));
     ridges.chain(model.map(|ends| line([ends[0], ends[1]], MODEL, 0.6))).collect()
+}
+
+/// The box of the surfaces that are not hidden.
+fn box_of_shown(scene: &Scene<'_>, options: &Options) -> [Vec3; 2] {
+    let triangles = scene.surface.triangles.iter().filter(|(_, reference)| !options.part.hidden.contains(reference));
+    let points = triangles.flat_map(|(nodes, _)| nodes.map(|v| scene.mesh.vertices[v as usize]));
+    points.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], p| {
+        [std::array::from_fn(|i| low[i].min(p[i])), std::array::from_fn(|i| high[i].max(p[i]))]
+    })
 }
 
 /// The ends of the colour map.
@@ -221,6 +237,10 @@ impl Sheet<'_> {
                 _ => format!("({}, {}, {})·p = {}", short(x), short(y), short(z), short(offset)),
             };
             line += &format!("   cut at {normal}");
+        }
+        if !self.options.part.hidden.is_empty() {
+            let hidden: Vec<String> = self.options.part.hidden.iter().map(i32::to_string).collect();
+            line += &clipped(&format!("   without {}", hidden.join(", ")), 200.0);
         }
         if let Some(below) = self.options.part.below {
             line += &format!("   mean ratio below {}", short(f64::from(below)));

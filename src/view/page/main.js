@@ -80,7 +80,10 @@ async function start() {
     return [-reach, reach];
   };
   const offsetOf = () => ends()[0] + cut.share * (ends()[1] - ends()[0]);
-  const absolute = () => offsetOf() + dot(normalOf(), model.centre);
+  const absolute = () => {
+    const offset = offsetOf() + dot(normalOf(), model.centre);
+    return Math.abs(offset) < 1e-7 * model.radius ? 0 : offset;
+  };
   const partOf = () => {
     const sign = cut.flipped ? -1 : 1;
     const plane = byId("cutting").checked ? { normal: normalOf().map((x) => sign * x), offset: sign * offsetOf() } : null;

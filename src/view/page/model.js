@@ -77,9 +77,12 @@ class Model {
     }
     this.lines = lines;
     this.modelLines = [];
-    for (let k = 0; k < this.chords.length / 6 && hidden.size === 0; k++) {
-      const end = (i) => this.chords.subarray(6 * k + 3 * i, 6 * k + 3 * i + 3);
-      if (!plane || (dot(plane.normal, end(0)) < plane.offset && dot(plane.normal, end(1)) < plane.offset)) this.modelLines.push(k);
+    // Edges of the model belong to no surface of the mesh: where some are hidden, those about the others are drawn.
+    const [low, high] = someHidden && this.chords.length ? this.boxOf((place) => !hidden.has(place)) : this.bounds;
+    const margin = 0.01 * Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+    const within = (p) => (!plane || dot(plane.normal, p) < plane.offset) && (!someHidden || p.every((x, i) => x > low[i] - margin && x < high[i] + margin));
+    for (let k = 0; k < this.chords.length / 6; k++) {
+      if (within(this.chords.subarray(6 * k, 6 * k + 3)) && within(this.chords.subarray(6 * k + 3, 6 * k + 6))) this.modelLines.push(k);
     }
   }
 
