@@ -187,8 +187,10 @@ fn a_page_loads_nothing_and_holds_the_mesh() {
         "x=0.3",
     ]);
     let page = place.page();
+    // A name space that nobody asks for, and a gradient of the page itself.
+    let own = page.text.replace("\"http://www.w3.org/2000/svg\"", "").replace("url(#gradient)", "");
     for wanting in ["http:", "https:", "src=", "href=\"", "url(", "@import", "import(", "fetch(", "XMLHttpRequest"] {
-        assert!(!page.text.replace("\"http://www.w3.org/2000/svg\"", "").contains(wanting), "{wanting}");
+        assert!(!own.contains(wanting), "{wanting}");
     }
     assert!(page.text.contains("default-src 'none'") && page.text.contains("<title>A &lt;b&gt; &amp; c</title>"));
     assert!(!page.text.contains("{{"));
@@ -259,7 +261,7 @@ fn a_picture_shows_the_surface_and_a_cut_its_inside() {
     // What is left then is the swatch of the legend.
     assert!(before > 20_000 && after < 300, "{before} {after}");
     place.run(&[&from_east[..], &["--hide", "2"]].concat());
-    assert!(Picture::read(&place.path("picture.png")).count(green) == 0);
+    assert!(Picture::read(&place.path("picture.png")).count(green) < 300);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! A rasteriser: triangles and lines with a depth buffer, nine samples a pixel. Bands of rows are drawn apart, on all threads.
 use super::colour::{NOTHING, Rgb, between};
-use super::font::{self, Segment};
+use super::image::Image;
 use crate::tasks::Team;
 
 /// Samples a pixel in each direction.
@@ -62,16 +62,6 @@ pub struct Drawing<'d> {
     pub map: &'d [Rgb],
     /// Whether lines are drawn between the elements.
     pub wire: bool,
-}
-
-/// A picture: rows from the top, each from the left.
-pub struct Image {
-    /// Pixels a row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// The colours.
-    pub pixels: Vec<Rgb>,
 }
 
 /// Samples of a band.
@@ -227,62 +217,6 @@ fn smooth(x: f64, [from, to]: [f64; 2]) -> f32 {
     (t * t * (3.0 - 2.0 * t)) as f32
 }
 
-impl Image {
-    /// Fills a rectangle: left, top, width and height in pixels; its borders may lie within pixels.
-    pub fn rectangle(&mut self, [left, top, width, height]: [f64; 4], colour: Rgb) {
-        let share =
-            |i: usize, from: f64, to: f64| ((i as f64 + 1.0).min(to) - (i as f64).max(from)).clamp(0.0, 1.0) as f32;
-        for y in top.max(0.0) as usize..((top + height).ceil().max(0.0) as usize).min(self.height) {
-            for x in left.max(0.0) as usize..((left + width).ceil().max(0.0) as usize).min(self.width) {
-                let cover = share(x, left, left + width) * share(y, top, top + height);
-                self.blend(x, y, colour, cover);
-            }
-        }
-    }
-
-    /// Draws lines of one colour, together: where they cross nothing is darker.
-    pub fn strokes(&mut self, segments: &[Segment], half_width: f64, colour: Rgb) {
-        let ends = || segments.iter().flatten();
-        let bound = |i: usize, f: fn(f64, f64) -> f64, none: f64| ends().map(|p| p[i]).fold(none, f);
-        let far = half_width + 1.0;
-        let clipped = |i: usize, size: usize| {
-            let low = (bound(i, f64::min, f64::INFINITY) - far).max(0.0) as usize;
-            low..((bound(i, f64::max, f64::NEG_INFINITY) + far).max(0.0) as usize + 1).min(size)
-        };
-        for y in clipped(1, self.height) {
-            for x in clipped(0, self.width) {
-                let p = [x as f64 + 0.5, y as f64 + 0.5];
-                let least = segments.iter().map(|segment| distance(p, segment)).fold(f64::INFINITY, f64::min);
-                self.blend(x, y, colour, (half_width + 0.5 - least).clamp(0.0, 1.0) as f32);
-            }
-        }
-    }
-
-    /// Writes a text that begins at x and stands on y, its capitals so high; returns where it ends.
-    pub fn text(&mut self, text: &str, at: [f64; 2], height: f64, colour: Rgb) -> f64 {
-        let mut x = at[0];
-        let half_width = (0.075 * height).max(0.55);
-        for letter in text.chars() {
-            let (segments, next) = font::lay_out(letter.encode_utf8(&mut [0; 4]), [x, at[1]], height);
-            self.strokes(&segments, half_width, colour);
-            x = next;
-        }
-        x
-    }
-
-    fn blend(&mut self, x: usize, y: usize, colour: Rgb, cover: f32) {
-        let pixel = &mut self.pixels[y * self.width + x];
-        (0..3).for_each(|i| pixel[i] += cover * (colour[i] - pixel[i]));
-    }
-}
-
-fn distance(p: [f64; 2], [a, b]: &Segment) -> f64 {
-    let (v, to) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
-    let square = v[0] * v[0] + v[1] * v[1];
-    let t = if square > 0.0 { ((to[0] * v[0] + to[1] * v[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (to[0] - t * v[0]).hypot(to[1] - t * v[1])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -341,18 +275,5 @@ mod tests {
         assert!(green(11) > 0.95 && (green(30) - 0.5).abs() < 0.02 && green(48) < 0.05);
         triangles.iter_mut().for_each(|triangle| triangle.fill = Fill::Values([f32::NAN; 3]));
         assert_eq!(drawn(&triangles, &[]).pixels[30 * 60 + 30], NOTHING);
-    }
-
-    #[test]
-    fn text_leaves_ink() {
-        let mut image = drawn(&[], &[]);
-        let end = image.text("Ag", [5.0, 40.0], 20.0, [0.0; 3]);
-        let ink = |columns: std::ops::Range<usize>| {
-            columns
-                .flat_map(|x| (0..60).map(move |y| (x, y)))
-                .filter(|&(x, y)| image.pixels[y * 60 + x][0] < 0.5)
-                .count()
-        };
-        assert!(ink(0..4) == 0 && ink(4..20) > 30 && ink(end as usize + 2..60) == 0);
     }
 }

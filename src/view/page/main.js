@@ -44,6 +44,7 @@ async function start() {
     if (stale.part) {
       status.part = partOf();
       model.show(status.part);
+      showLimit();
       painter.choose(model.shown);
       painter.load(painter.cut, model.cutSoup());
       painter.loadValues(painter.cut, model.cutValues(kind));
@@ -191,10 +192,12 @@ async function start() {
     stale.part = true;
     redraw();
   };
-  const showLimit = () => { byId("limit").textContent = "below " + short(byId("below").value / 1000); };
+  const showLimit = () => {
+    const count = status.part?.below !== null && status.part ? ": " + grouped(model.faces.length / 4) : "";
+    byId("limit").textContent = "below " + short(byId("below").value / 1000) + count;
+  };
   byId("below").oninput = () => {
     byId("filtering").checked = true;
-    showLimit();
     stale.part = true;
     redraw();
   };
