@@ -14,6 +14,7 @@ mod model;
 mod names;
 mod table;
 mod tune;
+mod view;
 
 /// Adapts tetrahedral meshes to a metric, on the real CAD model.
 #[derive(Parser)]
@@ -41,6 +42,8 @@ enum Command {
     Model(model::Arguments),
     /// Measure which back-end, strategy and grain are the fastest on a case
     Tune(tune::Arguments),
+    /// Show a mesh: a page for the browser, or a picture
+    View(view::Arguments),
 }
 
 /// What a subcommand returns: its exit code, or an error that ends the program with code 2.
@@ -64,6 +67,7 @@ pub fn main() -> ExitCode {
         Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
+        Command::View(arguments) => view::run(&arguments),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("geo-adapt: error: {error}");
