@@ -39,7 +39,8 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 4] = ["cpp/load.cpp", "cpp/damage.cpp", "cpp/model.cpp", "cpp/evaluate.cpp"];
+    const SOURCES: [&str; 5] =
+        ["cpp/load.cpp", "cpp/damage.cpp", "cpp/model.cpp", "cpp/evaluate.cpp", "cpp/splines.cpp"];
 
     /// Toolkits that the bridge calls, callers first.
     const LIBRARIES: [&str; 14] = [
@@ -74,7 +75,7 @@ mod occt {
             .flag("-Wall")
             .flag("-Wextra")
             .compile("geo-adapt-occt");
-        for source in SOURCES.iter().chain(&["cpp/occt.hpp", "cpp/damage.hpp", "src/geometry/occt/bridge.rs"]) {
+        for source in SOURCES.iter().chain(&["cpp/occt.hpp", "cpp/damage.hpp", "cpp/splines.hpp", "src/geometry/occt/bridge.rs"]) {
             println!("cargo:rerun-if-changed={source}");
         }
         if let Ok(folder) = std::env::var("OCCT_LIB") {
