@@ -75,7 +75,9 @@ mod occt {
             .flag("-Wall")
             .flag("-Wextra")
             .compile("geo-adapt-occt");
-        for source in SOURCES.iter().chain(&["cpp/occt.hpp", "cpp/damage.hpp", "cpp/splines.hpp", "src/geometry/occt/bridge.rs"]) {
+        for source in
+            SOURCES.iter().chain(&["cpp/occt.hpp", "cpp/damage.hpp", "cpp/splines.hpp", "src/geometry/occt/bridge.rs"])
+        {
             println!("cargo:rerun-if-changed={source}");
         }
         if let Ok(folder) = std::env::var("OCCT_LIB") {

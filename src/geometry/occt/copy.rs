@@ -107,9 +107,8 @@ pub fn pcurves(
                 let t = entity.range[0] * (1.0 - s) + entity.range[1] * s;
                 let mut uv = [0.0; 2];
                 let there = evaluator.pin_mut().pcurve_d0(edge, face, t, &mut uv)?;
-                let near = |k: usize, x: f64| {
-                    (x - uv[k]).abs() <= AGREEMENT * (uv[k].abs() + ranges[k][1] - ranges[k][0])
-                };
+                let near =
+                    |k: usize, x: f64| (x - uv[k]).abs() <= AGREEMENT * (uv[k].abs() + ranges[k][1] - ranges[k][0]);
                 if !there || !curve.frame(t).is_some_and(|frame| near(0, frame.point[0]) && near(1, frame.point[1])) {
                     curve = Curve::General;
                 }

@@ -71,15 +71,6 @@ impl Curve {
     pub fn breaks(&self) -> &[f64] {
         if let Self::Spline(spline) = self { spline.breaks() } else { &[] }
     }
-
-    /// Whether the curve is straight.
-    pub fn is_line(&self) -> bool {
-        match self {
-            Self::Line { .. } => true,
-            Self::Conic(conic) => conic.is_line(),
-            _ => false,
-        }
-    }
 }
 
 /// A point reached on a curve.

@@ -53,11 +53,6 @@ impl Conic {
         let at = |k: usize| add(scale(self.x, f[k]), scale(self.y, g[k]));
         CurveFrame { point: add(self.origin, at(0)), d1: at(1), d2: at(2) }
     }
-
-    /// Whether the curve is straight.
-    pub fn is_line(&self) -> bool {
-        matches!(self.shape, Shape::Line)
-    }
 }
 
 /// A surface of revolution, O + R(u) (C(v) − O), or of extrusion, C(u) + v X.

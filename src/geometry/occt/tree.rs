@@ -111,11 +111,6 @@ impl Tree {
         Self(builder.nodes)
     }
 
-    /// The box of all.
-    pub fn root(&self) -> &Node {
-        &self.0[0]
-    }
-
     /// Calls `look(leaf, limit)` for the leaves that may hold a point closer than the limit, near ones first; it
     /// returns the new limit.
     pub fn visit<'t>(&'t self, point: Vec3, mut limit: f64, mut look: impl FnMut(&'t Node, f64) -> f64) {

@@ -101,7 +101,8 @@ fn pieces(topology: &Topology, edge: u32, curve: &Curve, out: &mut Vec<[[f64; 2]
     let parts = PIECES.div_ceil(ends.len() - 1).max(2);
     for span in ends.windows(2) {
         for k in 0..parts {
-            let at = |k: usize| if k == parts { span[1] } else { span[0] + (span[1] - span[0]) * k as f64 / parts as f64 };
+            let at =
+                |k: usize| if k == parts { span[1] } else { span[0] + (span[1] - span[0]) * k as f64 / parts as f64 };
             points.clear();
             let mut jet = |uv: [f64; 2]| curve.frame(uv[0]).map_or_else(nowhere, as_jet);
             let margin = hull::of_curve(curve, &mut jet, [at(k), at(k + 1)], &mut points);
@@ -125,9 +126,9 @@ fn is_border(face: &FaceEntity, boxes: &[[[f64; 2]; 2]]) -> bool {
         let slack = BORDER * (high - low);
         let shifts = face.period[k].map_or([0.0; 3], |period| [-period, 0.0, period]);
         [low, high].into_iter().any(|border| {
-            shifts.iter().any(|shift| {
-                boxes.iter().all(|piece| piece[k].iter().all(|x| (x + shift - border).abs() <= slack))
-            })
+            shifts
+                .iter()
+                .any(|shift| boxes.iter().all(|piece| piece[k].iter().all(|x| (x + shift - border).abs() <= slack)))
         })
     })
 }
