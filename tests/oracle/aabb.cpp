@@ -67,12 +67,16 @@ TopoDS_Shape read(const std::string& path)
   return shape;
 }
 
-gp_Pnt between(const gp_Pnt& a, const gp_Pnt& b, double s)
+double distance_to_chord(const gp_Pnt& point, const gp_Pnt& a, const gp_Pnt& b)
 {
-  return gp_Pnt(a.XYZ() * (1.0 - s) + b.XYZ() * s);
+  const gp_Vec along(a, b);
+  const double square = along.SquareMagnitude();
+  const double s = square > 0.0 ? std::clamp(gp_Vec(a, point).Dot(along) / square, 0.0, 1.0) : 0.0;
+  return point.Distance(gp_Pnt(a.XYZ() + along.XYZ() * s));
 }
 
-/// How far the surface is off the triangles, at their middles and those of their sides.
+/// How far the surface is off the triangles along its normal, at their middles and those of their sides: across it
+/// parameters stray without any harm.
 double chord_error(const TopoDS_Face& face, const Poly_Triangulation& mesh, const TopLoc_Location& location)
 {
   const BRepAdaptor_Surface surface(face, Standard_False);
@@ -94,7 +98,12 @@ double chord_error(const TopoDS_Face& face, const Poly_Triangulation& mesh, cons
         flat += p[k].XYZ() * w[k];
         uv += q[k].XY() * w[k];
       }
-      error = std::max(error, surface.Value(uv.X(), uv.Y()).Distance(gp_Pnt(flat)));
+      gp_Pnt point;
+      gp_Vec du, dv;
+      surface.D1(uv.X(), uv.Y(), point, du, dv);
+      const gp_Vec off(gp_Pnt(flat), point), normal = du.Crossed(dv);
+      const double length = normal.Magnitude();
+      error = std::max(error, length > 0.0 ? std::abs(off.Dot(normal)) / length : off.Magnitude());
     }
   }
   return error;
@@ -114,7 +123,7 @@ double border_error(const TopoDS_Edge& edge, const Handle(Poly_Triangulation)& m
     const gp_Pnt b = mesh->Node(polygon->Nodes()(i + 1)).Transformed(location);
     const double s = polygon->Parameters()->Value(i), t = polygon->Parameters()->Value(i + 1);
     for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-      error = std::max(error, curve.Value(s + (t - s) * share).Distance(between(a, b, share)));
+      error = std::max(error, distance_to_chord(curve.Value(s + (t - s) * share), a, b));
     }
   }
   return error;

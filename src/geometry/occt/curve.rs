@@ -71,6 +71,11 @@ impl Curve {
     pub fn breaks(&self) -> &[f64] {
         if let Self::Spline(spline) = self { spline.breaks() } else { &[] }
     }
+
+    /// Degree between the breaks.
+    pub fn degree(&self) -> usize {
+        if let Self::Spline(spline) = self { spline.degree() } else { 1 }
+    }
 }
 
 /// A point reached on a curve.

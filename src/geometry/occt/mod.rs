@@ -76,17 +76,19 @@ impl OcctModel {
         matches!(self.surfaces[face as usize].form, Surface::General)
     }
 
-    /// Widths in u and v of the smooth span about parameters of a face: what derivatives' rounding is measured by.
+    /// Widths in u and v of the smooth span about parameters of a face, over its degree: derivatives are differences of
+    /// points over them.
     #[doc(hidden)]
     pub fn face_span(&self, face: u32, uv: [f64; 2]) -> [f64; 2] {
         let (form, range) = (&self.surfaces[face as usize].form, self.topology.faces[face as usize].range);
-        [0, 1].map(|k: usize| range::span_about(form.breaks(k), range[k], uv[k]))
+        [0, 1].map(|k: usize| range::span_about(form.breaks(k), range[k], uv[k]) / form.degree(k) as f64)
     }
 
     /// The same of an edge.
     #[doc(hidden)]
     pub fn edge_span(&self, edge: u32, t: f64) -> f64 {
-        range::span_about(self.curves[edge as usize].form.breaks(), self.topology.edges[edge as usize].range, t)
+        let (form, range) = (&self.curves[edge as usize].form, self.topology.edges[edge as usize].range);
+        range::span_about(form.breaks(), range, t) / form.degree() as f64
     }
 
     /// The same model with its splines and swept surfaces evaluated by OCCT: what copies are measured against.

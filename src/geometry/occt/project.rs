@@ -3,7 +3,7 @@ use super::curve::{self, CurvePoint};
 use super::evaluator::OcctEvaluator;
 use super::hull::{self, as_jet};
 use super::newton::{self, SurfacePoint};
-use super::range::{bring_near, is_whole, place};
+use super::range::{is_whole, place};
 use super::tree::{Node, Source, Tree, cuts};
 use super::trim;
 use crate::geometry::{Evaluate, OnCurve, OnSurface};
@@ -64,7 +64,7 @@ fn edge_tree<'a>(on: &mut OcctEvaluator<'a>, edge: u32) -> &'a Tree {
         let hull = &mut |jet: &mut dyn FnMut([f64; 2]) -> _, piece: [[f64; 2]; 2], out: &mut _| {
             hull::of_curve(&shape.form, jet, piece[0], out)
         };
-        Tree::new(&mut Source { jet: &mut jet, hull }, [cuts, vec![0.0, 0.0]])
+        Tree::new(&mut Source { jet: &mut jet, hull }, [cuts, vec![0.0, 0.0]], [None; 2])
     })
 }
 
@@ -78,13 +78,15 @@ fn search_curve(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f6
         None => tree.nearest(point, limit)?.middle()[0],
     };
     let mut best = curve::descend(|t| on.curve(edge, t), point, start, range, size);
+    // A closed edge's ends are two ends to the descent.
+    let periods = [None; 2];
     tree.visit(point, best.distance, |leaf, limit| {
         let [low, high] = leaf.bounds[0];
         let width = high - low;
-        let simple = leaf.is_simple(point, limit);
-        if simple && best.t >= low - width && best.t <= high + width {
+        if leaf.is_covered([best.t, 0.0], periods, limit) {
             return limit;
         }
+        let simple = leaf.is_simple(point, limit);
         for &s in starts(simple) {
             let found = curve::descend(|t| on.curve(edge, t), point, low + s * width, leaf.bounds[0], size);
             if found.distance < best.distance * CLOSER {
@@ -229,7 +231,7 @@ fn face_tree<'a>(on: &mut OcctEvaluator<'a>, face: u32) -> &'a Tree {
         let hull = &mut |jet: &mut dyn FnMut([f64; 2]) -> _, piece: [[f64; 2]; 2], out: &mut _| {
             hull::of_surface(&shape.form, jet, piece, out)
         };
-        Tree::new(&mut Source { jet: &mut jet, hull }, cuts)
+        Tree::new(&mut Source { jet: &mut jet, hull }, cuts, entity.period)
     })
 }
 
@@ -247,12 +249,13 @@ fn search_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<
     if edges_asked {
         best = on_edges(on, face, point, f64::INFINITY);
     }
+    let periods = on.model.topology.faces[face as usize].period;
     let far = |best: Option<OnSurface>| best.map_or(f64::INFINITY, |best| best.distance);
     tree.visit(point, far(best), |leaf, limit| {
-        let simple = leaf.is_simple(point, limit);
-        if simple && first.is_some_and(|first| is_beside(on, face, leaf, first.uv)) {
+        if first.is_some_and(|first| leaf.is_covered(first.uv, periods, first.distance)) {
             return limit;
         }
+        let simple = leaf.is_simple(point, limit);
         for &s in starts(simple) {
             for &r in starts(simple) {
                 let [[u0, u1], [v0, v1]] = leaf.bounds;
@@ -287,14 +290,4 @@ fn polished(on: &mut OcctEvaluator, face: u32, point: Vec3, found: &SurfacePoint
     let rough = finish(on, face, found, point);
     let foot = descend_inside(on, face, point, rough.uv);
     foot.filter(|foot| foot.distance <= rough.distance).unwrap_or(rough)
-}
-
-/// Whether the parameters lie in the piece or in one as large that touches it.
-fn is_beside(on: &OcctEvaluator, face: u32, piece: &Node, uv: [f64; 2]) -> bool {
-    let period = on.model.topology.faces[face as usize].period;
-    let middle = piece.middle();
-    (0..2).all(|k| {
-        let [low, high] = piece.bounds[k];
-        (bring_near(uv[k], middle[k], period[k]) - middle[k]).abs() <= 1.5 * (high - low)
-    })
 }

@@ -95,6 +95,11 @@ impl SplineCurve {
         self.knots.breaks()
     }
 
+    /// Degree.
+    pub fn degree(&self) -> usize {
+        self.knots.order() - 1
+    }
+
     /// Points whose hull holds the curve between `a` and `b`, which lie in one span: its Bezier poles.
     pub fn hull(&self, [a, b]: [f64; 2], out: &mut Vec<Vec3>) {
         let (span, shift) = span_of(&self.knots, [a, b]);
@@ -184,6 +189,11 @@ impl SplineSurface {
     /// Ends of the spans in u (0) or v (1).
     pub fn breaks(&self, k: usize) -> &[f64] {
         if k == 0 { self.u.breaks() } else { self.v.breaks() }
+    }
+
+    /// Degree in u (0) or v (1).
+    pub fn degree(&self, k: usize) -> usize {
+        [&self.u, &self.v][k].order() - 1
     }
 
     /// Points whose hull holds the surface over a rectangle that lies in one span of u and one of v: its Bezier poles.

@@ -144,6 +144,15 @@ impl Surface {
         }
     }
 
+    /// Degree in u (0) or v (1) between the breaks.
+    pub fn degree(&self, k: usize) -> usize {
+        match self {
+            Self::Spline(spline) => spline.degree(k),
+            Self::Swept(swept) => swept.degree(k),
+            _ => 1,
+        }
+    }
+
     /// Foot of the closest perpendicular on the whole surface; none without a closed form. Where every angle is as
     /// close as another (a point on the axis), u is `fallback`'s.
     pub fn foot(&self, point: Vec3, fallback: [f64; 2]) -> Option<[f64; 2]> {

@@ -105,4 +105,9 @@ impl Swept {
             _ => &[],
         }
     }
+
+    /// Degree of the curve, in the direction that it runs in.
+    pub fn degree(&self, k: usize) -> usize {
+        if (k == 1) == self.turned { self.curve.degree() } else { 1 }
+    }
 }

@@ -1,4 +1,5 @@
 //! A face or an edge cut into flat pieces, in a tree of oriented boxes: what the global search rules out by.
+use super::range::bring_near;
 use super::surface::Jet;
 use crate::mesh::vector::{Vec3, cross, dot, norm, scale, sub, unit};
 
@@ -14,6 +15,8 @@ pub struct Node {
     half: Vec3,
     /// Greatest curvature (1/length) towards the normal and away from it; of leaves only.
     bends: [f64; 2],
+    /// The greatest curvature of the piece and of all that lies as near as it is wide.
+    about: f64,
     /// The second child; the first is the next node. None in a leaf.
     second: u32,
 }
@@ -27,6 +30,8 @@ const HALVINGS: u32 = 10;
 /// Curvature times distance below which |S − p|² has one minimum over a piece and those beside it; 1 is the centre of
 /// curvature, and the curvatures are from samples.
 const CONVEX: f64 = 0.5;
+/// How far beyond a piece its surroundings go, in its widths.
+const BESIDE: f64 = 1.0;
 /// Depth of a tree, amply: spans are halved in number, then ten times in length.
 const DEPTH: usize = 128;
 
@@ -60,6 +65,17 @@ impl Node {
             _ => self.bends[0].max(self.bends[1]),
         };
         bend * reach < CONVEX
+    }
+
+    /// Whether a foot at `uv` leaves no other point of the piece closer than `reach`, which is its distance: it lies in
+    /// the piece or beside it, and there the distance has one minimum.
+    pub fn is_covered(&self, uv: [f64; 2], periods: [Option<f64>; 2], reach: f64) -> bool {
+        let middle = self.middle();
+        self.about * reach < CONVEX
+            && (0..2).all(|k| {
+                let [low, high] = self.bounds[k];
+                (bring_near(uv[k], middle[k], periods[k]) - middle[k]).abs() <= (0.5 + BESIDE) * (high - low)
+            })
     }
 }
 
@@ -104,11 +120,46 @@ struct Builder<'a, 'b> {
 
 impl Tree {
     /// Cuts a face, or an edge (whose second cuts are two zeros).
-    pub fn new(source: &mut Source, cuts: [Vec<f64>; 2]) -> Self {
+    pub fn new(source: &mut Source, cuts: [Vec<f64>; 2], periods: [Option<f64>; 2]) -> Self {
         let whole = cuts.each_ref().map(|cuts| [0, cuts.len() - 1]);
         let mut builder = Builder { source, cuts, nodes: Vec::new(), points: Vec::new() };
         builder.spans(whole);
-        Self(builder.nodes)
+        let mut tree = Self(builder.nodes);
+        for i in 0..tree.0.len() {
+            if tree.0[i].second == LEAF {
+                tree.0[i].about = tree.surroundings(i, periods);
+            }
+        }
+        tree
+    }
+
+    /// The greatest curvature of the leaves that meet the surroundings of a leaf.
+    fn surroundings(&self, leaf: usize, periods: [Option<f64>; 2]) -> f64 {
+        let wide = self.0[leaf].bounds.map(|[low, high]| {
+            let more = BESIDE * (high - low);
+            [low - more, high + more]
+        });
+        let turns = |k: usize| if periods[k].is_some() { -1..=1 } else { 0..=0 };
+        let mut bend = 0.0f64;
+        for (i, j) in turns(0).flat_map(|i| turns(1).map(move |j| (i, j))) {
+            let shift = [i, j].map(f64::from).into_iter().zip(periods).map(|(n, period)| n * period.unwrap_or(0.0));
+            let mut wide = wide;
+            wide.iter_mut().zip(shift).for_each(|(wide, shift)| *wide = wide.map(|t| t + shift));
+            bend = bend.max(self.greatest(0, wide));
+        }
+        bend
+    }
+
+    /// The greatest curvature of the leaves below a node that meet a rectangle.
+    fn greatest(&self, node: u32, rectangle: [[f64; 2]; 2]) -> f64 {
+        let here = &self.0[node as usize];
+        if (0..2).any(|k| here.bounds[k][0] > rectangle[k][1] || here.bounds[k][1] < rectangle[k][0]) {
+            return 0.0;
+        }
+        if here.second == LEAF {
+            return here.bends[0].max(here.bends[1]);
+        }
+        self.greatest(node + 1, rectangle).max(self.greatest(here.second, rectangle))
     }
 
     /// Calls `look(leaf, limit)` for the leaves that may hold a point closer than the limit, near ones first; it
@@ -313,5 +364,5 @@ fn boxed(jet: &Jet, bounds: [[f64; 2]; 2], points: &[Vec3], margin: f64) -> Node
     }
     // The last term is the rounding of the products.
     let half = [0, 1, 2].map(|k: usize| 0.5 * (high[k] - low[k]) + margin + 4e-15 * size);
-    Node { bounds, center, axes, half, bends: [0.0; 2], second: LEAF }
+    Node { bounds, center, axes, half, bends: [0.0; 2], about: 0.0, second: LEAF }
 }
