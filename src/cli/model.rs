@@ -83,6 +83,14 @@ fn describe(model: &Model) -> String {
     let rows: Vec<_> = topology.vertices.iter().zip(0..).map(row).collect();
     table(&mut text, "Vertices", &["", "x", "y", "z", "tolerance", "edges"], &rows);
     summarize(&mut text, topology);
+    let bridged = model.faces_on_bridge();
+    if !bridged.is_empty() {
+        let _ = writeln!(
+            text,
+            "by OpenCASCADE     faces {} (no native evaluation of their surface: slower)",
+            list(&bridged)
+        );
+    }
     text
 }
 

@@ -1,7 +1,7 @@
 //! The evaluator of one thread: points, derivatives, normals and curvatures.
 use super::OcctModel;
 use super::bridge::ffi;
-use super::range::{bring_near, place};
+use super::range::{self, bring_near, place};
 use super::surface::{Jet, Surface};
 use super::{newton, project};
 use crate::geometry::{CurveFrame, Evaluate, OnCurve, OnSurface, SurfaceFrame};
@@ -180,7 +180,7 @@ impl<'a> OcctEvaluator<'a> {
             [0, 1].map(|k: usize| bring_near(foot[k], uv[k], period[k]).clamp(range[k][0], range[k][1]))
         } else {
             let size = self.model.size;
-            newton::descend(|uv| self.jet(face, uv), target, uv, range, size).uv
+            newton::descend(|uv| self.jet(face, uv), target, uv, range, range::longest(range), size).uv
         };
         let near = (0..2).all(|k| (better[k] - uv[k]).abs() <= 0.05 * (range[k][1] - range[k][0]));
         let closer =

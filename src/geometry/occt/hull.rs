@@ -1,6 +1,7 @@
 //! Points whose hull, grown by a margin, holds a piece of a curve or surface: Bezier poles of splines, else samples.
 use super::curve::Curve;
 use super::surface::{Jet, Surface};
+use super::tree::Jets;
 use crate::geometry::CurveFrame;
 use crate::mesh::vector::{Vec3, norm};
 
@@ -16,12 +17,7 @@ pub fn as_jet(frame: CurveFrame) -> Jet {
 }
 
 /// Points about a surface over a rectangle, and their margin. A spline's rectangle lies in one of its spans.
-pub fn of_surface(
-    form: &Surface,
-    jet: &mut dyn FnMut([f64; 2]) -> Jet,
-    rectangle: [[f64; 2]; 2],
-    out: &mut Vec<Vec3>,
-) -> f64 {
+pub fn of_surface(form: &Surface, jet: &mut Jets, rectangle: [[f64; 2]; 2], out: &mut Vec<Vec3>) -> f64 {
     match form {
         Surface::Spline(spline) => {
             spline.hull(rectangle, out);
@@ -32,7 +28,7 @@ pub fn of_surface(
 }
 
 /// Points about a curve between two parameters, and their margin. A spline's lie in one of its spans.
-pub fn of_curve(form: &Curve, jet: &mut dyn FnMut([f64; 2]) -> Jet, range: [f64; 2], out: &mut Vec<Vec3>) -> f64 {
+pub fn of_curve(form: &Curve, jet: &mut Jets, range: [f64; 2], out: &mut Vec<Vec3>) -> f64 {
     match form {
         Curve::Spline(spline) => {
             spline.hull(range, out);
@@ -43,7 +39,7 @@ pub fn of_curve(form: &Curve, jet: &mut dyn FnMut([f64; 2]) -> Jet, range: [f64;
 }
 
 /// Samples, and how far a smooth piece strays from the hull of those beside: h²/8 times the second derivative.
-fn sampled(jet: &mut dyn FnMut([f64; 2]) -> Jet, rectangle: [[f64; 2]; 2], out: &mut Vec<Vec3>) -> f64 {
+fn sampled(jet: &mut Jets, rectangle: [[f64; 2]; 2], out: &mut Vec<Vec3>) -> f64 {
     let [u, v] = rectangle;
     let at = |[low, high]: [f64; 2], i: usize| {
         let s = i as f64 / (SAMPLES - 1) as f64;

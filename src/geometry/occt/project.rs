@@ -3,8 +3,8 @@ use super::curve::{self, CurvePoint};
 use super::evaluator::OcctEvaluator;
 use super::hull::{self, as_jet};
 use super::newton::{self, SurfacePoint};
-use super::range::{is_whole, place};
-use super::tree::{Node, Source, Tree, cuts};
+use super::range::{is_whole, longest, place};
+use super::tree::{Jets, Node, Source, Tree, cuts};
 use super::trim;
 use crate::geometry::{Evaluate, OnCurve, OnSurface};
 use crate::mesh::vector::{Vec3, distance};
@@ -61,9 +61,8 @@ fn edge_tree<'a>(on: &mut OcctEvaluator<'a>, edge: u32) -> &'a Tree {
         let period = model.topology.edges[edge as usize].period;
         let cuts = cuts(range, period, shape.form.breaks(), spans);
         let mut jet = |uv: [f64; 2]| as_jet(on.curve(edge, uv[0]));
-        let hull = &mut |jet: &mut dyn FnMut([f64; 2]) -> _, piece: [[f64; 2]; 2], out: &mut _| {
-            hull::of_curve(&shape.form, jet, piece[0], out)
-        };
+        let hull =
+            &mut |jet: &mut Jets, piece: [[f64; 2]; 2], out: &mut _| hull::of_curve(&shape.form, jet, piece[0], out);
         Tree::new(&mut Source { jet: &mut jet, hull }, [cuts, vec![0.0, 0.0]], [None; 2])
     })
 }
@@ -116,7 +115,8 @@ pub fn on_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: [f64; 2
     } else if guess[0].is_finite() && guess[1].is_finite() {
         let (start, _) = on.placed(face, guess);
         let bounds = open_bounds(on, face);
-        let found = newton::descend(|uv| on.jet(face, uv), point, start, bounds, model.size);
+        let longest = longest(model.topology.faces[face as usize].range);
+        let found = newton::descend(|uv| on.jet(face, uv), point, start, bounds, longest, model.size);
         if found.foot && is_within(on, face, found.uv) {
             return finish(on, face, &found, point);
         }
@@ -228,9 +228,8 @@ fn face_tree<'a>(on: &mut OcctEvaluator<'a>, face: u32) -> &'a Tree {
             cuts(entity.range[k], entity.period[k], shape.form.breaks(k), spans)
         });
         let mut jet = |uv: [f64; 2]| on.jet(face, uv);
-        let hull = &mut |jet: &mut dyn FnMut([f64; 2]) -> _, piece: [[f64; 2]; 2], out: &mut _| {
-            hull::of_surface(&shape.form, jet, piece, out)
-        };
+        let hull =
+            &mut |jet: &mut Jets, piece: [[f64; 2]; 2], out: &mut _| hull::of_surface(&shape.form, jet, piece, out);
         Tree::new(&mut Source { jet: &mut jet, hull }, cuts, entity.period)
     })
 }
@@ -260,7 +259,8 @@ fn search_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<
             for &r in starts(simple) {
                 let [[u0, u1], [v0, v1]] = leaf.bounds;
                 let start = [u0 + s * (u1 - u0), v0 + r * (v1 - v0)];
-                let found = newton::descend(|uv| on.jet(face, uv), point, start, leaf.bounds, size);
+                let found =
+                    newton::descend(|uv| on.jet(face, uv), point, start, leaf.bounds, longest(leaf.bounds), size);
                 if found.distance.is_nan() || found.distance >= far(best) * CLOSER {
                     continue;
                 }
@@ -280,7 +280,8 @@ fn search_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<
 /// The foot that the descent from `start` reaches, if it lies in the face.
 fn descend_inside(on: &mut OcctEvaluator, face: u32, point: Vec3, start: [f64; 2]) -> Option<OnSurface> {
     let (bounds, size) = (open_bounds(on, face), on.model.size);
-    let found = newton::descend(|uv| on.jet(face, uv), point, start, bounds, size);
+    let longest = longest(on.model.topology.faces[face as usize].range);
+    let found = newton::descend(|uv| on.jet(face, uv), point, start, bounds, longest, size);
     let found = found.foot.then(|| finish(on, face, &found, point))?;
     inside(on, face, found.uv).then_some(found)
 }

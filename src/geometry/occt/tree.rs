@@ -23,10 +23,16 @@ pub struct Node {
 
 /// No child.
 const LEAF: u32 = u32::MAX;
-/// A piece is flat when its thickness is this share of its extent: its normals are within 25° of each other.
+/// A piece is flat when its thickness is at most this share of its extent.
 const FLAT: f64 = 0.05;
+/// And when its normal turns by at most this along u and along v (radians, by samples).
+const TURN: f64 = 0.5;
+/// Samples of the curvature in each direction, ends included.
+const SAMPLES: usize = 5;
 /// Most halvings of a smooth span.
-const HALVINGS: u32 = 10;
+const HALVINGS: u32 = 12;
+/// What the curvatures of samples are allowed to be exceeded by between them.
+const EXCESS: f64 = 1.5;
 /// Curvature times distance below which |S − p|² has one minimum over a piece and those beside it; 1 is the centre of
 /// curvature, and the curvatures are from samples.
 const CONVEX: f64 = 0.5;
@@ -83,12 +89,15 @@ impl Node {
 #[derive(Debug)]
 pub struct Tree(Vec<Node>);
 
+/// S and its derivatives at parameters.
+pub type Jets<'a> = dyn FnMut([f64; 2]) -> Jet + 'a;
+
 /// What a tree is made of: evaluation, and points whose hull grown by a margin holds a piece (see `hull`).
 pub struct Source<'a> {
     /// S and its derivatives.
-    pub jet: &'a mut dyn FnMut([f64; 2]) -> Jet,
+    pub jet: &'a mut Jets<'a>,
     /// Points about a piece, and their margin.
-    pub hull: &'a mut dyn FnMut(&mut dyn FnMut([f64; 2]) -> Jet, [[f64; 2]; 2], &mut Vec<Vec3>) -> f64,
+    pub hull: &'a mut dyn FnMut(&mut Jets, [[f64; 2]; 2], &mut Vec<Vec3>) -> f64,
 }
 
 /// Where a range is cut: at its ends and at the breaks between them, or into `count` equal pieces where there are none.
@@ -231,13 +240,20 @@ impl Builder<'_, '_> {
         let first = self.points.len();
         let margin = (self.source.hull)(self.source.jet, rectangle, &mut self.points);
         let mut node = boxed(&here, rectangle, &self.points[first..], margin);
-        if depth == HALVINGS || node.half[2] <= FLAT * node.half[0].max(node.half[1]) {
-            node.bends = self.bends(rectangle);
+        let bending = self.bending(rectangle);
+        let [u_turn, v_turn] = bending.turns;
+        let is_flat = node.half[2] <= FLAT * node.half[0].max(node.half[1]);
+        if depth == HALVINGS || (is_flat && u_turn.max(v_turn) <= TURN) {
+            node.bends = bending.bends;
             self.nodes.push(node);
             return margin;
         }
         self.points.truncate(first);
-        let k = usize::from(bending(&here, rectangle) == 1);
+        // Where it turns more; where only the hull is thick, the longer side.
+        let sizes = extents(&here, rectangle);
+        let is_curve = rectangle[1][0] == rectangle[1][1];
+        let k = if u_turn.max(v_turn) > 0.1 * TURN { v_turn > u_turn } else { sizes[1] > sizes[0] };
+        let k = usize::from(k && !is_curve);
         let [low, high] = rectangle[k];
         let middle = 0.5 * (low + high);
         let (mut below, mut above) = (rectangle, rectangle);
@@ -271,43 +287,43 @@ impl Builder<'_, '_> {
         (self.source.jet)(rectangle.map(|[low, high]| 0.5 * (low + high)))
     }
 
-    /// The greatest curvatures of nine samples, half as much again.
-    fn bends(&mut self, rectangle: [[f64; 2]; 2]) -> [f64; 2] {
+    /// How a piece bends, by samples.
+    fn bending(&mut self, rectangle: [[f64; 2]; 2]) -> Bending {
         let is_curve = rectangle[1][0] == rectangle[1][1];
-        let mut bends = [0.0f64; 2];
-        for i in 0..9 {
-            let at = |k: usize, i: usize| {
-                let s = 0.5 * i as f64;
-                rectangle[k][0] * (1.0 - s) + rectangle[k][1] * s
-            };
-            let here = (self.source.jet)([at(0, i % 3), at(1, i / 3)]);
-            let [least, greatest] = curvatures(&here, is_curve);
-            bends = [bends[0].max(greatest), bends[1].max(-least)];
+        let widths = rectangle.map(|[low, high]| high - low);
+        let at = |k: usize, i: usize| {
+            let s = i as f64 / (SAMPLES - 1) as f64;
+            rectangle[k][0] * (1.0 - s) + rectangle[k][1] * s
+        };
+        let mut all = Bending { bends: [0.0; 2], turns: [0.0; 2] };
+        for i in 0..SAMPLES {
+            for j in 0..if is_curve { 1 } else { SAMPLES } {
+                let here = (self.source.jet)([at(0, i), at(1, j)]);
+                let [least, greatest] = curvatures(&here, is_curve);
+                all.bends = [all.bends[0].max(EXCESS * greatest), all.bends[1].max(-EXCESS * least)];
+                let turns = if is_curve {
+                    [norm(cross(here.du, here.duu)) / dot(here.du, here.du), 0.0]
+                } else {
+                    let normal = unit(cross(here.du, here.dv));
+                    [(here.du, here.duu), (here.dv, here.dvv)].map(|(d, dd)| dot(dd, normal).abs() / norm(d))
+                };
+                // At a pole 0/0 is NaN, which is no maximum.
+                all.turns = [0, 1].map(|k: usize| all.turns[k].max(turns[k] * widths[k]));
+            }
         }
-        bends.map(|bend| 1.5 * bend)
+        all
     }
+}
+
+/// Curvatures as in [`Node`], and how far the normal turns along u and v, radians.
+struct Bending {
+    bends: [f64; 2],
+    turns: [f64; 2],
 }
 
 /// How long a piece is in u and v, from the derivatives at its middle.
 fn extents(jet: &Jet, rectangle: [[f64; 2]; 2]) -> [f64; 2] {
     [norm(jet.du) * (rectangle[0][1] - rectangle[0][0]), norm(jet.dv) * (rectangle[1][1] - rectangle[1][0])]
-}
-
-/// The direction to halve a piece in: where it bends more.
-fn bending(jet: &Jet, rectangle: [[f64; 2]; 2]) -> usize {
-    if rectangle[1][0] == rectangle[1][1] {
-        return 0;
-    }
-    let normal = unit(cross(jet.du, jet.dv));
-    let [h, k] = rectangle.map(|[low, high]| high - low);
-    let bends = [h * h * dot(jet.duu, normal).abs(), k * k * dot(jet.dvv, normal).abs()];
-    let sizes = extents(jet, rectangle);
-    // Twist alone, or no normal: the longer side.
-    if bends[0].max(bends[1]) <= 2.0 * h * k * dot(jet.duv, normal).abs() || bends[0] == bends[1] {
-        usize::from(sizes[1] > sizes[0])
-    } else {
-        usize::from(bends[1] > bends[0])
-    }
 }
 
 /// Least and greatest principal curvature towards Su × Sv; infinite where there is no normal. Of a curve ± its own.
@@ -334,7 +350,7 @@ fn axes(jet: &Jet) -> [Vec3; 3] {
         return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     }
     let mut normal = unit(cross(jet.du, jet.dv));
-    if !(norm(normal) > 0.5) {
+    if norm(normal) < 0.5 {
         // A curve, or a pole: any direction across.
         let least = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs())).unwrap_or(0);
         let mut other = [0.0; 3];
