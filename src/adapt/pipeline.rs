@@ -261,6 +261,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
                 break;
             }
             self.reconnect(Criterion::MeanRatio, 2);
+            self.smooth();
         }
         // Flips have looked at the worst only.
         self.looked = looked;
