@@ -17,12 +17,15 @@ const EXCESS: f64 = 1.5;
 /// S and its derivatives at parameters.
 pub type Jets<'a> = dyn FnMut([f64; 2]) -> Jet + 'a;
 
-/// What a tree is made of: evaluation, and points whose hull grown by a margin holds a piece (see `hull`).
+/// Adds points whose hull grown by a margin holds the piece over a rectangle, and returns the margin (see `hull`).
+pub type Hull<'a> = dyn FnMut(&mut Jets, [[f64; 2]; 2], &mut Vec<Vec3>) -> f64 + 'a;
+
+/// What a tree is made of.
 pub struct Source<'a> {
     /// S and its derivatives.
     pub jet: &'a mut Jets<'a>,
     /// Points about a piece, and their margin.
-    pub hull: &'a mut dyn FnMut(&mut Jets, [[f64; 2]; 2], &mut Vec<Vec3>) -> f64,
+    pub hull: &'a mut Hull<'a>,
 }
 
 /// Where a range is cut: at its ends and at the breaks between them, or into `count` equal pieces where there are none.
