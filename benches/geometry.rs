@@ -68,18 +68,24 @@ mod faces {
         let mut numbers = Numbers(7);
         let faces = (0..).zip(&model.topology().faces).filter(|(_, face)| face.kind == kind);
         let faces: Vec<u32> = faces.map(|(i, _)| i).collect();
-        (0..POINTS)
-            .map(|k| {
+        let small = 1e-9 * model.topology().diagonal();
+        (0..)
+            .filter_map(|k| {
                 let face = faces[k % faces.len()];
                 let range = model.topology().faces[face as usize].range;
                 let uv = range.map(|[low, high]| low + (high - low) * (0.02 + 0.96 * numbers.next()));
                 let frame = on.face_frame(face, uv);
+                // What lies beside the trimmed face is no place for a point of it.
+                if on.closest_on_face(face, frame.point, None).distance > small {
+                    return None;
+                }
                 let reach = 0.3 / frame.curvatures[0].abs().max(1e-3);
                 let size = norm(frame.du) * (range[0][1] - range[0][0]);
                 let point = add(frame.point, scale(frame.normal, numbers.sign() * reach.min(0.02 * size)));
                 let guess = [0, 1].map(|k: usize| uv[k] + 0.01 * (range[k][1] - range[k][0]) * numbers.sign());
-                Case { face, point, uv, guess }
+                Some(Case { face, point, uv, guess })
             })
+            .take(POINTS)
             .collect()
     }
 

@@ -15,8 +15,5 @@ Spline surface_generatrix(const Model& model, std::uint32_t face);
 Spline curve_spline(const Model& model, std::uint32_t edge);
 /// The curve of an edge in the parameters of a face (z = 0); on a seam the first or, `reversed`, the second one.
 Spline pcurve_spline(const Model& model, std::uint32_t edge, std::uint32_t face, bool reversed);
-/// Triangles of all faces, nine coordinates each, by BRepMesh on a copy, no chord being farther off than `deflection`:
-/// for the tests.
-rust::Vec<double> tessellation(const Model& model, double deflection);
 
 } // namespace geo_adapt

@@ -1,7 +1,7 @@
 //! Points whose hull, grown by a margin, holds a piece of a curve or surface: Bezier poles of splines, else samples.
 use super::curve::Curve;
+use super::pieces::Jets;
 use super::surface::{Jet, Surface};
-use super::tree::Jets;
 use crate::geometry::CurveFrame;
 use crate::mesh::vector::{Vec3, norm};
 

@@ -9,6 +9,7 @@ mod evaluator;
 mod hull;
 mod load;
 mod newton;
+mod pieces;
 mod project;
 mod range;
 mod spline;

@@ -3,7 +3,7 @@
 use super::curve::Curve;
 use super::evaluator::OcctEvaluator;
 use super::hull::{self, as_jet};
-use super::tree::cuts;
+use super::pieces::cuts;
 use crate::geometry::{FaceEntity, Topology};
 use crate::mesh::vector::Vec3;
 
