@@ -5,7 +5,7 @@
 //! that can come to light, and no neighbours are needed to find them.
 use super::Scene;
 use crate::mesh::adjacency::NONE;
-use crate::mesh::vector::{Vec3, dot, norm, scale};
+use crate::mesh::vector::{Vec3, dot, norm};
 use crate::tasks::{GRAIN, Team};
 use std::collections::BTreeSet;
 
@@ -48,7 +48,7 @@ impl std::str::FromStr for Plane {
         if !(length > 0.0 && length.is_finite() && offset.is_finite()) {
             return Err(wrong());
         }
-        Ok(Self { normal: scale(normal, 1.0 / length), offset: offset / length })
+        Ok(Self { normal: normal.map(|x| x / length), offset: offset / length })
     }
 }
 

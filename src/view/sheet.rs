@@ -218,7 +218,10 @@ fn ticks([low, high]: [f32; 2], logarithmic: bool) -> Vec<f32> {
         return vec![low];
     }
     if logarithmic && low > 0.0 && high / low >= 100.0 {
-        let (first, last) = (f64::from(low).log10().ceil() as i32, f64::from(high).log10().floor() as i32);
+        // A power of ten in 32 bits may lie beside the power itself.
+        let slack = 1e-6;
+        let first = (f64::from(low).log10() - slack).ceil() as i32;
+        let last = (f64::from(high).log10() + slack).floor() as i32;
         let step = ((last - first) / 8 + 1) as usize;
         return (first..=last).step_by(step).map(|power| 10.0f64.powi(power) as f32).collect();
     }

@@ -78,9 +78,9 @@ fn range(text: &str) -> Result<Range, String> {
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let parse = |side: &str| side.parse::<u32>().ok().filter(|side| (64..=16384).contains(side));
+    let parse = |side: &str| side.parse::<u32>().ok().filter(|side| (64..=8192).contains(side));
     match text.split_once('x').map(|(width, height)| [parse(width), parse(height)]) {
         Some([Some(width), Some(height)]) => Ok([width, height]),
-        _ => Err("give width and height in pixels, each from 64 to 16384, such as 1200x900".into()),
+        _ => Err("give width and height in pixels, each from 64 to 8192, such as 1200x900".into()),
     }
 }

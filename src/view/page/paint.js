@@ -243,9 +243,9 @@ class Painter {
     }
     gl.useProgram(this.line.program);
     common(this.line);
-    for (const [part, half, colour, wanted] of [[this.lines, 0.75, look.ridge, look.ridges], [this.model, 0.6, [0.85, 0.1, 0.45], look.model]]) {
+    for (const [part, half, lift, colour, wanted] of [[this.lines, 0.75, 1.2, look.ridge, look.ridges], [this.model, 0.6, 2, [0.85, 0.1, 0.45], look.model]]) {
       if (!part.count || !wanted) continue;
-      gl.uniform3fv(this.line.uniforms.width, [half / camera.scale, half / camera.scale, 1.2 / camera.scale]);
+      gl.uniform3fv(this.line.uniforms.width, [half / camera.scale, half / camera.scale, lift / camera.scale]);
       gl.uniform3fv(this.line.uniforms.colour, colour);
       this.attribute(this.line, "first", part.buffer, 3, gl.FLOAT, false, 32, 0);
       this.attribute(this.line, "second", part.buffer, 3, gl.FLOAT, false, 32, 12);

@@ -33,7 +33,7 @@ const named = (one) => one.reference + (one.name ? " · " + one.name : "");
 function ticks([low, high], logarithmic) {
   if (!(low < high)) return [low];
   if (logarithmic && low > 0 && high / low >= 100) {
-    const [first, last] = [Math.ceil(Math.log10(low) - 1e-9), Math.floor(Math.log10(high) + 1e-9)];
+    const [first, last] = [Math.ceil(Math.log10(low) - 1e-6), Math.floor(Math.log10(high) + 1e-6)];
     const step = Math.floor((last - first) / 8) + 1, found = [];
     for (let power = first; power <= last; power += step) found.push(10 ** power);
     return found;
@@ -101,7 +101,7 @@ function listReferences(list, references, toggle, fit) {
 }
 
 function listFigures(figures) {
-  byId("figures").replaceChildren(...figures.map(([name, value]) => make("tr", {}, make("td", { textContent: name }), make("td", { textContent: value }))));
+  byId("figures").replaceChildren(...figures.map(([name, value]) => make("tr", {}, make("td", { textContent: name }), make("td", { textContent: value, className: value.length < 16 ? "short" : "" }))));
 }
 
 /** Says what was clicked. */
