@@ -27,7 +27,7 @@ pub enum Rung {
 }
 
 /// What is tried in turn. gmsh: 6 is frontal-Delaunay, 5 Delaunay, 1 MeshAdapt; in three dimensions 1 is Delaunay, 10 HXT, 4 frontal.
-const RUNGS: [Rung; 9] = [
+const RUNGS: [Rung; 10] = [
     Rung::Gmsh { surface: 6, volume: 1, finer: 1.0 },
     Rung::Gmsh { surface: 5, volume: 1, finer: 1.0 },
     Rung::Gmsh { surface: 6, volume: 10, finer: 1.0 },
@@ -37,6 +37,7 @@ const RUNGS: [Rung; 9] = [
     Rung::Gmsh { surface: 5, volume: 10, finer: 4.0 },
     Rung::Netgen { finer: 1.0 },
     Rung::Netgen { finer: 2.0 },
+    Rung::Netgen { finer: 0.5 },
 ];
 
 impl Rung {
@@ -72,8 +73,8 @@ impl std::fmt::Display for Rung {
             }
             Self::Netgen { .. } => write!(f, "netgen (its usual algorithms")?,
         }
-        if self.finer() > 1.0 {
-            write!(f, ", {} times finer", self.finer())?;
+        if self.finer() != 1.0 {
+            write!(f, ", sizes divided by {}", self.finer())?;
         }
         write!(f, ")")
     }

@@ -14,9 +14,6 @@ pub const VARIABLE: &str = "GEO_ADAPT_GMSH";
 /// What to do where it is missing.
 pub const REMEDY: &str = "sudo apt install gmsh";
 
-/// Least size, of the model's diagonal: the curvature at an apex has no bound.
-const LEAST: f64 = 1e-4;
-
 /// Its name of an algorithm for surfaces.
 pub fn algorithm(number: u32) -> &'static str {
     match number {
@@ -45,7 +42,7 @@ pub fn command(
 ) -> std::io::Result<Command> {
     let mut script = String::new();
     let segments = (std::f64::consts::TAU * wish.segments * finer).max(12.0);
-    let (greatest, least) = (wish.greatest / finer, (LEAST * wish.diagonal).min(0.1 * wish.greatest) / finer);
+    let [greatest, least] = [wish.greatest, wish.least].map(|size| size / finer);
     let _ = write!(
         script,
         "General.Terminal = 1;\nMesh.Algorithm = {surface};\nMesh.Algorithm3D = {volume};\nMesh.MeshSizeFromCurvature = {segments};\n\

@@ -2,24 +2,27 @@
 use super::driver::{Choice, Rung, places};
 use super::process::{self, Failure, Workplace};
 use super::{gmsh, netgen};
+use crate::cli::adapt::progress::Stop;
 use crate::geometry::classify::{Classification, Options, classify};
 use crate::geometry::{Geometry, Model};
 use crate::mesh::validity;
 use crate::mesh::{TetMesh, io};
 use crate::tasks::Team;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 /// What the mesh should be like.
 pub struct Wish {
     /// Greatest size, model units.
     pub greatest: f64,
+    /// Least size: the curvature at an apex has no bound.
+    pub least: f64,
     /// Segments for a radian of curvature.
     pub segments: f64,
-    /// Diagonal of the model's box.
-    pub diagonal: f64,
     /// How long a run may take.
     pub limit: Duration,
+    /// Set when the user ends it.
+    pub stop: Stop,
 }
 
 /// A mesh on its model.
@@ -38,6 +41,8 @@ pub struct Meshed {
 enum Miss {
     /// No such program.
     NotThere(String),
+    /// The user ended it.
+    Interrupted,
     /// It took too long.
     TooLong(String),
     /// It failed, or its mesh was not good.
@@ -69,6 +74,7 @@ pub fn climb(team: Team<'_>, model: &Model, wish: &Wish, choice: Choice, log: &P
                 gone.push(rung.program());
                 missing.push(why);
             }
+            Err(Miss::Interrupted) => return Err(format!("{} was interrupted; no mesh was written", rung.program())),
             Err(Miss::TooLong(why)) => {
                 slow.push(rung.program());
                 failed.push((rung, why));
@@ -127,13 +133,18 @@ fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Pa
     for program in places(variable, name) {
         let command = command(&program, wish, rung, place, files);
         let mut command = command.map_err(|error| Miss::Failed(format!("no file for it: {error}")))?;
-        match process::run(&mut command, log, wish.limit) {
+        match process::run(&mut command, log, wish.limit, &wish.stop) {
             Ok(()) => return Ok(()),
             Err(Failure::NotStarted(_)) => {}
+            Err(Failure::Interrupted) => return Err(Miss::Interrupted),
             Err(Failure::Ended(status)) if status.code() == Some(NO_MODULE) && matches!(rung, Rung::Netgen { .. }) => {}
             Err(failure) => {
                 let why = format!("it {failure}: {}", process::last_lines(log));
-                return Err(if matches!(failure, Failure::TooLong(_)) { Miss::TooLong(why) } else { Miss::Failed(why) });
+                return Err(if matches!(failure, Failure::TooLong(_)) {
+                    Miss::TooLong(why)
+                } else {
+                    Miss::Failed(why)
+                });
             }
         }
     }
@@ -144,7 +155,7 @@ fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Pa
 const NO_MODULE: i32 = 77;
 
 fn command(
-    program: &PathBuf,
+    program: &Path,
     wish: &Wish,
     rung: Rung,
     place: &Workplace,
