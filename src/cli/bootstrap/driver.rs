@@ -17,24 +17,34 @@ pub enum Choice {
     Netgen,
 }
 
-/// What one run of a mesher is to do.
+/// What one run of a mesher is to do; sizes are divided by `finer`.
 #[derive(Clone, Copy)]
 pub enum Rung {
     /// gmsh, with its numbers of the algorithms in two and in three dimensions.
-    Gmsh { surface: u32, volume: u32, finer: f64 },
+    Gmsh { surface: u32, volume: u32, finer: f64, least: Least },
     /// netgen.
     Netgen { finer: f64 },
 }
 
+/// How small curvature may make sizes.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Least {
+    /// As small as those of the metric of the geometry.
+    Usual,
+    /// No smaller than a thousandth of the model's diagonal: at a sharp apex gmsh divides edges for ever.
+    Large,
+}
+
 /// What is tried in turn. gmsh: 6 is frontal-Delaunay, 5 Delaunay, 1 MeshAdapt; in three dimensions 1 is Delaunay, 10 HXT, 4 frontal.
-const RUNGS: [Rung; 10] = [
-    Rung::Gmsh { surface: 6, volume: 1, finer: 1.0 },
-    Rung::Gmsh { surface: 5, volume: 1, finer: 1.0 },
-    Rung::Gmsh { surface: 6, volume: 10, finer: 1.0 },
-    Rung::Gmsh { surface: 1, volume: 1, finer: 1.0 },
-    Rung::Gmsh { surface: 6, volume: 1, finer: 2.0 },
-    Rung::Gmsh { surface: 1, volume: 4, finer: 2.0 },
-    Rung::Gmsh { surface: 5, volume: 10, finer: 4.0 },
+const RUNGS: [Rung; 11] = [
+    Rung::Gmsh { surface: 6, volume: 1, finer: 1.0, least: Least::Usual },
+    Rung::Gmsh { surface: 5, volume: 1, finer: 1.0, least: Least::Usual },
+    Rung::Gmsh { surface: 6, volume: 10, finer: 1.0, least: Least::Usual },
+    Rung::Gmsh { surface: 6, volume: 1, finer: 1.0, least: Least::Large },
+    Rung::Gmsh { surface: 1, volume: 1, finer: 1.0, least: Least::Large },
+    Rung::Gmsh { surface: 6, volume: 1, finer: 2.0, least: Least::Usual },
+    Rung::Gmsh { surface: 1, volume: 4, finer: 2.0, least: Least::Usual },
+    Rung::Gmsh { surface: 5, volume: 10, finer: 4.0, least: Least::Usual },
     Rung::Netgen { finer: 1.0 },
     Rung::Netgen { finer: 2.0 },
     Rung::Netgen { finer: 0.5 },
@@ -49,13 +59,6 @@ impl Rung {
         })
     }
 
-    /// How many times finer than wished.
-    pub fn finer(self) -> f64 {
-        match self {
-            Self::Gmsh { finer, .. } | Self::Netgen { finer } => finer,
-        }
-    }
-
     /// The program.
     pub fn program(self) -> &'static str {
         match self {
@@ -63,18 +66,33 @@ impl Rung {
             Self::Netgen { .. } => netgen::NAME,
         }
     }
+
+    /// Whether it is to be tried where another rung of the program took too long.
+    pub fn is_light(self) -> bool {
+        match self {
+            Self::Gmsh { least, .. } => least == Least::Large,
+            Self::Netgen { finer } => finer < 1.0,
+        }
+    }
 }
 
 impl std::fmt::Display for Rung {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match *self {
-            Self::Gmsh { surface, volume, .. } => {
+        let finer = match *self {
+            Self::Gmsh { surface, volume, finer, least } => {
                 write!(f, "gmsh ({} surfaces, {} volumes", gmsh::algorithm(surface), gmsh::algorithm_3d(volume))?;
+                if least == Least::Large {
+                    write!(f, ", no small sizes")?;
+                }
+                finer
             }
-            Self::Netgen { .. } => write!(f, "netgen (its usual algorithms")?,
-        }
-        if self.finer() != 1.0 {
-            write!(f, ", sizes divided by {}", self.finer())?;
+            Self::Netgen { finer } => {
+                write!(f, "netgen (its usual algorithms")?;
+                finer
+            }
+        };
+        if finer != 1.0 {
+            write!(f, ", sizes divided by {finer}")?;
         }
         write!(f, ")")
     }

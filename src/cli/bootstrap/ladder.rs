@@ -3,7 +3,7 @@ use super::driver::{Choice, Rung, places};
 use super::process::{self, Failure, Workplace};
 use super::{gmsh, netgen};
 use crate::cli::adapt::progress::Stop;
-use crate::geometry::classify::{Classification, Options, classify};
+use crate::geometry::classify::{Classification, Error, Options, classify};
 use crate::geometry::{Geometry, Model};
 use crate::mesh::validity;
 use crate::mesh::{TetMesh, io};
@@ -17,6 +17,8 @@ pub struct Wish {
     pub greatest: f64,
     /// Least size: the curvature at an apex has no bound.
     pub least: f64,
+    /// Diagonal of the model's box.
+    pub diagonal: f64,
     /// Segments for a radian of curvature.
     pub segments: f64,
     /// How long a run may take.
@@ -61,8 +63,7 @@ pub fn climb(team: Team<'_>, model: &Model, wish: &Wish, choice: Choice, log: &P
     let (mut missing, mut failed): (Vec<String>, Vec<(Rung, String)>) = (Vec::new(), Vec::new());
     let (mut gone, mut slow) = (Vec::new(), Vec::new());
     for rung in Rung::of(choice) {
-        // What was too long once is not tried finer.
-        if gone.contains(&rung.program()) || rung.finer() > 1.0 && slow.contains(&rung.program()) {
+        if gone.contains(&rung.program()) || !rung.is_light() && slow.contains(&rung.program()) {
             continue;
         }
         match attempt(team, model, wish, rung, &place, &brep, log) {
@@ -162,7 +163,9 @@ fn command(
     files: [&Path; 2],
 ) -> std::io::Result<std::process::Command> {
     match rung {
-        Rung::Gmsh { surface, volume, finer } => gmsh::command(program, (surface, volume, finer), wish, place, files),
+        Rung::Gmsh { surface, volume, finer, least } => {
+            gmsh::command(program, (surface, volume, finer, least), wish, place, files)
+        }
         Rung::Netgen { finer } => netgen::command(program, finer, wish, place, files),
     }
 }
@@ -186,7 +189,18 @@ fn judge(team: Team<'_>, mut mesh: TetMesh, model: &Model) -> Result<(TetMesh, C
     if let Some(solid) = empty {
         return Err(format!("its mesh has no tetrahedra in solid {solid} of {}", topology.solids));
     }
-    let (place, _) = classify(team, &mesh, model, &Options::default()).map_err(|error| error.to_string())?;
+    let place = classified(team, &mesh, model).map_err(|error| error.to_string())?;
     mesh.triangles.refs = place.faces.iter().map(|&face| face as i32 + 1).collect();
     Ok((mesh, place))
+}
+
+/// Where the mesh lies. Edges of a sewn model may be off its faces by more than these state: then the largest tolerance that the model
+/// states for anything holds for everything.
+fn classified(team: Team<'_>, mesh: &TetMesh, model: &Model) -> Result<Classification, Error> {
+    let error = match classify(team, mesh, model, &Options::default()) {
+        Ok((place, _)) => return Ok(place),
+        Err(error) => error,
+    };
+    let tolerance = Some(2.0 * model.topology().tolerance);
+    classify(team, mesh, model, &Options { tolerance, ..Options::default() }).map(|(place, _)| place).map_err(|_| error)
 }

@@ -62,7 +62,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = Choice::default())]
     mesher: Choice,
     /// Seconds that one run of the mesher may take
-    #[arg(long, value_name = "S", value_parser = super::positive, default_value = "300", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = super::positive, default_value = "120", allow_negative_numbers = true)]
     time_limit: f64,
     /// Threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
@@ -93,6 +93,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let wish = Wish {
         greatest: options.greatest,
         least: options.least,
+        diagonal: model.topology().diagonal(),
         segments: options.segments,
         stop: stop_on_interrupt(),
         limit: Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX),
