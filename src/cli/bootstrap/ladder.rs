@@ -1,5 +1,5 @@
 //! One mesher after the other, one algorithm after the other, until a mesh is valid and lies on the whole model.
-use super::driver::{Choice, Rung, places};
+use super::driver::{Choice, Rung, gmsh_places, netgen_places};
 use super::process::{self, Failure, Workplace};
 use super::{gmsh, netgen};
 use crate::cli::adapt::progress::Stop;
@@ -127,11 +127,11 @@ fn attempt(
 
 /// Runs the program, wherever it is found first.
 fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Path) -> Result<(), Miss> {
-    let (variable, name, remedy) = match rung {
-        Rung::Gmsh { .. } => (gmsh::VARIABLE, gmsh::NAME, gmsh::REMEDY),
-        Rung::Netgen { .. } => (netgen::VARIABLE, "python3", netgen::REMEDY),
+    let (variable, remedy, places) = match rung {
+        Rung::Gmsh { .. } => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
+        Rung::Netgen { .. } => (netgen::VARIABLE, netgen::REMEDY, netgen_places()),
     };
-    for program in places(variable, name) {
+    for program in places {
         let command = command(&program, wish, rung, place, files);
         let mut command = command.map_err(|error| Miss::Failed(format!("no file for it: {error}")))?;
         match process::run(&mut command, log, wish.limit, &wish.stop) {
