@@ -4,11 +4,11 @@ import step
 
 
 def build():
-    """plate: [0, 4] × [0, 4] × [0, 1]; block: [1, 2] × [1, 3] × [1, 2]."""
+    """plate, red: [0, 4] × [0, 4] × [0, 1]; block: [1, 2] × [1, 3] × [1, 2]."""
     import cadquery
 
     assembly = cadquery.Assembly(name="block-on-plate")
-    assembly.add(cadquery.Workplane().box(4, 4, 1, centered=False), name="plate")
+    assembly.add(cadquery.Workplane().box(4, 4, 1, centered=False), name="plate", color=cadquery.Color("red"))
     assembly.add(cadquery.Workplane().box(1, 2, 1, centered=False).translate((1, 1, 1)), name="block")
     return assembly
 

@@ -94,17 +94,20 @@ impl Report {
     /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it.
     pub fn new(team: Team<'_>, asked: &Asked, input: &Input, adapted: Adapted) -> Self {
         let extracted = adapted.extracted;
-        let (mut mesh, model, mut names) = (extracted.mesh, &input.model, input.names.clone());
-        match model {
-            Model::Discrete(surface) => surface.restore(&mut mesh, &extracted.classification),
-            #[cfg(feature = "occt")]
-            Model::Occt(_) => {
-                // References that are the numbers of the faces now have the names of the model.
-                if associate(&mut mesh, &extracted.classification).references_replaced {
-                    names.triangles.clone_from(&model.names().triangles);
-                }
+        let (mut mesh, model) = (extracted.mesh, &input.model);
+        let names = match model {
+            Model::Discrete(surface) => {
+                surface.restore(&mut mesh, &extracted.classification);
+                input.names.clone()
             }
-        }
+            #[cfg(feature = "occt")]
+            Model::Occt(_) if associate(&mut mesh, &extracted.classification).references_replaced => {
+                // References that are the numbers of the faces now have the names of the model.
+                Names { triangles: model.names().triangles.clone(), ..input.names.clone() }
+            }
+            #[cfg(feature = "occt")]
+            Model::Occt(_) => input.names.clone(),
+        };
         let fidelity = fidelity::measure(team, &mesh, model, &extracted.classification);
         Self {
             version: env!("CARGO_PKG_VERSION"),

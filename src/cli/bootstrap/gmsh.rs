@@ -1,4 +1,5 @@
 //! gmsh, version 4 (GPL: started, never linked).
+use super::driver::Least;
 use super::ladder::Wish;
 use super::process::Workplace;
 use std::fmt::Write;
@@ -13,9 +14,6 @@ pub const VARIABLE: &str = "GEO_ADAPT_GMSH";
 
 /// What to do where it is missing.
 pub const REMEDY: &str = "sudo apt install gmsh";
-
-/// Least size, of the model's diagonal: the curvature at an apex has no bound.
-const LEAST: f64 = 1e-4;
 
 /// Its name of an algorithm for surfaces.
 pub fn algorithm(number: u32) -> &'static str {
@@ -38,14 +36,15 @@ pub fn algorithm_3d(number: u32) -> &'static str {
 /// Its command: meshes `model` (BREP) into `out` (MSH 4.1). Curved parts get as many segments as the metric of the geometry wants.
 pub fn command(
     program: &Path,
-    (surface, volume, finer): (u32, u32, f64),
+    (surface, volume, finer, least): (u32, u32, f64, Least),
     wish: &Wish,
     place: &Workplace,
     [model, out]: [&Path; 2],
 ) -> std::io::Result<Command> {
     let mut script = String::new();
     let segments = (std::f64::consts::TAU * wish.segments * finer).max(12.0);
-    let (greatest, least) = (wish.greatest / finer, (LEAST * wish.diagonal).min(0.1 * wish.greatest) / finer);
+    let least = if least == Least::Large { wish.least.max(1e-3 * wish.diagonal) } else { wish.least };
+    let [greatest, least] = [wish.greatest, least.min(wish.greatest)].map(|size| size / finer);
     let _ = write!(
         script,
         "General.Terminal = 1;\nMesh.Algorithm = {surface};\nMesh.Algorithm3D = {volume};\nMesh.MeshSizeFromCurvature = {segments};\n\

@@ -1,25 +1,30 @@
 //! One mesher after the other, one algorithm after the other, until a mesh is valid and lies on the whole model.
-use super::driver::{Choice, Rung, places};
+use super::driver::{Choice, Rung, gmsh_places, netgen_places};
 use super::process::{self, Failure, Workplace};
 use super::{gmsh, netgen};
-use crate::geometry::classify::{Classification, Options, classify};
+use crate::cli::adapt::progress::Stop;
+use crate::geometry::classify::{Classification, Error, Options, classify};
 use crate::geometry::{Geometry, Model};
 use crate::mesh::validity;
 use crate::mesh::{TetMesh, io};
 use crate::tasks::Team;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 /// What the mesh should be like.
 pub struct Wish {
     /// Greatest size, model units.
     pub greatest: f64,
-    /// Segments for a radian of curvature.
-    pub segments: f64,
+    /// Least size: the curvature at an apex has no bound.
+    pub least: f64,
     /// Diagonal of the model's box.
     pub diagonal: f64,
+    /// Segments for a radian of curvature.
+    pub segments: f64,
     /// How long a run may take.
     pub limit: Duration,
+    /// Set when the user ends it.
+    pub stop: Stop,
 }
 
 /// A mesh on its model.
@@ -38,6 +43,8 @@ pub struct Meshed {
 enum Miss {
     /// No such program.
     NotThere(String),
+    /// The user ended it.
+    Interrupted,
     /// It took too long.
     TooLong(String),
     /// It failed, or its mesh was not good.
@@ -56,8 +63,7 @@ pub fn climb(team: Team<'_>, model: &Model, wish: &Wish, choice: Choice, log: &P
     let (mut missing, mut failed): (Vec<String>, Vec<(Rung, String)>) = (Vec::new(), Vec::new());
     let (mut gone, mut slow) = (Vec::new(), Vec::new());
     for rung in Rung::of(choice) {
-        // What was too long once is not tried finer.
-        if gone.contains(&rung.program()) || rung.finer() > 1.0 && slow.contains(&rung.program()) {
+        if gone.contains(&rung.program()) || !rung.is_light() && slow.contains(&rung.program()) {
             continue;
         }
         match attempt(team, model, wish, rung, &place, &brep, log) {
@@ -69,6 +75,7 @@ pub fn climb(team: Team<'_>, model: &Model, wish: &Wish, choice: Choice, log: &P
                 gone.push(rung.program());
                 missing.push(why);
             }
+            Err(Miss::Interrupted) => return Err(format!("{} was interrupted; no mesh was written", rung.program())),
             Err(Miss::TooLong(why)) => {
                 slow.push(rung.program());
                 failed.push((rung, why));
@@ -120,16 +127,17 @@ fn attempt(
 
 /// Runs the program, wherever it is found first.
 fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Path) -> Result<(), Miss> {
-    let (variable, name, remedy) = match rung {
-        Rung::Gmsh { .. } => (gmsh::VARIABLE, gmsh::NAME, gmsh::REMEDY),
-        Rung::Netgen { .. } => (netgen::VARIABLE, "python3", netgen::REMEDY),
+    let (variable, remedy, places) = match rung {
+        Rung::Gmsh { .. } => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
+        Rung::Netgen { .. } => (netgen::VARIABLE, netgen::REMEDY, netgen_places()),
     };
-    for program in places(variable, name) {
+    for program in places {
         let command = command(&program, wish, rung, place, files);
         let mut command = command.map_err(|error| Miss::Failed(format!("no file for it: {error}")))?;
-        match process::run(&mut command, log, wish.limit) {
+        match process::run(&mut command, log, wish.limit, &wish.stop) {
             Ok(()) => return Ok(()),
             Err(Failure::NotStarted(_)) => {}
+            Err(Failure::Interrupted) => return Err(Miss::Interrupted),
             Err(Failure::Ended(status)) if status.code() == Some(NO_MODULE) && matches!(rung, Rung::Netgen { .. }) => {}
             Err(failure) => {
                 let why = format!("it {failure}: {}", process::last_lines(log));
@@ -148,14 +156,16 @@ fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Pa
 const NO_MODULE: i32 = 77;
 
 fn command(
-    program: &PathBuf,
+    program: &Path,
     wish: &Wish,
     rung: Rung,
     place: &Workplace,
     files: [&Path; 2],
 ) -> std::io::Result<std::process::Command> {
     match rung {
-        Rung::Gmsh { surface, volume, finer } => gmsh::command(program, (surface, volume, finer), wish, place, files),
+        Rung::Gmsh { surface, volume, finer, least } => {
+            gmsh::command(program, (surface, volume, finer, least), wish, place, files)
+        }
         Rung::Netgen { finer } => netgen::command(program, finer, wish, place, files),
     }
 }
@@ -179,7 +189,18 @@ fn judge(team: Team<'_>, mut mesh: TetMesh, model: &Model) -> Result<(TetMesh, C
     if let Some(solid) = empty {
         return Err(format!("its mesh has no tetrahedra in solid {solid} of {}", topology.solids));
     }
-    let (place, _) = classify(team, &mesh, model, &Options::default()).map_err(|error| error.to_string())?;
+    let place = classified(team, &mesh, model).map_err(|error| error.to_string())?;
     mesh.triangles.refs = place.faces.iter().map(|&face| face as i32 + 1).collect();
     Ok((mesh, place))
+}
+
+/// Where the mesh lies. Edges of a sewn model may be off its faces by more than these state: then the largest tolerance that the model
+/// states for anything holds for everything.
+fn classified(team: Team<'_>, mesh: &TetMesh, model: &Model) -> Result<Classification, Error> {
+    let error = match classify(team, mesh, model, &Options::default()) {
+        Ok((place, _)) => return Ok(place),
+        Err(error) => error,
+    };
+    let tolerance = Some(2.0 * model.topology().tolerance);
+    classify(team, mesh, model, &Options { tolerance, ..Options::default() }).map(|(place, _)| place).map_err(|_| error)
 }

@@ -10,6 +10,8 @@ mod netgen;
 mod process;
 mod refine;
 
+use super::adapt::INTERRUPTED;
+use super::adapt::progress::stop_on_interrupt;
 use super::adapt::report::Asked;
 use super::metric::common::check_output;
 use super::metric::geometry::GeometryArguments;
@@ -22,6 +24,7 @@ use driver::Choice;
 use ladder::{Meshed, Wish};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// Help on --far-field.
@@ -59,7 +62,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = Choice::default())]
     mesher: Choice,
     /// Seconds that one run of the mesher may take
-    #[arg(long, value_name = "S", value_parser = super::positive, default_value = "300", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = super::positive, default_value = "120", allow_negative_numbers = true)]
     time_limit: f64,
     /// Threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
@@ -89,13 +92,24 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let options = arguments.sizes.options(&model, arguments.limits(), None);
     let wish = Wish {
         greatest: options.greatest,
-        segments: options.segments,
+        least: options.least,
         diagonal: model.topology().diagonal(),
+        segments: options.segments,
+        stop: stop_on_interrupt(),
         limit: Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX),
     };
     let log = arguments.log();
-    let meshed = ladder::climb(team, &model, &wish, arguments.mesher, &log)
-        .map_err(|error| format!("{}: {error}", arguments.model.display()))?;
+    let meshed = match ladder::climb(team, &model, &wish, arguments.mesher, &log) {
+        Ok(meshed) => meshed,
+        Err(error) => {
+            let error = format!("{}: {error}", arguments.model.display());
+            if !wish.stop.load(Ordering::Relaxed) {
+                return Err(error.into());
+            }
+            eprintln!("geo-adapt: error: {error}");
+            return Ok(ExitCode::from(INTERRUPTED));
+        }
+    };
     stage("meshed");
     for notice in meshed.notices.iter().filter(|_| !arguments.quiet) {
         eprintln!("geo-adapt: note: {notice}");
@@ -105,7 +119,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let asked =
         Asked { input: arguments.model.clone(), output: arguments.output.clone(), threads, complexity_wanted: None };
-    refine::run(arguments, &pool, (meshed, model), &asked, start)
+    refine::run(arguments, &pool, (meshed, model), &asked, (start, wish.stop))
 }
 
 /// Refuses a model that is no volume.

@@ -3,7 +3,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 /// How long between two looks at whether a program has ended.
@@ -12,11 +12,16 @@ const LOOK: Duration = Duration::from_millis(10);
 /// Lines of the log that an error tells.
 const LAST_LINES: usize = 3;
 
+/// What is in the lines of that summary.
+const SUMMARY: [&str; 4] = ["error summary", "Check the full log", " warnings", " errors"];
+
 /// Why a program did not do its work.
 #[derive(Debug)]
 pub enum Failure {
     /// It could not be started.
     NotStarted(io::Error),
+    /// The user ended it.
+    Interrupted,
     /// It took longer than the limit, s, and was killed.
     TooLong(f64),
     /// It ended otherwise than with code 0.
@@ -27,6 +32,7 @@ impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
             Self::NotStarted(error) => write!(f, "could not be started ({error})"),
+            Self::Interrupted => write!(f, "was interrupted"),
             Self::TooLong(seconds) => write!(f, "had not ended after {seconds} s and was killed (--time-limit)"),
             Self::Ended(status) => match signal(*status) {
                 Some(signal) => write!(f, "was killed or crashed (signal {signal})"),
@@ -46,11 +52,11 @@ fn signal(_: ExitStatus) -> Option<i32> {
     None
 }
 
-/// Runs a program until it ends or the limit is over; what it says is appended to the log, under a line with its command.
+/// Runs a program until it ends, the limit is over or `stop` is set, so that it never outlives us; what it says is appended to the log, under a line with its command.
 ///
 /// # Errors
 /// [`Failure`]; also when the log cannot be written.
-pub fn run(command: &mut Command, log: &Path, limit: Duration) -> Result<(), Failure> {
+pub fn run(command: &mut Command, log: &Path, limit: Duration, stop: &AtomicBool) -> Result<(), Failure> {
     let open = || OpenOptions::new().create(true).append(true).open(log);
     let (mut out, err) = open().and_then(|out| Ok((out, open()?))).map_err(Failure::NotStarted)?;
     let _ = writeln!(out, "== {command:?}");
@@ -61,13 +67,16 @@ pub fn run(command: &mut Command, log: &Path, limit: Duration) -> Result<(), Fai
         match child.try_wait().map_err(Failure::NotStarted)? {
             Some(status) if status.success() => return Ok(()),
             Some(status) => return Err(Failure::Ended(status)),
-            None if began.elapsed() > limit => {
-                let _ = child.kill();
-                let _ = child.wait();
-                return Err(Failure::TooLong(limit.as_secs_f64()));
+            None if stop.load(Ordering::Relaxed) || began.elapsed() > limit => {}
+            None => {
+                std::thread::sleep(LOOK);
+                continue;
             }
-            None => std::thread::sleep(LOOK),
         }
+        let _ = child.kill();
+        let _ = child.wait();
+        let interrupted = stop.load(Ordering::Relaxed);
+        return Err(if interrupted { Failure::Interrupted } else { Failure::TooLong(limit.as_secs_f64()) });
     }
 }
 
@@ -81,8 +90,11 @@ pub fn last_lines(log: &Path) -> String {
     let bytes = fs::read(log).unwrap_or_default();
     let text = String::from_utf8_lossy(&bytes);
     let from = text.rfind("== \"").unwrap_or(0);
-    let lines: Vec<&str> = text[from..].lines().skip(1).map(str::trim).filter(|line| !line.is_empty()).collect();
-    let errors: Vec<&str> = lines.iter().copied().filter(|line| line.contains("rror")).collect();
+    let says_something = |line: &&str| line.contains(char::is_alphanumeric) && !line.ends_with("---");
+    let lines: Vec<&str> = text[from..].lines().skip(1).map(str::trim).filter(says_something).collect();
+    // Behind its errors gmsh writes a summary, which tells their number.
+    let is_error = |line: &&str| line.contains("rror") && !SUMMARY.iter().any(|word| line.contains(word));
+    let errors: Vec<&str> = lines.iter().copied().filter(is_error).collect();
     let told = if errors.is_empty() { &lines } else { &errors };
     told[told.len().saturating_sub(LAST_LINES)..].join(" | ")
 }
@@ -126,7 +138,8 @@ mod tests {
         let place = Workplace::new().unwrap();
         let log = place.file("log");
         begin(&log).unwrap();
-        let done = run(Command::new("sh").args(["-c", script]), &log, Duration::from_secs_f64(limit));
+        let done =
+            run(Command::new("sh").args(["-c", script]), &log, Duration::from_secs_f64(limit), &AtomicBool::new(false));
         (done, last_lines(&log))
     }
 
@@ -135,7 +148,8 @@ mod tests {
         let (done, told) = shell("echo one; echo two >&2; echo three; echo four", 60.0);
         assert!(done.is_ok());
         assert_eq!(told, "two | three | four");
-        let (done, told) = shell("echo Error: no room; echo goodbye; exit 3", 60.0);
+        let (done, told) =
+            shell("echo Error: no room; echo 'Error : ---'; echo 'Error : 2 errors'; echo goodbye; exit 3", 60.0);
         assert_eq!(told, "Error: no room");
         assert!(done.unwrap_err().to_string().contains("exit status: 3"));
     }
@@ -150,9 +164,22 @@ mod tests {
     }
 
     #[test]
+    fn what_runs_ends_with_an_interrupt() {
+        let place = Workplace::new().unwrap();
+        let mut command = Command::new("sleep");
+        let done = run(command.arg("60"), &place.file("log"), Duration::MAX, &AtomicBool::new(true));
+        assert!(matches!(done, Err(Failure::Interrupted)));
+    }
+
+    #[test]
     fn a_program_that_is_not_there_is_told_so() {
         let place = Workplace::new().unwrap();
-        let done = run(&mut Command::new("/nowhere/mesher"), &place.file("log"), Duration::from_secs(1));
+        let done = run(
+            &mut Command::new("/nowhere/mesher"),
+            &place.file("log"),
+            Duration::from_secs(1),
+            &AtomicBool::new(false),
+        );
         assert!(matches!(done, Err(Failure::NotStarted(_))));
     }
 }

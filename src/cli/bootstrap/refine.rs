@@ -6,7 +6,7 @@ use crate::cli::Outcome;
 use crate::cli::adapt::INTERRUPTED;
 use crate::cli::adapt::files;
 use crate::cli::adapt::input::Input;
-use crate::cli::adapt::progress::{Progress, stop_on_interrupt};
+use crate::cli::adapt::progress::{Progress, Stop};
 use crate::cli::adapt::report::{Asked, Report};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Geometry, Model};
@@ -29,11 +29,10 @@ pub fn run(
     pool: &Pool,
     (meshed, model): (Meshed, Model),
     asked: &Asked,
-    start: Instant,
+    (start, stop): (Instant, Stop),
 ) -> Outcome {
     let plan = Plan::default();
     let team = Team::new(pool, plan);
-    let stop = stop_on_interrupt();
     let named = |error: String| format!("{}: {error}", arguments.model.display());
     let prepared = start.elapsed();
     let input_mesh = Arc::new(meshed.mesh);
