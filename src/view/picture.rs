@@ -72,7 +72,7 @@ fn draw(team: Team<'_>, scene: &Scene<'_>, options: &Options) -> Image {
     let shown = options.part.of(team, scene);
     let mut camera = Camera::from(options.view.unwrap_or_else(|| usual_view(options.part.plane)));
     let points = in_view(scene, options, &shown).into_iter().map(|v| scene.mesh.vertices[v as usize]);
-    let room = [30.0, 76.0, width as f64 / unit - 240.0, height as f64 / unit - 150.0].map(|x| x * unit);
+    let room = [30.0, 76.0, width as f64 / unit - 256.0, height as f64 / unit - 150.0].map(|x| x * unit);
     camera.fit(points, room, options.zoom);
     if let Some(at) = options.at {
         camera.target = at;

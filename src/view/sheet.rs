@@ -164,7 +164,7 @@ impl Sheet<'_> {
             _ => (scene.quality.name.clone(), false),
         };
         for (line, part) in name.split(", ").enumerate() {
-            self.text(&clipped(part, 205.0), [width - 212.0, 98.0 + 18.0 * line as f64], 9.0, INK);
+            self.text(&clipped(part, 190.0), [width - 206.0, 98.0 + 18.0 * line as f64], 9.0, INK);
         }
         if self.options.colour == Colour::Quality {
             self.histogram([left - 8.0, top, 80.0, high]);
@@ -193,7 +193,7 @@ impl Sheet<'_> {
             let place = [right - bar, y + 0.08 * each, bar, 0.84 * each].map(|x| x * self.unit);
             self.image.rectangle(place, BAR);
         }
-        self.text("number, log scale", [right - longest - 10.0, top + high + 20.0], 7.5, PALE);
+        self.text("number, log scale", [right - longest, top + high + 20.0], 7.5, PALE);
     }
 }
 
