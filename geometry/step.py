@@ -1,6 +1,7 @@
 """Writes a shape as STEP so that the same model always gives the same bytes."""
 
 import argparse
+import itertools
 import re
 import sys
 from pathlib import Path
@@ -10,25 +11,51 @@ FIXED_TIME = "2000-01-01T00:00:00"
 HEADER_TIME = re.compile(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")
 
 
-def write(workplane, name, folder):
-    """Writes the one solid of `workplane` (lengths in millimetres, as OCCT has it) to `folder/name.step`; returns the path."""
+def write(model, name, folder):
+    """Writes a model (lengths in millimetres, as OCCT has it) to `folder/name.step`; returns the path.
+
+    A Workplane with one solid, or an Assembly with its names and colours, or a list of solids: several regions. STEP has a face
+    between two solids twice, once for each; so these are also written as `folder/name.brep`, where it is one face of both.
+    """
     import cadquery
     from OCP.Interface import Interface_Static
     from OCP.STEPControl import STEPControl_Writer
 
-    solids = workplane.solids().vals()
-    if len(solids) != 1 or not solids[0].isValid():
-        sys.exit(f"{name}: expected one valid solid, got {len(solids)}")
     path = Path(folder) / f"{name}.step"
     # The static settings come into being with the first writer.
     STEPControl_Writer()
     Interface_Static.SetCVal_s("write.step.product.name", name)
-    cadquery.exporters.export(cadquery.Workplane(solids[0]), str(path))
+    if isinstance(model, cadquery.Assembly):
+        model.export(str(path))
+    else:
+        shape = _shape(model, name)
+        cadquery.exporters.export(cadquery.Workplane(shape), str(path))
+        if isinstance(model, list):
+            shape.exportBrep(str(path.with_suffix(".brep")))
     text, times = HEADER_TIME.subn(f"'{FIXED_TIME}'", path.read_text(encoding="ascii"))
+    text = _counted_anew(text, name)
     if times != 1:
         sys.exit(f"{path}: expected one time stamp in the header, found {times}: OCCT writes another header now, adapt HEADER_TIME")
     path.write_text(text, encoding="ascii", newline="\n")
     return path
+
+
+def _counted_anew(text, name):
+    """The text as if it were the first in the process: OCCT goes on counting products and occurrences from file to file."""
+    text = re.sub(rf"'{re.escape(name)} \d+(\.\d+)?'", rf"'{name} 1\1'", text)
+    numbers = itertools.count(1)
+    return re.sub(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+'", lambda found: f"{found[1]}'{next(numbers)}'", text)
+
+
+def _shape(model, name):
+    """The solid of a Workplane, or the compound of a list of solids; all are valid."""
+    import cadquery
+
+    several = isinstance(model, list)
+    solids = model if several else model.solids().vals()
+    if not solids or (len(solids) > 1 and not several) or not all(solid.isValid() for solid in solids):
+        sys.exit(f"{name}: expected {'valid solids' if several else 'one valid solid'}, got {len(solids)}")
+    return cadquery.Compound.makeCompound(solids) if several else solids[0]
 
 
 def main(build, name):
