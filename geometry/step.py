@@ -14,37 +14,46 @@ HEADER_TIME = re.compile(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")
 def write(model, name, folder):
     """Writes a model (lengths in millimetres, as OCCT has it) to `folder/name.step`; returns the path.
 
-    A Workplane with one solid, or an Assembly with its names and colours, or a list of solids: several regions. STEP has a face
-    between two solids twice, once for each; so these are also written as `folder/name.brep`, where it is one face of both.
+    A Workplane with one solid, or an Assembly, or a list of solids: several regions. STEP has a face between two solids
+    twice, once for each; so these are also written as `folder/name.brep`, where it is one face of both.
     """
     import cadquery
     from OCP.Interface import Interface_Static
     from OCP.STEPControl import STEPControl_Writer
 
+    if isinstance(model, cadquery.Assembly):
+        return write_assembly(model, name, folder)
+    shape = _shape(model, name)
     path = Path(folder) / f"{name}.step"
     # The static settings come into being with the first writer.
     STEPControl_Writer()
     Interface_Static.SetCVal_s("write.step.product.name", name)
-    if isinstance(model, cadquery.Assembly):
-        model.export(str(path))
-    else:
-        shape = _shape(model, name)
-        cadquery.exporters.export(cadquery.Workplane(shape), str(path))
-        if isinstance(model, list):
-            shape.exportBrep(str(path.with_suffix(".brep")))
-    text, times = HEADER_TIME.subn(f"'{FIXED_TIME}'", path.read_text(encoding="ascii"))
-    text = _counted_anew(text, name)
-    if times != 1:
-        sys.exit(f"{path}: expected one time stamp in the header, found {times}: OCCT writes another header now, adapt HEADER_TIME")
-    path.write_text(text, encoding="ascii", newline="\n")
+    cadquery.exporters.export(cadquery.Workplane(shape), str(path))
+    if isinstance(model, list):
+        shape.exportBrep(str(path.with_suffix(".brep")))
+    fix_chance(path, name)
     return path
 
 
-def _counted_anew(text, name):
-    """The text as if it were the first in the process: OCCT goes on counting products and occurrences from file to file."""
+def write_assembly(assembly, name, folder):
+    """Writes the solids of a cadquery `assembly`, with their names and colours and those of their faces, to `folder/name.step`."""
+    from cadquery.occ_impl.exporters.assembly import exportStepMeta
+
+    path = Path(folder) / f"{name}.step"
+    exportStepMeta(assembly, str(path))
+    fix_chance(path, name)
+    return path
+
+
+def fix_chance(path, name):
+    """Replaces in a STEP file what depends on when it was written: the time in the header, and what OCCT counts on from file to file."""
+    text, times = HEADER_TIME.subn(f"'{FIXED_TIME}'", path.read_text(encoding="ascii"))
+    if times != 1:
+        sys.exit(f"{path}: expected one time stamp in the header, found {times}: OCCT writes another header now, adapt HEADER_TIME")
     text = re.sub(rf"'{re.escape(name)} \d+(\.\d+)?'", rf"'{name} 1\1'", text)
     numbers = itertools.count(1)
-    return re.sub(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+'", lambda found: f"{found[1]}'{next(numbers)}'", text)
+    text = re.sub(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+'", lambda found: f"{found[1]}'{next(numbers)}'", text)
+    path.write_text(text, encoding="ascii", newline="\n")
 
 
 def _shape(model, name):
@@ -58,9 +67,9 @@ def _shape(model, name):
     return cadquery.Compound.makeCompound(solids) if several else solids[0]
 
 
-def main(build, name):
+def main(build, name, writer=write):
     """The command line of a model script: `[-o FOLDER]`, this folder by default."""
     parser = argparse.ArgumentParser(description=f"Writes {name}.step.")
     parser.add_argument("-o", "--output", default=Path(__file__).parent, help="folder to write to (default: this one)")
-    path = write(build(), name, parser.parse_args().output)
+    path = writer(build(), name, parser.parse_args().output)
     print(f"wrote {path}")
