@@ -1,8 +1,9 @@
-"""A metric like that of the vortex over a delta wing: thin across a cone that stands on the wing, coarser away from it."""
+"""A metric like that of the vortex over a delta wing: thin across a cone on the wing, coarser away from it."""
 
 import numpy as np
 
-# The cone: its axis from the wing's apex, in the plane of symmetry, and the tangent of its half angle. It cuts the upper side along y = 0.16 x.
+# The cone: its axis from the wing's apex, in the plane of symmetry, and the tangent of its half angle. It cuts the upper side
+# along y = 0.16 x.
 AXIS = np.array([1.0, 0.0, 0.12])
 TANGENT = 0.2
 # The box about wing and cone.

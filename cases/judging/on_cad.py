@@ -46,7 +46,8 @@ def quality(unit_edges, least, mean):
 def arguments(doc, count):
     """The command line that all these cases have."""
     parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, default=cycles.ROOT / "target/release/geo-adapt", help="the built program (default %(default)s)")
+    program = cycles.ROOT / "target/release/geo-adapt"
+    parser.add_argument("--program", type=Path, default=program, help="the built program (default %(default)s)")
     parser.add_argument("--cycles", type=int, default=count, help="runs in a row (default %(default)s); floors hold for the default")
     parser.add_argument("--threads", type=int, default=0, help="default: all cores")
     options = parser.parse_args()
@@ -101,8 +102,9 @@ def run(case, options):
         target, sizes = case.folder / f"{number}.meshb", case.folder / f"{number}-in.solb"
         meshfile.write_metric(sizes, case.field(current, mesh, case.folder))
         target.unlink(missing_ok=True)
-        command = [options.program, "adapt", current, "-o", target, "--cad", case.model, "--metric", sizes, "--report", target.with_suffix(".json")]
-        ran = cycles.measured(command + (["--threads", options.threads] if options.threads else []), log)
+        command = [options.program, "adapt", current, "-o", target, "--cad", case.model, "--metric", sizes]
+        command += ["--report", target.with_suffix(".json")] + (["--threads", options.threads] if options.threads else [])
+        ran = cycles.measured(command, log)
         if ran.code != 0:
             cycles.say(f"LOST  cycle {number}: geo-adapt ended with {ran.code} ({log}):\n{cycles.tail(log)}")
             return 1
@@ -120,7 +122,8 @@ def run(case, options):
         cycles.say(f"  {bound.line(value)}")
         if value is not None and not bound.held(value):
             lost.append(bound.line(value))
-    cycles.say(f"  farthest vertex from its entity {figures['off_model']:.2g} of the model's diagonal\nmeshes, reports and logs: {case.folder}")
+    cycles.say(f"  farthest vertex from its entity {figures['off_model']:.2g} of the model's diagonal")
+    cycles.say(f"meshes, reports and logs: {case.folder}")
     for line in lost:
         cycles.say(f"LOST  {line}")
     return 1 if lost else 0
@@ -150,11 +153,12 @@ def _lost(start, mesh, figures):
     return found
 
 
-def _show_worst(mesh, values, count=5):
+def _show_worst(mesh, values, listed=5):
     """Where the worst tetrahedra are."""
     ratios = metric.mean_ratios(mesh.points, mesh.tets, values)
     on_boundary = np.zeros(len(mesh.points), bool)
     on_boundary[mesh.triangles.ravel()] = True
-    for tet in np.argsort(ratios)[:count]:
+    for tet in np.argsort(ratios)[:listed]:
         at = mesh.points[mesh.tets[tet]].mean(0)
-        cycles.say(f"    {ratios[tet]:.4f} at ({at[0]:.6f}, {at[1]:.6f}, {at[2]:.6f}), {int(on_boundary[mesh.tets[tet]].sum())} vertices on the model")
+        count = int(on_boundary[mesh.tets[tet]].sum())
+        cycles.say(f"    {ratios[tet]:.4f} at ({at[0]:.6f}, {at[1]:.6f}, {at[2]:.6f}), {count} vertices on the model")

@@ -53,7 +53,8 @@ def row(name, result):
     for field in one.FIELDS:
         figures = result.get(field)
         if figures:
-            text += f" |{figures['vertices']:>7} {100 * figures['unit_edges']:>5.1f} % {figures['ratio_least']:>6.3f} {figures['ratio_mean']:.3f} {figures['seconds']:>6.1f}"
+            text += f" |{figures['vertices']:>7} {100 * figures['unit_edges']:>5.1f} % "
+            text += f"{figures['ratio_least']:>6.3f} {figures['ratio_mean']:.3f} {figures['seconds']:>6.1f}"
         else:
             text += f" |{'–':>7} {'':>7} {'':>6} {'':>5} {'':>6}"
     return text + ("  ok" if not result["problems"] else "  FAILED")
