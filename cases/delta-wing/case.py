@@ -1,6 +1,6 @@
 """The delta wing of the UGAWG: from 143 vertices, without an association in the file, to a conical layer on the wing, complexity 50 000.
 
-The start mesh is put on our own model (geometry/zoo/delta-wing-domain.step). The field is known by a formula (layer.py), written at the
+The start mesh is put on our own model (geometry/zoo/delta-wing-domain.step). The field is known by a formula (cone.py), written at the
 vertices before each run and scaled to the complexity there; the judge evaluates it, scaled on the mesh it judges.
 Exit code: 0 when every floor is held, 1 when one is lost; 0 where the shared files are not there.
 """
@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-import layer  # noqa: E402
+import cone  # noqa: E402
 from judging import cycles, meshfile, metric, on_cad  # noqa: E402
 
 COMPLEXITY, RUNS = 50_000, 6
@@ -19,7 +19,7 @@ BOUNDS = on_cad.quality((0.97, 0.99), (0.25, 0.40), (0.82, 0.89))
 
 def field(_, mesh, __):
     """The layer scaled to the complexity on the mesh itself: within a few runs it no longer changes."""
-    values = layer.metric(mesh.points)
+    values = cone.metric(mesh.points)
     return metric.scale_to(values, metric.complexity(mesh.points, mesh.tets, values), COMPLEXITY)
 
 
