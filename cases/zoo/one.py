@@ -1,7 +1,9 @@
 """One model of the zoo: its first mesh, two cycles to each field, and the judge's figures of the last meshes."""
 
 import json
+import os
 import resource
+import signal
 import subprocess
 import time
 from dataclasses import dataclass, field
@@ -38,16 +40,19 @@ class Tools:
         text = [str(word) for word in words]
         self.log.append(" ".join(text))
         before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-        try:
-            ran = subprocess.run(text, capture_output=True, text=True, errors="replace", check=False, timeout=self.limit)
-        except subprocess.TimeoutExpired:
-            raise Failed(f"{' '.join(text)}\n    did not end within {self.limit:g} s") from None
+        # A session of its own, so that the mesher that it may have started ends with it.
+        with subprocess.Popen(text, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True) as child:
+            try:
+                out, err = child.communicate(timeout=self.limit)
+            except subprocess.TimeoutExpired:
+                os.killpg(child.pid, signal.SIGKILL)
+                raise Failed(f"{' '.join(text)}\n    did not end within {self.limit:g} s") from None
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        self.log.append(f"# {time.monotonic() - began:.1f} s\n{ran.stdout}{ran.stderr}")
-        if ran.returncode != 0:
-            said = "\n    ".join((ran.stderr or ran.stdout).strip().splitlines()[-4:])
-            raise Failed(f"{' '.join(text)}\n    ended with {ran.returncode}: {said}")
-        return ran.stdout, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        self.log.append(f"# {time.monotonic() - began:.1f} s\n{out}{err}")
+        if child.returncode != 0:
+            said = "\n    ".join((err or out).strip().splitlines()[-4:])
+            raise Failed(f"{' '.join(text)}\n    ended with {child.returncode}: {said}")
+        return out, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
     def threads_words(self):
         """The option of threads, if any."""

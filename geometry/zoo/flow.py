@@ -92,7 +92,9 @@ def m6_upper(chord, y):
     nose = y * math.tan(math.radians(M6_SWEEP))
     points = [cadquery.Vector(nose + chord * x, y, chord * z) for x, z in m6_section()]
     (x0, z0), (x1, z1) = m6_section()[-2:]
-    return cadquery.Edge.makeSpline(points, tangents=[cadquery.Vector(0, 0, 1), cadquery.Vector(x1 - x0, 0, z1 - z0)])
+    # Of length 1, since the parameter is the length of the chords; OCCT's own scaling makes a loop at the trailing edge.
+    tangents = [cadquery.Vector(0, 0, 1), cadquery.Vector(x1 - x0, 0, z1 - z0).normalized()]
+    return cadquery.Edge.makeSpline(points, tangents=tangents, scale=False)
 
 
 def m6_wing():
