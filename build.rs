@@ -39,14 +39,25 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 4] = ["cpp/load.cpp", "cpp/damage.cpp", "cpp/model.cpp", "cpp/evaluate.cpp"];
+    const SOURCES: [&str; 8] = [
+        "cpp/load.cpp",
+        "cpp/names.cpp",
+        "cpp/connect.cpp",
+        "cpp/domain.cpp",
+        "cpp/damage.cpp",
+        "cpp/model.cpp",
+        "cpp/evaluate.cpp",
+        "cpp/write.cpp",
+    ];
 
     /// Toolkits that the bridge calls, callers first.
-    const LIBRARIES: [&str; 14] = [
+    const LIBRARIES: [&str; 16] = [
         "TKIGES",
         "TKSTEP",
         "TKSTEPBase",
         "TKXSBase",
+        "TKBO",
+        "TKPrim",
         "TKShHealing",
         "TKTopAlgo",
         "TKGeomAlgo",
@@ -74,7 +85,9 @@ mod occt {
             .flag("-Wall")
             .flag("-Wextra")
             .compile("geo-adapt-occt");
-        for source in SOURCES.iter().chain(&["cpp/occt.hpp", "cpp/damage.hpp", "src/geometry/occt/bridge.rs"]) {
+        for source in
+            SOURCES.iter().chain(&["cpp/occt.hpp", "cpp/names.hpp", "cpp/damage.hpp", "src/geometry/occt/bridge.rs"])
+        {
             println!("cargo:rerun-if-changed={source}");
         }
         if let Ok(folder) = std::env::var("OCCT_LIB") {

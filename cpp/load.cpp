@@ -83,7 +83,7 @@ double step_unit(const Handle(StepData_StepModel)& model)
 
 /// OCCT converts lengths to its own unit, by default the millimetre. With its unit set to the file's, the factor
 /// is one: the coordinates come as the file states them.
-TopoDS_Shape read_step(const std::string& path)
+TopoDS_Shape read_step(const std::string& path, Labels& labels)
 {
   STEPControl_Reader reader;
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {
@@ -100,6 +100,7 @@ TopoDS_Shape read_step(const std::string& path)
     throw std::runtime_error("the STEP file holds no shape; export the solid as AP203, AP214 or AP242");
   }
   reader.TransferRoots();
+  labels = step_labels(reader);
   return reader.OneShape();
 }
 
@@ -182,8 +183,9 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
   const Silence silence;
   const std::string path(name);
   TopoDS_Shape shape;
+  Labels labels;
   try {
-    shape = format == 0 ? read_step(path) : format == 1 ? read_iges(path) : read_brep(path);
+    shape = format == 0 ? read_step(path, labels) : format == 1 ? read_iges(path) : read_brep(path);
   } catch (const Standard_Failure& failure) {
     const std::string reason = failure.GetMessageString();
     throw std::runtime_error("OpenCASCADE stopped reading it (" + reason +
@@ -193,7 +195,7 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
     throw std::runtime_error("the model has no faces; export the solid's surfaces, not only curves or a mesh");
   }
   BRepLib::BuildCurves3d(shape);
-  return std::make_shared<Model>(shape);
+  return std::make_shared<Model>(connected(shape, labels), labels);
 }
 
 } // namespace geo_adapt

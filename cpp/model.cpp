@@ -57,8 +57,9 @@ bool has_exact_box(const TopoDS_Edge& edge, const TopoDS_Face& face)
 
 } // namespace
 
-Model::Model(const TopoDS_Shape& loaded) : shape(loaded)
+Model::Model(const TopoDS_Shape& loaded, const Labels& given) : shape(loaded), labels(given)
 {
+  TopExp::MapShapes(shape, TopAbs_SOLID, solids);
   TopExp::MapShapes(shape, TopAbs_FACE, faces);
   TopExp::MapShapes(shape, TopAbs_EDGE, edges);
   TopExp::MapShapes(shape, TopAbs_VERTEX, vertices);
@@ -76,8 +77,6 @@ TopoDS_Edge Model::edge(std::uint32_t index) const
 
 std::uint32_t Model::solid_count() const
 {
-  TopTools_IndexedMapOfShape solids;
-  TopExp::MapShapes(shape, TopAbs_SOLID, solids);
   return static_cast<std::uint32_t>(solids.Extent());
 }
 

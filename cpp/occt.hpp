@@ -2,6 +2,7 @@
 // It only loads, lists and evaluates. Projections, caches and decisions are in src/geometry/occt/.
 #pragma once
 
+#include "geo-adapt/cpp/names.hpp"
 #include "rust/cxx.h"
 
 #include <BRepAdaptor_Curve.hxx>
@@ -43,13 +44,15 @@ struct FaceRecord;
 struct EdgeRecord;
 struct VertexRecord;
 struct Form;
+struct LabelRecord;
+struct DomainRecord;
 
 /// A shape with its faces, edges and vertices numbered from 0 in the order of TopExp::MapShapes.
 /// Never changed after loading, so that threads may read it together.
 class Model
 {
 public:
-  explicit Model(const TopoDS_Shape& shape);
+  explicit Model(const TopoDS_Shape& shape, const Labels& labels = Labels());
 
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces.Extent()); }
   std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.Extent()); }
@@ -62,13 +65,19 @@ public:
   std::array<double, 6> bounds() const;
   double face_area(std::uint32_t face) const;
   double edge_length(std::uint32_t edge) const;
+  void write_brep(rust::Str path) const;
+  /// Of an edge (dimension 1), face (2) or solid (3).
+  LabelRecord label(std::uint32_t dimension, std::uint32_t index) const;
+  /// The far field without this body.
+  std::shared_ptr<Model> domain(const DomainRecord& domain) const;
 
   TopoDS_Face face(std::uint32_t index) const; // FORWARD, as its p-curves want it
   TopoDS_Edge edge(std::uint32_t index) const; // FORWARD
 
 private:
   TopoDS_Shape shape;
-  TopTools_IndexedMapOfShape faces, edges, vertices;
+  TopTools_IndexedMapOfShape solids, faces, edges, vertices;
+  Labels labels;
 };
 
 /// Evaluates the shape of one model for one thread: adaptors and classifiers carry caches, so none is ever shared.

@@ -53,7 +53,27 @@ def fix_chance(path, name):
     text = re.sub(rf"'{re.escape(name)} \d+(\.\d+)?'", rf"'{name} 1\1'", text)
     numbers = itertools.count(1)
     text = re.sub(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+'", lambda found: f"{found[1]}'{next(numbers)}'", text)
-    path.write_text(text, encoding="ascii", newline="\n")
+    path.write_text(_colours_in_order(text), encoding="ascii", newline="\n")
+
+
+def _colours_in_order(text):
+    """Puts the colours of several parts, the last entities of the file, in the order of the parts: OCCT's is that of addresses in memory."""
+    kind = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
+    if kind not in text:
+        return text
+    begin, end = text.rindex("\n#", 0, text.index(kind)) + 1, text.rindex("ENDSEC;")
+    groups = []
+    for number, body in re.findall(r"#(\d+) = (.*?);\n", text[begin:end], re.DOTALL):
+        if body.startswith(kind):
+            groups.append([])
+        groups[-1].append((int(number), re.sub(r"\n *", "", body)))
+    # A group's second entity says of which part it is.
+    groups.sort(key=lambda group: int(re.search(r"#(\d+)\)$", group[1][1])[1]))
+    entities, first = [entity for group in groups for entity in group], groups and min(group[0][0] for group in groups)
+    new = {old: first + i for i, (old, _) in enumerate(entities)}
+    renumbered = [re.sub(r"#(\d+)", lambda found: f"#{new.get(int(found[1]), int(found[1]))}", body) for _, body in entities]
+    lines = [f"#{first + i} = {body};\n" for i, body in enumerate(renumbered)]
+    return text[:begin] + "".join(lines) + text[end:]
 
 
 def _shape(model, name):

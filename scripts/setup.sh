@@ -81,3 +81,9 @@ setup_python() {
     "$place/bin/pip" install --quiet --disable-pip-version-check -r "$requirements"
     cp "$requirements" "$place/installed.txt"
 }
+
+# What `geo-adapt bootstrap` starts: gmsh, and netgen for what gmsh cannot do (Debian's netgen is older and aborts on more models).
+setup_meshers() {
+    setup_packages gmsh
+    setup_python mesher "$setup_root/scripts/mesher-requirements.txt"
+}

@@ -2,8 +2,9 @@
 //!
 //! The way of the data: a [`mesh::TetMesh`] is classified on a [`geometry::Model`], given a
 //! [`metric::Field`], adapted by [`adapt`], and comes out as a [`mesh::TetMesh`] again.
-//! [`sizing`] makes the metric that the model itself asks for, [`image`] makes a first mesh of a 3D image.
-//! Imports go one way: `cli → { adapt, image } → sizing → { metric, geometry } → mesh → tasks`.
+//! [`sizing`] makes the metric that the model itself asks for, [`image`] makes a first mesh of a 3D image,
+//! [`view`] shows one.
+//! Imports go one way: `cli → { adapt, image } → sizing → { metric, geometry } → mesh → tasks`; `view` stands on metric and below.
 pub mod adapt;
 pub mod cli;
 pub mod geometry;
@@ -13,3 +14,4 @@ pub mod mesh;
 pub mod metric;
 pub mod sizing;
 pub mod tasks;
+pub mod view;

@@ -5,7 +5,7 @@ mod common;
 use common::adapting::{Adapted, Workplace, areas, isotropic, stderr, text};
 use common::program;
 use geo_adapt::geometry::classify::{Options, classify};
-use geo_adapt::geometry::{Geometry, Model, fidelity};
+use geo_adapt::geometry::{Evaluate, Geometry, Model, fidelity};
 use geo_adapt::mesh::{TetMesh, io};
 use geo_adapt::metric::Sym3;
 use geo_adapt::tasks::Team;
@@ -52,7 +52,7 @@ impl Case {
         for farthest in [fidelity.from_model, fidelity.from_entity] {
             assert!(farthest.unwrap().distance < 1e-9, "{farthest:?}");
         }
-        assert_eq!(found.report["off_model"], 0);
+        assert_eq!(found.report["off_model"], serde_json::json!([]));
         self.check_entities(mesh);
         assert_eq!(regions(mesh), regions(&self.mesh));
         self.check_areas(mesh);
@@ -133,6 +133,40 @@ fn the_sphere_in_its_box_refined_and_coarsened() {
         let vertices = found.mesh.vertices.len();
         assert!((least..most).contains(&vertices), "{vertices} vertices at size {size}");
     }
+}
+
+/// Greatest distance from the model of the triangles' centroids and of the middles of their edges.
+fn chord_error(case: &Case, found: &Adapted) -> f64 {
+    let mesh = &found.mesh;
+    let (place, _) = classify(Team::alone(), mesh, &case.model, &Options::default()).unwrap();
+    let mut evaluator = case.model.evaluator();
+    let triangles = mesh.triangles.nodes.iter().zip(&place.faces);
+    triangles.fold(0.0, |most, (nodes, &face)| {
+        let [a, b, c] = nodes.map(|v| mesh.vertices[v as usize]);
+        let third = 1.0 / 3.0;
+        let weights = [[third; 3], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
+        weights.iter().fold(most, |most, w| {
+            let p = std::array::from_fn(|k| w[0] * a[k] + w[1] * b[k] + w[2] * c[k]);
+            evaluator.closest_on_face(face, p, None).distance.max(most)
+        })
+    })
+}
+
+#[test]
+fn triangles_stray_from_a_coarse_sphere_as_far_as_is_allowed() {
+    let case = case("sphere-in-box.step", "tests/data/sphere-in-box.meshb");
+    let runs = [&[][..], &["--hausdorff", "0.002"], &["--normal-deviation", "8"]].map(|bounds| {
+        let work = Workplace::new();
+        let metric = work.metric(&case.mesh, |_| isotropic(0.7));
+        let found = case.adapt(&work, &[&["--metric", &metric], bounds].concat());
+        assert_eq!(found.report["astray"], 0, "{bounds:?}");
+        let normal = found.report["fidelity"]["worst_normal"]["deviation"].as_f64().unwrap();
+        (chord_error(&case, &found), normal)
+    });
+    let [free, chord, normal] = runs;
+    let bound = 1.0 - 8.0_f64.to_radians().cos();
+    assert!(free.0 > 0.01 && chord.0 <= 0.002 * (1.0 + 1e-9), "{runs:?}");
+    assert!(free.1 > bound && normal.1 <= bound * (1.0 + 1e-9), "{runs:?}");
 }
 
 #[test]

@@ -52,16 +52,16 @@ def coated_pipe():
 
 
 def named_assembly():
-    """Two named parts with named faces: what XCAF reads. One has a colour, its floor another (OCCT's order of more is chance)."""
+    """Two parts with names and colours, each with a face that has its own: what XCAF reads."""
     import cadquery
 
     base = cadquery.Workplane().box(1, 0.8, 0.3)
     pin = cadquery.Workplane().circle(0.2).extrude(0.5)
     assembly = cadquery.Assembly(name="mount")
     assembly.add(base, name="base", color=cadquery.Color(0.8, 0.1, 0.1))
-    assembly.add(pin, name="pin", loc=cadquery.Location(cadquery.Vector(0, 0, 0.15)))
+    assembly.add(pin, name="pin", loc=cadquery.Location(cadquery.Vector(0, 0, 0.15)), color=cadquery.Color(0.1, 0.2, 0.8))
     assembly["base"].addSubshape(base.faces("<Z").val(), name="floor", color=cadquery.Color(0.1, 0.7, 0.2))
-    assembly["pin"].addSubshape(pin.faces(">Z").val(), name="inlet")
+    assembly["pin"].addSubshape(pin.faces(">Z").val(), name="inlet", color=cadquery.Color(0.9, 0.8, 0.1))
     return assembly
 
 

@@ -47,6 +47,8 @@ pub struct Limits {
     /// As above, for half the angle between the model's normals at the vertices: at 0.94 a circle keeps nine
     /// edges.
     pub spread: f64,
+    /// And lie as far from the model, at their centroids and the middles of their edges.
+    pub chord: f64,
     /// Most tetrahedra in an enlarged cavity.
     pub cavity: usize,
 }
@@ -69,6 +71,7 @@ impl Default for Limits {
             since: 0,
             tilt: 0.5,
             spread: 0.94,
+            chord: f64::INFINITY,
             cavity: 96,
         }
     }

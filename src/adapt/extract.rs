@@ -29,11 +29,19 @@ pub struct Extracted {
     pub classification: Classification,
     /// M at its vertices.
     pub metrics: Vec<Sym3>,
+    /// Boundary vertices that found no room on the model: their tetrahedra would be inverted at its closest point.
+    pub off_model: Vec<u32>,
 }
 
 /// Takes the mesh out of the store, in the order of its ids, with what `input` required; `refs` gives each model
-/// entity its reference.
-pub fn extract(team: Team<'_>, context: &Context, input: &TetMesh, refs: &References) -> Extracted {
+/// entity its reference, and `waiting` are the vertices that are not on the model.
+pub fn extract(
+    team: Team<'_>,
+    context: &Context,
+    input: &TetMesh,
+    refs: &References,
+    waiting: &[VertexId],
+) -> Extracted {
     let store = &context.store;
     let vertices = team.collect(GRAIN, store.vertex_bound(), |range, live| {
         live.extend(store.live_vertices_in(range).map(|v| v.0));
@@ -63,7 +71,9 @@ pub fn extract(team: Team<'_>, context: &Context, input: &TetMesh, refs: &Refere
         mesh.edges.push(nodes, refs.edges[edge as usize]);
     }
     Required::list(input, &mut mesh, |v| renumber(context.ids[v.index()]));
-    Extracted { mesh, classification, metrics: at(team, &vertices, |v| store.metric(v)) }
+    let mut off_model: Vec<u32> = waiting.iter().filter(|v| store.is_vertex(**v)).map(|v| renumber(*v)).collect();
+    off_model.sort_unstable();
+    Extracted { mesh, classification, metrics: at(team, &vertices, |v| store.metric(v)), off_model }
 }
 
 /// Something of each vertex.

@@ -3,10 +3,12 @@ mod access;
 mod ball;
 #[doc(hidden)]
 pub mod bench_support;
+mod bend;
 mod build;
 mod cavity;
 #[cfg(test)]
 mod check;
+mod clocked;
 mod coarsen;
 mod collapse;
 mod context;
@@ -48,6 +50,7 @@ mod thin;
 mod work;
 mod worker;
 
+pub use bend::SurfaceBounds;
 pub use build::Error;
 pub use create::PointCreation;
 pub use criteria::Criterion;

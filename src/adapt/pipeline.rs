@@ -1,6 +1,9 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
+mod growth;
+mod surface;
 mod thinning;
 
+use super::bend::SurfaceBounds;
 use super::context::{Context, LONG, Limits};
 use super::create::{self, PointCreation};
 use super::criteria::Criterion;
@@ -8,6 +11,7 @@ use super::edges;
 use super::extend;
 use super::ids::{TetId, VertexId};
 use super::insert::EdgeItem;
+use super::mend::GAIN;
 use super::outcome::Counts;
 use super::schedule::{
     self, Collapse, Create, Crew, Extend, Mend, Operation, Project, Reconnect, Retire, Smooth, Split,
@@ -87,6 +91,8 @@ pub struct Pipeline<'c, 'm> {
     pub points: PointCreation,
     /// Whether the mesh had far too many vertices, some of which may be left.
     pub crowded: bool,
+    /// How far surface triangles may stray from the model.
+    pub surface: SurfaceBounds,
     /// By kind of operation.
     pub work: [Work; KINDS],
     /// Boundary vertices that are not on the model yet.
@@ -94,6 +100,10 @@ pub struct Pipeline<'c, 'm> {
     /// When each kind of operation last looked at everything, on the store's clock.
     looked: [u32; KINDS],
     pass: usize,
+    /// Vertices of the mesh that was given.
+    input: usize,
+    /// Whether the mesh has more vertices than its metric accounts for, so that nothing is inserted any more.
+    pub overgrown: bool,
     /// Tetrahedra when the store was last renumbered.
     ordered: usize,
 }
@@ -107,7 +117,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         criterion: Criterion,
         waiting: Vec<VertexId>,
     ) -> Self {
-        let ordered = context.store.tet_bound();
+        let (input, ordered) = (context.store.vertex_bound(), context.store.tet_bound());
         let states = (0..crew.pool.threads()).map(|_| State::new(context)).collect();
         Self {
             context,
@@ -117,35 +127,38 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             criterion,
             points: PointCreation::default(),
             crowded: false,
+            surface: SurfaceBounds::default(),
             work: [Work::default(); KINDS],
             waiting,
             looked: [0; KINDS],
             pass: 0,
+            input,
+            overgrown: false,
             ordered,
         }
     }
 
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
-        self.context.limits = size_limits();
+        self.limit(size_limits());
         if self.crowded {
             self.thin();
         }
         for _ in 0..SIZE_PASSES {
-            if self.size_pass() || self.observer.stop() {
+            if self.size_pass() || self.overgrown || self.observer.stop() {
                 break;
             }
             self.pass += 1;
         }
         self.looked = [0; KINDS];
         self.reorder();
-        self.context.limits = shape_limits();
+        self.limit(shape_limits());
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth();
         let mut before = self.cost();
         for pass in 0..SHAPE_PASSES {
             self.pass += 1;
-            self.context.limits = shape_limits();
+            self.limit(shape_limits());
             self.shape_pass();
             self.mend();
             self.settle(pass);
@@ -223,6 +236,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         // Long edges that were refused are tried again: room may have come from farther away.
         self.looked[Kind::Split as usize] = 0;
         self.split();
+        self.unbend();
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth();
     }
@@ -230,8 +244,15 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// The end-game on the tetrahedra below the limit, with edges a little longer than elsewhere allowed.
     fn mend(&mut self) {
         let looked = self.looked;
-        self.context.limits =
-            Limits { improve_below: MEND_BELOW, flip_below: MEND_BELOW, longest_new: 1.3 * LONG, ..shape_limits() };
+        self.limit(Limits {
+            improve_below: MEND_BELOW,
+            flip_below: MEND_BELOW,
+            longest_new: 1.3 * LONG,
+            shortest_new: 0.0,
+            insert_floor: 1.0,
+            insert_loss: GAIN,
+            ..shape_limits()
+        });
         for _ in 0..3 {
             let mut items = self.tets(|store, t| store.quality(t) < MEND_BELOW);
             let store = &self.context.store;
@@ -260,7 +281,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Whether so many changes are few for a mesh of this size.
     fn is_little(&self, changes: u64) -> bool {
-        (changes as f64) < LITTLE * self.context.store.live_vertices().count() as f64
+        (changes as f64) < LITTLE * self.live() as f64
     }
 
     fn changes(&self) -> u64 {
@@ -269,6 +290,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Splits long edges, or refines in another way, and reconnects.
     fn refine(&mut self) {
+        if !self.may_grow() {
+            return;
+        }
         let refined = match self.points {
             PointCreation::Edge => false,
             PointCreation::Centroid => self.create(),
@@ -278,11 +302,15 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             return;
         }
         self.split();
+        self.unbend();
         self.reconnect(self.criterion, 1);
     }
 
     /// Splits long edges and brings what lies on the model there.
     fn split(&mut self) {
+        if !self.may_grow() {
+            return;
+        }
         self.keep_order();
         let items = self.long_edges();
         if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
@@ -400,8 +428,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
         let room = store.room();
         if room.0 < vertices || room.1 < tets {
-            // More than is needed, so that it is not needed again soon: untouched pages cost no memory.
-            store.reserve(team, vertices + store.vertex_bound(), tets + store.tet_bound());
+            // More than is needed, so that it is not needed again soon: untouched pages cost no memory. Without memory the mesh stays
+            // as large as it is.
+            self.overgrown |= !store.reserve(team, vertices + store.vertex_bound(), tets + store.tet_bound());
         }
     }
 

@@ -38,6 +38,10 @@ pub struct Ring {
     /// Triangles to be measured.
     wanted: Vec<[usize; 3]>,
     batch: Batch,
+    /// The polygons to be filled, from their first to their last vertex: one, or two on both sides of an interface.
+    polygons: [(usize, usize); 2],
+    /// How many of them there are.
+    sides: usize,
 }
 
 impl Ring {
@@ -50,11 +54,19 @@ impl Ring {
         &self.cavity
     }
 
-    /// Reads the ends of the edge and the ring.
-    pub fn fill(&mut self, store: &Store, ends: [VertexId; 2], ring: &[VertexId]) {
+    /// Reads the ends of the edge and the ring. With an interface from the first vertex of the ring to the `across`-th, the polygons on both
+    /// sides of it are filled, of which the second comes back to the first vertex: a ring of [`LONGEST_RING`] less one at most.
+    pub fn fill(&mut self, store: &Store, ends: [VertexId; 2], ring: &[VertexId], across: Option<usize>) {
         self.cavity.clear();
         self.cavity.extend(ends);
         self.cavity.extend(ring);
+        (self.polygons, self.sides) = match across {
+            None => ([(0, ring.len() - 1), (0, 0)], 1),
+            Some(middle) => {
+                self.cavity.push(ring[0]);
+                ([(0, middle), (middle, ring.len())], 2)
+            }
+        };
         self.points.clear();
         self.points.extend(self.cavity.iter().map(|&v| store.position(v)));
         self.logs.clear();
@@ -81,10 +93,15 @@ impl Ring {
                 self.fillable[i][j] = self.positive[i][j] != 0;
             }
         }
-        self.fillable[0][n - 1] && {
+        let all = self.polygons().iter().all(|&(i, j)| self.fillable[i][j]);
+        if all {
             self.list_wanted();
-            true
         }
+        all
+    }
+
+    fn polygons(&self) -> &[(usize, usize)] {
+        &self.polygons[..self.sides]
     }
 
     /// Lists the triangles that some triangulation of the whole ring has.
@@ -92,7 +109,7 @@ impl Ring {
         self.wanted.clear();
         let n = self.len();
         let mut reached = [[false; LONGEST_RING]; LONGEST_RING];
-        reached[0][n - 1] = true;
+        self.polygons().iter().for_each(|&(i, j)| reached[i][j] = true);
         for width in (2..n).rev() {
             for i in 0..n - width {
                 let j = i + width;
@@ -158,25 +175,28 @@ impl Ring {
                 (self.score[i][j], self.third[i][j]) = (value, k);
             }
         }
-        self.score[0][n - 1] > wanted
+        let found = self.polygons().iter().map(|&(i, j)| self.score[i][j]);
+        found.fold(criterion.nothing(), |x, y| criterion.join(x, y)) > wanted
     }
 
-    /// The triangles of the triangulation found, in the order of the ring.
-    pub fn each_triangle(&self, mut take: impl FnMut([VertexId; 3])) {
-        let mut open = [(0, 0); LONGEST_RING];
-        let mut depth = 1;
-        open[0] = (0, self.len() - 1);
-        while depth > 0 {
-            depth -= 1;
-            let (i, j) = open[depth];
-            if j - i < 2 {
-                continue;
+    /// The triangles of the triangulation found, in the order of the ring, each with the side of the interface that it is on.
+    pub fn each_triangle(&self, mut take: impl FnMut([VertexId; 3], usize)) {
+        for (side, &polygon) in self.polygons().iter().enumerate() {
+            let mut open = [(0, 0); LONGEST_RING];
+            let mut depth = 1;
+            open[0] = polygon;
+            while depth > 0 {
+                depth -= 1;
+                let (i, j) = open[depth];
+                if j - i < 2 {
+                    continue;
+                }
+                let k = self.third[i][j];
+                take([i, k, j].map(|l| self.cavity[l + 2]), side);
+                open[depth] = (i, k);
+                open[depth + 1] = (k, j);
+                depth += 2;
             }
-            let k = self.third[i][j];
-            take([i, k, j].map(|l| self.cavity[l + 2]));
-            open[depth] = (i, k);
-            open[depth + 1] = (k, j);
-            depth += 2;
         }
     }
 }

@@ -1,4 +1,5 @@
 //! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
+use super::bend::SurfaceBounds;
 use super::build::{self, Filled};
 use super::coarsen;
 use super::context::Context;
@@ -17,6 +18,7 @@ use crate::mesh::TetMesh;
 use crate::metric::Source;
 use crate::tasks::{Plan, Pool, Team, stage};
 use std::collections::HashMap;
+use std::time::Duration;
 
 /// How to adapt.
 #[derive(Clone, Debug)]
@@ -33,6 +35,8 @@ pub struct Options {
     pub grains: Grains,
     /// What must not change.
     pub freeze: Freeze,
+    /// How far surface triangles may stray from the model.
+    pub surface: SurfaceBounds,
 }
 
 impl Default for Options {
@@ -44,6 +48,7 @@ impl Default for Options {
             plan: Plan::default(),
             grains: Grains::default(),
             freeze: Freeze::default(),
+            surface: SurfaceBounds::default(),
         }
     }
 }
@@ -54,8 +59,13 @@ pub struct Adapted {
     pub extracted: Extracted,
     /// Time and counts by operation, in the order of [`super::Kind`].
     pub work: [Work; KINDS],
-    /// Boundary vertices that could not be put on the model.
-    pub off_model: usize,
+    /// Whether the mesh stopped growing, since it had far more vertices than the metric's complexity accounts for, or since
+    /// there was no memory for more.
+    pub overgrown: bool,
+    /// Surface triangles that stray from the model by more than the bounds that were given.
+    pub astray: usize,
+    /// Time in the model's evaluators during the passes, of all threads together.
+    pub geometry: Duration,
 }
 
 /// Adapts a classified mesh to the metric of `source`, on `model`. The boundary triangles are complete
@@ -89,8 +99,11 @@ pub fn adapt(
     );
     pipeline.points = options.points;
     pipeline.crowded = crowded;
+    pipeline.surface = options.surface;
     pipeline.run();
-    let (work, off_model) = (pipeline.work, pipeline.waiting.len());
+    let (work, waiting, overgrown) = (pipeline.work, std::mem::take(&mut pipeline.waiting), pipeline.overgrown);
+    let geometry = pipeline.states.iter().map(|state| state.evaluator.spent).sum();
+    let astray = pipeline.astray();
     drop(pipeline);
     context.store.trim();
     stage("passes");
@@ -99,9 +112,9 @@ pub fn adapt(
         inward: inward_faces(team, mesh, place, model),
         edges: edge_refs(mesh, place, model),
     };
-    let extracted = extract::extract(team, &context, mesh, &refs);
+    let extracted = extract::extract(team, &context, mesh, &refs, &waiting);
     stage("extracted");
-    Ok(Adapted { extracted, work, off_model })
+    Ok(Adapted { extracted, work, overgrown, astray, geometry })
 }
 
 /// The mesh in a store, made coarse on the way where it is crowded, and whether that was so.

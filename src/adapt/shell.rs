@@ -27,6 +27,14 @@ impl Shell {
     pub fn surface_tags(&self) -> impl Iterator<Item = u32> + '_ {
         self.tags.iter().copied().filter(|&tag| tag != 0)
     }
+
+    /// Turns a closed shell so that it begins at a tagged face, if there is one.
+    pub fn begin_at_tag(&mut self) {
+        let at = self.tags.iter().position(|&tag| tag != 0).unwrap_or(0);
+        self.tets.rotate_left(at);
+        self.ring.rotate_left(at);
+        self.tags.rotate_left(at);
+    }
 }
 
 impl<A: Access> Worker<'_, '_, A> {

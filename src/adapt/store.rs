@@ -94,9 +94,10 @@ const MOVED: usize = 1 << 13;
 const AT_ONCE: usize = 16;
 
 /// Moves the used records to an array of another capacity; needs them exclusively, so between sweeps only. They go from the back, and
-/// the old array gives back its memory as it gets shorter, so that they never are there twice.
-fn rehouse<T: Zeroable + Send>(team: Team<'_>, records: &mut Vec<T>, used: usize, capacity: usize) {
-    let mut roomy: Vec<T> = bytemuck::allocation::zeroed_vec(capacity.max(used));
+/// the old array gives back its memory as it gets shorter, so that they never are there twice. Without memory for that array they stay
+/// where they are, and the answer is no.
+fn rehouse<T: Zeroable + Send>(team: Team<'_>, records: &mut Vec<T>, used: usize, capacity: usize) -> bool {
+    let Ok(mut roomy) = bytemuck::allocation::try_zeroed_vec::<T>(capacity.max(used)) else { return false };
     records.truncate(used);
     while !records.is_empty() {
         let start = (records.len() - 1) / (AT_ONCE * MOVED) * (AT_ONCE * MOVED);
@@ -110,6 +111,7 @@ fn rehouse<T: Zeroable + Send>(team: Team<'_>, records: &mut Vec<T>, used: usize
         records.shrink_to_fit();
     }
     *records = roomy;
+    true
 }
 
 const INDEX_BITS: u32 = 30;
@@ -150,18 +152,26 @@ impl Store {
     }
 
     /// Makes room for at least so many more vertices and tetrahedra, and where that takes growth for thrice as many, so that it is
-    /// seldom. Between sweeps only.
-    pub fn reserve(&mut self, team: Team<'_>, vertices: usize, tets: usize) {
+    /// seldom; whether there was memory for it: if not, what has no room is refused. Between sweeps only.
+    pub fn reserve(&mut self, team: Team<'_>, vertices: usize, tets: usize) -> bool {
         let used = self.vertex_bound();
-        if used + vertices > self.vertices.len() {
-            rehouse(team, &mut self.vertices, used, used + 3 * vertices);
-            self.owners = bytemuck::allocation::zeroed_vec(self.vertices.len());
-            rehouse(team, &mut self.places, used, used + 3 * vertices);
+        let room = used + 3 * vertices;
+        // Ids go as far as the vertices' own array, so the others grow before it.
+        if used + vertices > self.vertices.len()
+            && !(self.make_owners(room)
+                && rehouse(team, &mut self.places, used, room)
+                && rehouse(team, &mut self.vertices, used, room))
+        {
+            return false;
         }
         let used = self.tet_bound();
-        if used + tets > self.tets.len() {
-            rehouse(team, &mut self.tets, used, used + 3 * tets);
-        }
+        used + tets <= self.tets.len() || rehouse(team, &mut self.tets, used, used + 3 * tets)
+    }
+
+    /// An array of owners for so many vertices, which means nothing between sweeps.
+    fn make_owners(&mut self, vertices: usize) -> bool {
+        let made = bytemuck::allocation::try_zeroed_vec(vertices);
+        made.map(|owners| self.owners = owners).is_ok()
     }
 
     /// Gives back what the live records leave of the memory, room for more included. Between sweeps only.

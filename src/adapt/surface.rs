@@ -25,6 +25,8 @@ pub struct Look {
     /// Of half the greatest angle between the model's normals at the vertices. Without it a sphere could become a
     /// tetrahedron: its faces are tangent to it.
     pub spread: f64,
+    /// Distance of the centroid and of the middles of the edges from the model, where that is bounded; else 0.
+    pub chord: f64,
 }
 
 /// How surface triangles look to their model.
@@ -66,6 +68,9 @@ impl MeanParameters {
         (self.count > 0.0).then(|| self.sum.map(|x| x / self.count))
     }
 }
+
+/// A triangle that turns from another by less than this cosine lies as that one did.
+const STILL: f64 = 0.97;
 
 impl<A: Access> Worker<'_, '_, A> {
     /// The entity of a point on the edge a–b; the shell of the edge is in `state.shell`.
@@ -146,7 +151,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let [a, b, c] = triangle.map(|v| self.store.position(v));
         let normal = unit(area2(a, b, c));
         if let Some(plane) = self.context.planes[face as usize] {
-            return Look { tilt: dot(normal, plane), spread: 1.0 };
+            return Look { tilt: dot(normal, plane), spread: 1.0, chord: self.chord(triangle, face, 0.0) };
         }
         let mut mean = MeanParameters::new(self.context.model.topology().faces[face as usize].period);
         let known = triangle.map(|v| self.uv_of(v, face));
@@ -159,7 +164,15 @@ impl<A: Access> Worker<'_, '_, A> {
         let tilt = dot(normal, self.state.evaluator.face_normal(face, foot.uv));
         let ends = [(a, known[0]), (b, known[1]), (c, known[2])].map(|(p, uv)| self.normal_near(face, p, uv, foot.uv));
         let least = dot(ends[0], ends[1]).min(dot(ends[1], ends[2])).min(dot(ends[2], ends[0]));
-        Look { tilt, spread: (0.5 * (1.0 + least)).max(0.0).sqrt() }
+        Look { tilt, spread: (0.5 * (1.0 + least)).max(0.0).sqrt(), chord: self.chord(triangle, face, foot.distance) }
+    }
+
+    /// Greatest distance from the model of a triangle's centroid, which is given, and of the middles of its edges, where it is bounded.
+    fn chord(&mut self, [a, b, c]: [VertexId; 3], face: u32, centroid: f64) -> f64 {
+        if self.context.limits.chord == f64::INFINITY {
+            return 0.0;
+        }
+        [[a, b], [b, c], [c, a]].into_iter().fold(centroid, |most, edge| self.chord_of(edge, face).max(most))
     }
 
     /// Normal at a vertex of a face, at its parameters if it knows them; at a pole or an apex, where there is none, a little towards
@@ -199,11 +212,15 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// How the triangles that are there look to the model; with their tags.
     pub fn facing(&mut self, triangles: &[([VertexId; 3], u32)]) -> Facing {
-        let (mut worst, mut sum) = (Look { tilt: 1.0, spread: 1.0 }, 0.0);
+        let (mut worst, mut sum) = (Look { tilt: 1.0, spread: 1.0, chord: 0.0 }, 0.0);
         for &(triangle, tag) in triangles {
             let look = self.look(triangle, tag - 1);
             sum += look.tilt;
-            worst = Look { tilt: worst.tilt.min(look.tilt.abs()), spread: worst.spread.min(look.spread) };
+            worst = Look {
+                tilt: worst.tilt.min(look.tilt.abs()),
+                spread: worst.spread.min(look.spread),
+                chord: worst.chord.max(look.chord),
+            };
         }
         Facing { worst, side: if sum < 0.0 { -1.0 } else { 1.0 } }
     }
@@ -219,6 +236,18 @@ impl<A: Access> Worker<'_, '_, A> {
         self.check_star_normals(facing, slack)
     }
 
+    /// Whether each new surface triangle of the star lies nearly as one of its face that goes.
+    pub fn turns_little(&self) -> bool {
+        let normal = |triangle: [VertexId; 3]| {
+            let [a, b, c] = triangle.map(|v| self.store.position(v));
+            unit(area2(a, b, c))
+        };
+        self.state.replacement.faces.iter().all(|&(new, tag)| {
+            let old = self.state.star.surface.iter().filter(|(_, of)| *of == tag);
+            old.map(|&(triangle, _)| dot(normal(triangle), normal(new))).any(|cosine| cosine > STILL)
+        })
+    }
+
     /// As [`Worker::check_normals`], when the old triangles were looked at before.
     pub fn check_star_normals(&mut self, old: Facing, slack: f64) -> Result<(), Refusal> {
         let new = std::mem::take(&mut self.state.replacement.faces);
@@ -232,9 +261,10 @@ impl<A: Access> Worker<'_, '_, A> {
         let limits = self.context.limits;
         let tilt = (old.worst.tilt - slack).min(limits.tilt).max(1e-3);
         let spread = old.worst.spread.min(limits.spread);
+        let chord = old.worst.chord.max(limits.chord);
         let turned = new.iter().any(|&(triangle, tag)| {
             let look = self.look(triangle, tag - 1);
-            old.side * look.tilt < tilt || look.spread < spread
+            old.side * look.tilt < tilt || look.spread < spread || look.chord > chord
         });
         if turned { Err(Refusal::Normal) } else { Ok(()) }
     }

@@ -2,6 +2,7 @@
 use super::access::Access;
 use super::ball::Ball;
 use super::cavity::Replacement;
+use super::clocked::Clocked;
 use super::context::Context;
 use super::ids::{TetId, VertexId};
 use super::local::{FaceMap, LocalSet};
@@ -9,12 +10,12 @@ use super::outcome::Refusal;
 use super::star::Star;
 use super::store::Store;
 use super::supply::Supply;
-use crate::geometry::{Evaluator, Geometry};
+use crate::geometry::Geometry;
 
 /// What a thread keeps from sweep to sweep.
 pub struct State<'m> {
     /// Its own evaluator of the model.
-    pub evaluator: Evaluator<'m>,
+    pub evaluator: Clocked<'m>,
     /// Free ids.
     pub supply: Supply,
     /// The replacement that is being prepared.
@@ -55,7 +56,7 @@ impl<'m> State<'m> {
     /// The state of a new thread.
     pub fn new(context: &Context<'m>) -> Self {
         Self {
-            evaluator: context.model.evaluator(),
+            evaluator: Clocked::new(context.model.evaluator()),
             supply: Supply::default(),
             replacement: Replacement::default(),
             star: Star::default(),

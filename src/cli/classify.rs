@@ -1,5 +1,5 @@
 //! `geo-adapt classify`.
-use super::{Outcome, load};
+use super::{Outcome, load, names};
 use crate::geometry::classify::{Associated, Options, Report, associate, classify};
 use crate::geometry::discrete::complete_boundary;
 use crate::mesh::io;
@@ -39,8 +39,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let options = Options { tolerance: arguments.tolerance, ..Options::default() };
     let (classification, report) = classify(team, mesh, &model, &options)
         .map_err(|error| format!("{} on {}: {error}", arguments.mesh.display(), arguments.cad.display()))?;
+    let given = names::read(&arguments.mesh)?;
     let associated = associate(mesh, &classification);
     io::write_mesh(&arguments.output, mesh)?;
+    let known = !given.is_empty() && !associated.references_replaced;
+    let names = if known { given } else { names::on_mesh(mesh, &classification, &model) };
+    names::write(&arguments.output, &names)?;
     for notice in read.notices.iter().chain(&report.notices) {
         eprintln!("geo-adapt: note: {notice}");
     }

@@ -4,14 +4,17 @@ use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
 mod adapt;
+mod bootstrap;
 mod classify;
 mod image_mesh;
 mod inspect;
 mod load;
 mod metric;
 mod model;
+mod names;
 mod table;
 mod tune;
+mod view;
 
 /// Adapts tetrahedral meshes to a metric, on the real CAD model.
 #[derive(Parser)]
@@ -25,6 +28,8 @@ struct Arguments {
 enum Command {
     /// Adapt a mesh to a metric
     Adapt(adapt::Arguments),
+    /// Make the first mesh of a CAD model
+    Bootstrap(bootstrap::Arguments),
     /// Put a mesh's boundary on the entities of a CAD model
     Classify(classify::Arguments),
     /// Mesh the regions of a 3D image
@@ -37,6 +42,8 @@ enum Command {
     Model(model::Arguments),
     /// Measure which back-end, strategy and grain are the fastest on a case
     Tune(tune::Arguments),
+    /// Show a mesh: a page for the browser, or a picture
+    View(view::Arguments),
 }
 
 /// What a subcommand returns: its exit code, or an error that ends the program with code 2.
@@ -48,17 +55,19 @@ const BAD_INPUT: u8 = 2;
 
 /// Parses the command line, runs the subcommand, prints its error.
 pub fn main() -> ExitCode {
-    if let Some(code) = load::probe() {
+    if let Some(code) = load::probe().or_else(bootstrap::domain::child) {
         return code;
     }
     let outcome = match Arguments::parse().command {
         Command::Adapt(arguments) => adapt::run(&arguments),
+        Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
+        Command::View(arguments) => view::run(&arguments),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("geo-adapt: error: {error}");

@@ -1,7 +1,8 @@
 //! `geo-adapt model`.
 use super::{Outcome, load};
-use crate::geometry::{EdgeEntity, FaceEntity, Geometry, Model, Topology, VertexEntity};
+use crate::geometry::{EdgeEntity, FaceEntity, Geometry, Label, Model, Names, Topology, VertexEntity};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -35,6 +36,8 @@ struct Listing<'a> {
     faces: Vec<Face<'a>>,
     edges: Vec<Edge<'a>>,
     vertices: &'a [VertexEntity],
+    /// By numbers from 1, as references of a mesh are.
+    names: &'a Names,
 }
 
 #[derive(Serialize)]
@@ -64,6 +67,7 @@ impl<'a> Listing<'a> {
             faces: faces.collect(),
             edges: edges.collect(),
             vertices: &topology.vertices,
+            names: model.names(),
         }
     }
 }
@@ -82,6 +86,14 @@ fn describe(model: &Model) -> String {
     };
     let rows: Vec<_> = topology.vertices.iter().zip(0..).map(row).collect();
     table(&mut text, "Vertices", &["", "x", "y", "z", "tolerance", "edges"], &rows);
+    let names = model.names();
+    for (title, labels) in
+        [("Names of solids", &names.tetrahedra), ("Names of faces", &names.triangles), ("Names of edges", &names.edges)]
+    {
+        if !labels.is_empty() {
+            table(&mut text, title, &["", "name", "colour"], &label_rows(labels));
+        }
+    }
     summarize(&mut text, topology);
     text
 }
@@ -114,6 +126,11 @@ fn edge_row(index: u32, edge: &EdgeEntity, model: &Model) -> Vec<String> {
         list(&edge.faces),
         mark.into(),
     ]
+}
+
+fn label_rows(labels: &BTreeMap<i32, Label>) -> Vec<Vec<String>> {
+    let cell = |text: &Option<String>| text.clone().unwrap_or_else(|| "-".into());
+    labels.iter().map(|(number, label)| vec![number.to_string(), cell(&label.name), cell(&label.colour)]).collect()
 }
 
 fn summarize(text: &mut String, topology: &Topology) {

@@ -97,6 +97,42 @@ fn measure_vertices(
     }
 }
 
+/// Distance of each vertex from its own entity, model units; NaN inside.
+pub fn distances(team: Team<'_>, mesh: &TetMesh, model: &Model, classification: &Classification) -> Vec<f64> {
+    let topology = model.topology();
+    let parts = team.chunks(GRAIN, mesh.vertices.len(), |range| {
+        let mut evaluator = model.evaluator();
+        let from_own = |vertex: usize| {
+            let (at, [t, v]) = (mesh.vertices[vertex], classification.parameters[vertex]);
+            match classification.entities[vertex] {
+                Entity::Vertex(i) => distance(at, topology.vertices[i as usize].point),
+                Entity::Edge(i) => evaluator.closest_on_edge(i, at, Some(t)).distance,
+                Entity::Face(i) => evaluator.closest_on_face(i, at, Some([t, v])).distance,
+                Entity::Interior => f64::NAN,
+            }
+        };
+        range.map(from_own).collect()
+    });
+    team.join(parts)
+}
+
+/// Distance of each vertex of a triangle from the nearest face, model units; NaN inside. For meshes that do not fit the model.
+pub fn distances_from_faces(team: Team<'_>, mesh: &TetMesh, model: &Model) -> Vec<f64> {
+    let mut on_surface = vec![false; mesh.vertices.len()];
+    mesh.triangles.nodes.iter().flatten().for_each(|&v| on_surface[v as usize] = true);
+    let parts = team.chunks(TRIANGLES, mesh.vertices.len(), |range| {
+        let mut evaluator = model.evaluator();
+        let to_faces = |vertex: usize| {
+            let p = mesh.vertices[vertex];
+            let far =
+                on_surface[vertex].then(|| distance_from_model(model.topology(), &mut evaluator, p, f64::INFINITY));
+            far.unwrap_or(f64::NAN)
+        };
+        range.map(to_faces).collect()
+    });
+    team.join(parts)
+}
+
 /// Distance to the nearest face, which is no more than `bound`.
 fn distance_from_model(topology: &Topology, evaluator: &mut impl Evaluate, p: Vec3, bound: f64) -> f64 {
     let mut least = bound;
@@ -204,6 +240,12 @@ mod tests {
         // Slid over a side it leaves its entity, not the model: an edge's vertex here.
         let vertex = mesh.vertices.iter().position(|&p| p == [0.5, 0.0, 1.0]).unwrap();
         mesh.vertices[vertex] = [0.5, 0.2, 1.0];
+        let (own, all) = (
+            distances(Team::alone(), &mesh, &model, &classification),
+            distances_from_faces(Team::alone(), &mesh, &model),
+        );
+        assert!((own[vertex] - 0.2).abs() < 1e-12 && (all[vertex] - 0.1).abs() < 1e-12);
+        assert_eq!((own.iter().filter(|d| d.is_nan()).count(), all.iter().filter(|d| d.is_nan()).count()), (1, 1));
         let fidelity = measure(Team::alone(), &mesh, &model, &classification);
         assert!((fidelity.from_entity.unwrap().distance - 0.2).abs() < 1e-12);
         assert!((fidelity.from_model.unwrap().distance - 0.1).abs() < 1e-12);

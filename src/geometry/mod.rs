@@ -3,8 +3,10 @@ pub mod classify;
 pub mod discrete;
 mod entity;
 mod error;
+mod far_field;
 pub mod fidelity;
 mod model;
+mod names;
 #[cfg(feature = "occt")]
 mod occt;
 mod traits;
@@ -12,7 +14,9 @@ mod traits;
 pub use discrete::Discrete;
 pub use entity::{CurveKind, EdgeEntity, Entity, FaceEntity, SurfaceKind, Topology, VertexEntity};
 pub use error::Error;
+pub use far_field::FarField;
 pub use model::{Evaluator, Model};
+pub use names::{Label, Names, called};
 #[cfg(feature = "occt")]
 pub use occt::{OcctEvaluator, OcctModel};
 pub use traits::{CurveFrame, Evaluate, Geometry, OnCurve, OnSurface, SurfaceFrame};

@@ -1,6 +1,7 @@
 //! A model of any backend. The kernel works on this type: backends are told apart by a match, not by a virtual call.
-use super::{CurveFrame, Discrete, Evaluate, Geometry, OnCurve, OnSurface, SurfaceFrame, Topology};
+use super::{CurveFrame, Discrete, Evaluate, FarField, Geometry, Names, OnCurve, OnSurface, SurfaceFrame, Topology};
 use crate::mesh::vector::Vec3;
+use std::collections::BTreeMap;
 
 /// A geometry of one of the backends.
 pub enum Model {
@@ -31,6 +32,55 @@ impl Model {
     pub fn read(path: &std::path::Path) -> Result<Self, super::Error> {
         let message = "this build has no CAD backend; build geo-adapt with its feature `occt`, or leave the model out";
         Err(super::Error::Model { path: path.into(), message: message.into() })
+    }
+
+    /// The names and colours of its edges, faces and solids.
+    pub fn names(&self) -> &Names {
+        static NONE: Names = Names { triangles: BTreeMap::new(), edges: BTreeMap::new(), tetrahedra: BTreeMap::new() };
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.names(),
+            Model::Discrete(_) => &NONE,
+        }
+    }
+
+    /// Gives a CAD model other names.
+    pub fn rename(&mut self, names: Names) {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.rename(names),
+            Model::Discrete(_) => drop(names),
+        }
+    }
+
+    /// The far field without the body that this is.
+    ///
+    /// # Errors
+    /// [`super::Error::Model`] when it is no CAD model or OpenCASCADE cannot subtract it.
+    pub fn domain(&self, far: &FarField) -> Result<Self, super::Error> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.domain(far).map(Model::Occt),
+            Model::Discrete(_) => {
+                let _ = far;
+                let message = "a mesh's own surface is no CAD model";
+                Err(super::Error::Model { path: "the far field".into(), message: message.into() })
+            }
+        }
+    }
+
+    /// Writes the model as OpenCASCADE's BREP text, its entities in our order.
+    ///
+    /// # Errors
+    /// [`super::Error::Model`] when it is no CAD model or the file cannot be written.
+    pub fn write_brep(&self, path: &std::path::Path) -> Result<(), super::Error> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.write_brep(path),
+            Model::Discrete(_) => {
+                Err(super::Error::Model { path: path.into(), message: "a mesh's own surface is no CAD model".into() })
+            }
+        }
     }
 
     /// Area of a face, in the square of the model's unit; none where the backend does not tell.

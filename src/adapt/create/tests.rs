@@ -143,7 +143,7 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let edges = vec![1; topology.edges.len()];
         let faces = vec![1; topology.faces.len()];
         let refs = extract::References { inward: vec![false; faces.len()], faces, edges };
-        let extracted = extract::extract(Team::alone(), &context, &mesh, &refs);
+        let extracted = extract::extract(Team::alone(), &context, &mesh, &refs, &[]);
         assert_valid_cube(&extracted.mesh);
     }
 }
@@ -223,7 +223,7 @@ fn a_cube_refined_in_any_way_is_a_valid_mesh_with_edges_of_unit_length() {
         let adapted = adapt(&mesh, &place, &model, &source, &options, &pool, &Silent).expect("the cube is valid");
         let refined = &adapted.extracted.mesh;
         assert_valid_cube(refined);
-        assert_eq!(adapted.off_model, 0);
+        assert!(adapted.extracted.off_model.is_empty());
         let statistics =
             crate::metric::statistics::Statistics::in_metric(Team::alone(), refined, &adapted.extracted.metrics);
         let unit = statistics.metric.expect("there is a metric").unit_edges;

@@ -3,7 +3,6 @@ use super::{LITTLE, Pipeline, size_limits};
 use crate::adapt::context::Limits;
 use crate::adapt::schedule::Thin;
 use crate::adapt::work::Kind;
-use crate::tasks::GRAIN;
 
 /// The store is renumbered when it has shrunk by this factor: by 2 costs as much as it saves.
 const SHRUNK: usize = 4;
@@ -19,7 +18,7 @@ fn thin_limits() -> Limits {
 impl Pipeline<'_, '_> {
     /// Removes vertices that are too near to others, with flips where that gets stuck.
     pub(super) fn thin(&mut self) {
-        self.context.limits = thin_limits();
+        self.limit(thin_limits());
         for round in 0..THINNINGS {
             if round > 0 {
                 self.reconnect(self.criterion, 1);
@@ -27,16 +26,14 @@ impl Pipeline<'_, '_> {
             self.thin_in_sweeps();
         }
         self.reorder();
-        self.context.limits = size_limits();
+        self.limit(size_limits());
     }
 
     /// Sweeps over the vertices whose neighbourhood changed, until few of them go.
     fn thin_in_sweeps(&mut self) {
         let mut since = 0;
         loop {
-            let store = &self.context.store;
-            let count = |range| store.live_vertices_in(range).count();
-            let live: usize = self.team().chunks(GRAIN, store.vertex_bound(), count).into_iter().sum();
+            let live = self.live();
             let items = self.vertices(|store, v| store.stamp(store.tet_of(v)) >= since);
             since = self.context.store.clock() + 1;
             let done = if self.observer.stop() { 0 } else { self.sweep(Kind::Collapse, &Thin, &items).done as usize };

@@ -114,6 +114,18 @@ impl Operation for Split {
     }
 }
 
+/// Splits surface triangles that stray from the model.
+pub struct Unbend;
+
+impl Operation for Unbend {
+    type Item = TetId;
+    const WHOLE_BALLS: bool = false;
+
+    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, item: TetId) -> Result<(), Refusal> {
+        worker.unbend(item)
+    }
+}
+
 /// Refines tetrahedra at their centroids.
 pub struct Create;
 

@@ -1,5 +1,5 @@
 //! Tests of the kernel as a whole: operations one by one, in random order, and on many threads.
-mod bench;
+pub(super) mod bench;
 mod deterministic;
 mod random;
 mod stress;

@@ -1,6 +1,9 @@
 //! After every sweep of every kind the whole mesh is valid, and there was something to do.
 use super::bench::{Bench, Shape, Task, sample};
+use crate::adapt::criteria::Criterion;
+use crate::adapt::ids::{FACE, TetId, VertexId};
 use crate::tasks::Team;
+use std::collections::BTreeSet;
 
 /// Rounds of all kinds of sweeps; returns how often each was carried out.
 fn rounds(shape: Shape, n: u32, size: f64, rounds: usize) -> [u64; 10] {
@@ -52,6 +55,30 @@ fn thinning_leaves_what_the_model_holds_and_no_two_go_side_by_side() {
 #[test]
 fn an_interface_between_regions_stays_valid() {
     each_was_done(rounds(Shape::TwoRegions, 4, 0.5, 3));
+}
+
+/// The triangles of the interface, by their vertices.
+fn interface(bench: &Bench) -> BTreeSet<[VertexId; 3]> {
+    let store = &bench.context.store;
+    let faces = store.live_tets().flat_map(|t| (0..4).map(move |i| (t, i)));
+    let between = faces.filter(|&(t, i)| store.tags(t)[i] != 0 && store.neighbour(t, i).is_some());
+    let sorted = |(t, i): (TetId, usize)| {
+        let mut face = FACE[i].map(|k| store.vertices(t)[k]);
+        face.sort();
+        face
+    };
+    between.map(sorted).collect()
+}
+
+#[test]
+fn flips_change_an_interface_on_both_sides_at_once() {
+    let sample = sample(Shape::TwoRegions, 4, 0.5);
+    let mut bench = Bench::new(&sample, 1, 11);
+    let before = interface(&bench);
+    bench.sweep(Task::Reconnect(Criterion::MeanRatio));
+    let after = interface(&bench);
+    assert_eq!(before.len(), after.len());
+    assert!(before.difference(&after).count() >= 2, "no triangle of {} was flipped", before.len());
 }
 
 #[test]

@@ -1,15 +1,11 @@
 //! The files of a run: checked before it, written after it.
 use super::Arguments;
-use super::report::Report;
+use super::report::{Asked, Report};
+use crate::cli::names;
 use crate::mesh::io;
 use crate::metric::Field;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
-
-/// The metric of the adapted mesh goes beside it.
-pub fn metric_path(arguments: &Arguments) -> PathBuf {
-    arguments.output.with_extension("solb")
-}
 
 /// Refuses before the work what would fail after it: outputs that cannot be written, or that are inputs.
 pub fn check(arguments: &Arguments) -> Result<(), String> {
@@ -18,7 +14,7 @@ pub fn check(arguments: &Arguments) -> Result<(), String> {
     if !["mesh", "meshb"].contains(&extension) {
         return Err(format!("{}: the output must end in .mesh or .meshb", output.display()));
     }
-    let metric = metric_path(arguments);
+    let metric = arguments.asked(0).metric_path();
     let outputs = [Some(output), Some(&metric), arguments.report.as_ref()];
     if let Some(report) = arguments.report.as_ref().filter(|&report| report == output || *report == metric) {
         return Err(format!("{}: is also the mesh's or its metric's file; give another --report", report.display()));
@@ -45,21 +41,23 @@ pub fn check(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-/// Writes mesh, metric and report; `times` since the start: when the work began, when it ended, now.
+/// Writes mesh, metric and, where it is asked for, the report; `times` since the start: when the work began, when it ended, now.
 pub fn write(
-    arguments: &Arguments,
+    asked: &Asked,
+    json: Option<&Path>,
     mut report: Report,
     times: [Duration; 3],
 ) -> Result<Report, Box<dyn std::error::Error>> {
-    io::write_mesh(&arguments.output, &report.mesh)?;
+    io::write_mesh(&asked.output, &report.mesh)?;
+    names::write(&asked.output, &report.names)?;
     let field = Field { metrics: std::mem::take(&mut report.metrics) };
-    field.write(&metric_path(arguments))?;
+    field.write(&asked.metric_path())?;
     report.metrics = field.metrics;
     let [prepared, finished, measured] = times.map(|time| time.as_secs_f64());
     report.seconds.read_and_classify = prepared;
     report.seconds.adapt = finished - prepared;
     report.seconds.total = measured;
-    if let Some(path) = &arguments.report {
+    if let Some(path) = json {
         let text = serde_json::to_vec_pretty(&report)?;
         io::write_beside(path, |file| file.write_all(&text).and_then(|()| file.write_all(b"\n")))?;
     }

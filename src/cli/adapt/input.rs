@@ -1,5 +1,5 @@
 //! What a run begins with: the mesh, where it lies on its model, and the metric.
-use super::super::load;
+use super::super::{load, names};
 use super::field::FieldArguments;
 use super::parts::{self, Local};
 use crate::adapt;
@@ -7,7 +7,7 @@ use crate::cli::metric::fields::{Made, MultiscaleArguments};
 use crate::cli::metric::geometry::GeometryArguments;
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
-use crate::geometry::{Discrete, Model};
+use crate::geometry::{Discrete, Model, Names};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, io};
 use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
@@ -39,7 +39,7 @@ pub struct InputArguments {
     /// How far a vertex of the input may be from the model, in its units
     #[arg(long, value_name = "T", value_parser = crate::cli::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// Greatest size on a surface or in a region, by reference: 3:h=0.01, region:2:h=0.05
+    /// Greatest size on a surface or in a region, by reference or name: 3:h=0.01, inlet:h=0.02, region:2:h=0.05
     #[arg(long, value_name = "REF:h=H,…", value_delimiter = ',', allow_negative_numbers = true)]
     local: Vec<Local>,
     #[command(flatten, next_help_heading = "The metric of --field (gradation and bounds of sizes: of --metric too)")]
@@ -57,6 +57,8 @@ pub struct Given {
     pub mesh: TetMesh,
     /// ln M at its vertices.
     pub logs: Option<Vec<Sym3>>,
+    /// What its references are called, by the file beside it.
+    pub names: Names,
 }
 
 /// All that the adapter needs.
@@ -71,6 +73,8 @@ pub struct Input {
     pub source: Source,
     /// How it was made, from a field.
     pub made: Option<Made>,
+    /// What the mesh's references are called, by the file beside it or else by the model.
+    pub names: Names,
 }
 
 type Error = Box<dyn std::error::Error>;
@@ -82,11 +86,12 @@ impl InputArguments {
         stage("mesh read");
         notices.extend(read.notices);
         let mesh = read.content;
-        let Some(path) = &self.field.metric else { return Ok(Given { mesh, logs: None }) };
+        let names = names::read(&self.mesh)?;
+        let Some(path) = &self.field.metric else { return Ok(Given { mesh, logs: None, names }) };
         let read = Field::read_logs(team, path, mesh.vertices.len())?;
         notices.extend(read.notices);
         stage("metric read");
-        Ok(Given { mesh, logs: Some(read.content) })
+        Ok(Given { mesh, logs: Some(read.content), names })
     }
 
     /// Completes the boundary, puts the mesh on its model, and brings the metric to its complexity.
@@ -98,7 +103,7 @@ impl InputArguments {
         cad: Option<Model>,
         notices: &mut Vec<String>,
     ) -> Result<Input, Error> {
-        let Given { mut mesh, logs } = given;
+        let Given { mut mesh, logs, mut names } = given;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let added = complete_matched(team, &mut mesh, &faces);
         stage("boundary complete");
@@ -108,11 +113,14 @@ impl InputArguments {
         let mesh = Arc::new(mesh);
         let (model, place) = self.place(team, &mesh, cad, notices)?;
         stage("classified");
-        let (mut source, made) = self.source(team, (&mesh, faces), logs, (&place, &model), notices)?;
+        if names.is_empty() {
+            names = names::on_mesh(&mesh, &place, &model);
+        }
+        let (mut source, made) = self.source(team, (&mesh, faces), logs, (&place, &model, &names), notices)?;
         stage("metric ready");
         self.scale(team, &mesh, &mut source, made.is_some())?;
         stage("complexity");
-        Ok(Input { mesh, place, model, source, made })
+        Ok(Input { mesh, place, model, source, made, names })
     }
 
     /// The metric's source: the analytic field, or the mesh as background with the metric of a file or the one made from a field; and
@@ -122,7 +130,7 @@ impl InputArguments {
         team: Team<'_>,
         (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
         logs: Option<Vec<Sym3>>,
-        on: (&Classification, &Model),
+        on: (&Classification, &Model, &Names),
         notices: &mut Vec<String>,
     ) -> Result<(Source, Option<Made>), Error> {
         if let Some(field) = self.field.analytic {
@@ -134,7 +142,7 @@ impl InputArguments {
         }
         let (logs, made) = match logs {
             Some(logs) if !self.is_bounded() => (logs, None),
-            Some(logs) => (self.bounded(team, mesh, logs).map_err(named)?, None),
+            Some(logs) => (self.bounded(team, mesh, on.2, logs).map_err(named)?, None),
             None => {
                 let complexity = self.complexity.ok_or("--field needs a --complexity")?;
                 let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
@@ -153,9 +161,9 @@ impl InputArguments {
     }
 
     /// ln of the metric of a file within the bounds that are given, graded, and of the complexity that is asked for.
-    fn bounded(&self, team: Team<'_>, mesh: &TetMesh, mut logs: Vec<Sym3>) -> Result<Vec<Sym3>, String> {
+    fn bounded(&self, team: Team<'_>, mesh: &TetMesh, names: &Names, mut logs: Vec<Sym3>) -> Result<Vec<Sym3>, String> {
         let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth());
-        let fixed = self.local_sizes(team, mesh)?;
+        let fixed = self.local_sizes(team, mesh, names)?;
         let complexity = self.complexity.unwrap_or(1.0);
         let bounds = Bounds { complexity, measure: Measure::Between, gradation, limits, fixed: fixed.as_deref() };
         if self.complexity.is_some() {
@@ -169,12 +177,12 @@ impl InputArguments {
     }
 
     /// ln of the metric that the local sizes ask for, all else as large as can be; none without any.
-    fn local_sizes(&self, team: Team<'_>, mesh: &TetMesh) -> Result<Option<Vec<Sym3>>, String> {
+    fn local_sizes(&self, team: Team<'_>, mesh: &TetMesh, names: &Names) -> Result<Option<Vec<Sym3>>, String> {
         if self.local.is_empty() {
             return Ok(None);
         }
         let mut logs = vec![Sym3::ZERO.plus_identity(-2.0 * diameter(team, mesh).ln()); mesh.vertices.len()];
-        parts::apply(&self.local, mesh, &mut logs)?;
+        parts::apply(&self.local, mesh, names, &mut logs)?;
         Ok(Some(logs))
     }
 
@@ -183,12 +191,12 @@ impl InputArguments {
         &self,
         team: Team<'_>,
         mesh: &TetMesh,
-        (place, model): (&Classification, &Model),
+        (place, model, names): (&Classification, &Model, &Names),
         complexity: f64,
         notices: &mut Vec<String>,
     ) -> Result<Option<Vec<Sym3>>, String> {
         if self.cad.is_none() || self.no_geometry {
-            return self.local_sizes(team, mesh);
+            return self.local_sizes(team, mesh, names);
         }
         let gradation = self.multiscale.growth();
         let options = self.geometry.options(model, self.multiscale.limits()?, None);
@@ -208,7 +216,7 @@ impl InputArguments {
                  the field (a greater --complexity keeps them, --no-geometry leaves them out)"
             ));
         }
-        parts::apply(&self.local, mesh, &mut logs)?;
+        parts::apply(&self.local, mesh, names, &mut logs)?;
         stage("geometry");
         Ok(Some(logs))
     }

@@ -1,23 +1,24 @@
 //! `geo-adapt adapt`.
 pub mod field;
-mod files;
+pub mod files;
 pub mod input;
-mod parts;
-mod progress;
-mod report;
+pub mod parts;
+pub mod progress;
+pub mod report;
 
 use super::Outcome;
-use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler};
+use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
 use crate::metric::Field;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
 use input::{Given, Input, InputArguments};
 use progress::Progress;
+use report::{Asked, Report};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 /// Exit code after an interrupt: 128 + SIGINT, as shells have it. The last valid mesh is written all the same.
-const INTERRUPTED: u8 = 130;
+pub const INTERRUPTED: u8 = 130;
 
 /// Arguments of `geo-adapt adapt`.
 #[derive(clap::Args)]
@@ -43,9 +44,15 @@ pub struct Arguments {
     /// Where refinement puts new vertices
     #[arg(long, value_enum, default_value_t = PointCreation::Edge)]
     points: PointCreation,
-    /// Surfaces and regions that stay as they are, by reference: 3 or surface:3, region:2
+    /// Surfaces and regions that stay as they are, by reference or name: 3 or surface:3, inlet, region:2
     #[arg(long, value_name = "REF,…", value_delimiter = ',', allow_negative_numbers = true)]
     freeze: Vec<parts::Part>,
+    /// Greatest angle in degrees between a boundary triangle and the model: triangles that deviate more are split, whatever the metric
+    #[arg(long, value_name = "DEG", value_parser = deviation, allow_negative_numbers = true)]
+    normal_deviation: Option<f64>,
+    /// Greatest chord error, the distance of boundary triangles from the model: triangles that are farther are split, whatever the metric
+    #[arg(long, value_name = "H", value_parser = chord, allow_negative_numbers = true)]
+    hausdorff: Option<f64>,
     /// How the threads share the work
     #[arg(long, value_enum, default_value_t = Scheduler::default())]
     scheduler: Scheduler,
@@ -66,6 +73,18 @@ pub struct Arguments {
     quiet: bool,
 }
 
+/// An angle that triangles can be held to.
+fn deviation(text: &str) -> Result<f64, String> {
+    let angle: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.1..=89.0).contains(&angle) { Ok(angle) } else { Err("an angle from 0.1 to 89 degrees".into()) }
+}
+
+/// A distance from the model.
+fn chord(text: &str) -> Result<f64, String> {
+    let distance: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if distance > 0.0 && distance.is_finite() { Ok(distance) } else { Err("a distance above 0".into()) }
+}
+
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
@@ -80,6 +99,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let plan = Plan { backend: arguments.backend, strategy: arguments.strategy, ..Plan::default() };
     let team = Team::new(&pool, plan);
     stage("start");
+    let asked = arguments.asked(threads);
     let mut notices = Vec::new();
     let mut given = arguments.input.read(team, &mut notices)?;
     let (mut cad, mut start) = (None, Some(start));
@@ -93,34 +113,42 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let progress = Progress::new(!arguments.quiet, stop.clone());
         let Input { mesh, place, model, source, .. } = &input;
         let named = |error| format!("{}: {error}", arguments.input.mesh.display());
-        let options = arguments.options(plan, parts::frozen(&arguments.freeze, mesh).map_err(named)?);
+        let options = arguments.options(plan, parts::frozen(&arguments.freeze, mesh, &input.names).map_err(named)?);
         let adapted = adapt::adapt(mesh, place, model, source, &options, &pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
         let finished = start.elapsed();
-        let report = report::Report::new(team, arguments, &input, adapted, threads);
+        let report = Report::new(team, &asked, &input, adapted);
         stage("report");
-        let mut report = files::write(arguments, report, [prepared, finished, start.elapsed()])?;
+        let json = arguments.report.as_deref();
+        let mut report = files::write(&asked, json, report, [prepared, finished, start.elapsed()])?;
         stage("written");
         if !arguments.quiet {
             if arguments.cycles > 1 {
                 super::print(&format!("cycle {cycle} of {}\n", arguments.cycles));
             }
-            super::print(&report.text(arguments));
+            super::print(&report.text());
         }
         if progress.interrupted() {
             return Ok(ExitCode::from(INTERRUPTED));
         }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
-        given = Given { mesh: std::mem::take(&mut report.mesh), logs };
+        given = Given { mesh: std::mem::take(&mut report.mesh), logs, names: report.names.clone() };
         cad = arguments.input.cad.is_some().then_some(input.model);
     }
     Ok(ExitCode::SUCCESS)
 }
 
 impl Arguments {
+    /// What the report says was asked for.
+    fn asked(&self, threads: usize) -> Asked {
+        let (input, output) = (self.input.mesh.clone(), self.output.clone());
+        Asked { input, output, threads, complexity_wanted: self.input.complexity }
+    }
+
     fn options(&self, plan: Plan, freeze: Freeze) -> Options {
         let scheduler = if self.deterministic { Scheduler::Deterministic } else { self.scheduler };
-        Options { criterion: self.criterion, points: self.points, scheduler, plan, grains: self.grain, freeze }
+        let surface = SurfaceBounds { normal_deviation: self.normal_deviation, hausdorff: self.hausdorff };
+        Options { criterion: self.criterion, points: self.points, scheduler, plan, grains: self.grain, freeze, surface }
     }
 }

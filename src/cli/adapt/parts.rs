@@ -1,50 +1,124 @@
 //! Surfaces and regions of a mesh by reference: what the user wants left as it is, or of another size.
 use crate::adapt::Freeze;
+use crate::geometry::{Label, Names, called};
 use crate::mesh::TetMesh;
 use crate::metric::Sym3;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::str::FromStr;
 
-/// A surface or a region of a mesh, by its reference.
+/// What a part is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Key {
+    Reference(i32),
+    /// As in the names file of the mesh, or in its CAD model.
+    Name(String),
+}
+
+/// Which parts may be meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// Triangles of that reference.
+enum Kind {
+    Surface,
+    Region,
+    /// A name alone: surfaces that are called so, else regions.
+    Any,
+}
+
+/// Surfaces or regions of a mesh, by reference or by name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    kind: Kind,
+    key: Key,
+}
+
+/// Triangles or tetrahedra of a reference.
+#[derive(Clone, Copy)]
+enum Found {
     Surface(i32),
-    /// Tetrahedra of that reference.
     Region(i32),
 }
 
 impl FromStr for Part {
     type Err = String;
 
-    /// `3` or `surface:3` for a surface, `region:2` for a region.
+    /// `3`, `surface:3` or `inlet` for a surface, `region:2` or `region:steel` for a region.
     fn from_str(text: &str) -> Result<Self, String> {
-        let (kind, number) = text.split_once(':').unwrap_or(("surface", text));
-        let reference =
-            number.trim().parse().map_err(|_| format!("`{number}` is no reference: write 3, surface:3 or region:2"))?;
-        match kind.trim() {
-            "surface" => Ok(Self::Surface(reference)),
-            "region" => Ok(Self::Region(reference)),
-            other => Err(format!("`{other}` is neither surface nor region: write 3, surface:3 or region:2")),
+        let (kind, key) = match text.split_once(':').map(|(kind, key)| (kind.trim(), key)) {
+            Some(("surface", key)) => (Kind::Surface, key),
+            Some(("region", key)) => (Kind::Region, key),
+            _ => (Kind::Any, text),
+        };
+        let key = key.trim();
+        if key.is_empty() {
+            return Err(format!("`{text}` names nothing: write 3, surface:3, region:2, or a name"));
         }
+        Ok(match (kind, key.parse()) {
+            (Kind::Any, Ok(reference)) => Self { kind: Kind::Surface, key: Key::Reference(reference) },
+            (kind, Ok(reference)) => Self { kind, key: Key::Reference(reference) },
+            (kind, Err(_)) => Self { kind, key: Key::Name(key.into()) },
+        })
     }
 }
 
 impl Part {
-    /// Refuses a part that the mesh has not, and tells what there is.
-    fn check(self, mesh: &TetMesh) -> Result<(), String> {
-        let (reference, name, refs) = match self {
-            Self::Surface(reference) => (reference, "surface", &mesh.triangles.refs),
-            Self::Region(reference) => (reference, "region", &mesh.tets.refs),
+    /// What is meant; refuses what the mesh has not, and tells what there is.
+    fn find(&self, mesh: &TetMesh, names: &Names) -> Result<Vec<Found>, String> {
+        let name = match &self.key {
+            Key::Reference(reference) if self.kind == Kind::Region => {
+                return has("region", *reference, &mesh.tets.refs).map(|()| vec![Found::Region(*reference)]);
+            }
+            Key::Reference(reference) => {
+                return has("surface", *reference, &mesh.triangles.refs).map(|()| vec![Found::Surface(*reference)]);
+            }
+            Key::Name(name) => name,
         };
-        if refs.contains(&reference) {
-            return Ok(());
+        let mut found = Vec::new();
+        if self.kind != Kind::Region {
+            let there = called(&names.triangles, name).into_iter().filter(|r| mesh.triangles.refs.contains(r));
+            found.extend(there.map(Found::Surface));
         }
-        let there: BTreeSet<i32> = refs.iter().copied().collect();
-        let there: Vec<String> = there.iter().take(20).map(i32::to_string).collect();
-        Err(format!("the mesh has no {name} with reference {reference}; its {name}s are {}", there.join(", ")))
+        if self.kind == Kind::Region || self.kind == Kind::Any && found.is_empty() {
+            let there = called(&names.tetrahedra, name).into_iter().filter(|r| mesh.tets.refs.contains(r));
+            found.extend(there.map(Found::Region));
+        }
+        if found.is_empty() { Err(self.not_called(name, names)) } else { Ok(found) }
     }
 
+    /// The error about a name that nothing has.
+    fn not_called(&self, name: &str, names: &Names) -> String {
+        let labels = |labels: &BTreeMap<i32, Label>| labels.values().filter_map(|label| label.name.clone()).collect();
+        let mut there: BTreeSet<String> = BTreeSet::new();
+        if self.kind != Kind::Region {
+            there.append(&mut labels(&names.triangles));
+        }
+        if self.kind != Kind::Surface {
+            there.append(&mut labels(&names.tetrahedra));
+        }
+        let what = match self.kind {
+            Kind::Surface => "surface",
+            Kind::Region => "region",
+            Kind::Any => "surface or region",
+        };
+        if there.is_empty() {
+            return format!(
+                "the mesh has no {what} called {name}: neither a names file beside it nor the model has names; give a reference"
+            );
+        }
+        let there: Vec<String> = there.into_iter().take(20).collect();
+        format!("the mesh has no {what} called {name}; there are {}", there.join(", "))
+    }
+}
+
+/// Refuses a reference that the mesh has not.
+fn has(what: &str, reference: i32, refs: &[i32]) -> Result<(), String> {
+    if refs.contains(&reference) {
+        return Ok(());
+    }
+    let there: BTreeSet<i32> = refs.iter().copied().collect();
+    let there: Vec<String> = there.iter().take(20).map(i32::to_string).collect();
+    Err(format!("the mesh has no {what} with reference {reference}; its {what}s are {}", there.join(", ")))
+}
+
+impl Found {
     /// Its vertices, some repeatedly.
     fn vertices(self, mesh: &TetMesh) -> Vec<u32> {
         match self {
@@ -55,20 +129,21 @@ impl Part {
 }
 
 /// The parts, each of which the mesh has.
-pub fn frozen(parts: &[Part], mesh: &TetMesh) -> Result<Freeze, String> {
+pub fn frozen(parts: &[Part], mesh: &TetMesh, names: &Names) -> Result<Freeze, String> {
     let mut freeze = Freeze::default();
-    for &part in parts {
-        part.check(mesh)?;
-        match part {
-            Part::Surface(reference) => freeze.surfaces.push(reference),
-            Part::Region(reference) => freeze.regions.push(reference),
+    for part in parts {
+        for found in part.find(mesh, names)? {
+            match found {
+                Found::Surface(reference) => freeze.surfaces.push(reference),
+                Found::Region(reference) => freeze.regions.push(reference),
+            }
         }
     }
     Ok(freeze)
 }
 
 /// A greatest size on a part.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Local {
     part: Part,
     /// In model units.
@@ -78,7 +153,7 @@ pub struct Local {
 impl FromStr for Local {
     type Err = String;
 
-    /// `3:h=0.01`, `region:2:h=0.05`.
+    /// `3:h=0.01`, `inlet:h=0.02`, `region:2:h=0.05`.
     fn from_str(text: &str) -> Result<Self, String> {
         let (part, size) =
             text.rsplit_once(":h=").ok_or_else(|| format!("`{text}`: write 3:h=0.01 or region:2:h=0.05"))?;
@@ -87,11 +162,11 @@ impl FromStr for Local {
 }
 
 /// Lets ln M at the vertices ask for no more than the sizes on their parts.
-pub fn apply(locals: &[Local], mesh: &TetMesh, logs: &mut [Sym3]) -> Result<(), String> {
+pub fn apply(locals: &[Local], mesh: &TetMesh, names: &Names, logs: &mut [Sym3]) -> Result<(), String> {
     for local in locals {
-        local.part.check(mesh)?;
         let size = Sym3::ZERO.plus_identity(-2.0 * local.size.ln());
-        for v in local.part.vertices(mesh) {
+        let found = local.part.find(mesh, names)?;
+        for v in found.into_iter().flat_map(|found| found.vertices(mesh)) {
             logs[v as usize] = logs[v as usize].intersect_logs(&size);
         }
     }

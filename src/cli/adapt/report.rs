@@ -1,19 +1,19 @@
 //! What was done: the table on the terminal and the JSON.
 use super::input::Input;
-use super::{Arguments, files};
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
-use crate::cli::table::Table;
-use crate::geometry::Model;
+use crate::cli::table::{Table, place};
 #[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
 use crate::geometry::fidelity::{self, Fidelity};
+use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
 use crate::tasks::Team;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// Wall times, s.
 #[derive(Default, Serialize)]
@@ -22,6 +22,8 @@ pub struct Seconds {
     pub read_and_classify: f64,
     /// Adaptation.
     pub adapt: f64,
+    /// In the model's evaluators during the adaptation, of all threads together.
+    pub geometry: f64,
     /// Everything, the writing of this report apart.
     pub total: f64,
 }
@@ -36,14 +38,32 @@ struct Operation {
     seconds: f64,
 }
 
+/// What a run was asked for, as the report has it.
+#[derive(Clone, Serialize)]
+pub struct Asked {
+    /// The mesh, or the model that the mesh was made of.
+    pub input: PathBuf,
+    /// Where the adapted mesh goes.
+    pub output: PathBuf,
+    /// Threads.
+    pub threads: usize,
+    /// The complexity.
+    pub complexity_wanted: Option<f64>,
+}
+
+impl Asked {
+    /// The metric of the adapted mesh goes beside it.
+    pub fn metric_path(&self) -> PathBuf {
+        self.output.with_extension("solb")
+    }
+}
+
 /// The report of a run.
 #[derive(Serialize)]
 pub struct Report {
     version: &'static str,
-    input: std::path::PathBuf,
-    output: std::path::PathBuf,
-    threads: usize,
-    complexity_wanted: Option<f64>,
+    #[serde(flatten)]
+    asked: Asked,
     /// How the metric was made, with --field.
     #[serde(skip_serializing_if = "Option::is_none")]
     multiscale: Option<Made>,
@@ -51,13 +71,20 @@ pub struct Report {
     input_tets: usize,
     statistics: Statistics,
     fidelity: Fidelity,
-    off_model: usize,
+    /// Boundary vertices, from 0, that found no room on the model: their tetrahedra would be inverted at its closest point.
+    off_model: Vec<u32>,
+    overgrown: bool,
+    /// Surface triangles beyond --normal-deviation or --hausdorff.
+    astray: usize,
     operations: BTreeMap<&'static str, Operation>,
     /// Wall times.
     pub seconds: Seconds,
     /// The adapted mesh.
     #[serde(skip)]
     pub mesh: TetMesh,
+    /// What its references are called.
+    #[serde(skip)]
+    pub names: Names,
     /// The metric at its vertices.
     #[serde(skip)]
     pub metrics: Vec<Sym3>,
@@ -65,38 +92,41 @@ pub struct Report {
 
 impl Report {
     /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it.
-    pub fn new(team: Team<'_>, arguments: &Arguments, input: &Input, adapted: Adapted, threads: usize) -> Self {
+    pub fn new(team: Team<'_>, asked: &Asked, input: &Input, adapted: Adapted) -> Self {
         let extracted = adapted.extracted;
-        let (mut mesh, model) = (extracted.mesh, &input.model);
+        let (mut mesh, model, mut names) = (extracted.mesh, &input.model, input.names.clone());
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &extracted.classification),
             #[cfg(feature = "occt")]
             Model::Occt(_) => {
-                associate(&mut mesh, &extracted.classification);
+                // References that are the numbers of the faces now have the names of the model.
+                if associate(&mut mesh, &extracted.classification).references_replaced {
+                    names.triangles.clone_from(&model.names().triangles);
+                }
             }
         }
         let fidelity = fidelity::measure(team, &mesh, model, &extracted.classification);
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            input: arguments.input.mesh.clone(),
-            output: arguments.output.clone(),
-            threads,
-            complexity_wanted: arguments.input.complexity,
+            asked: asked.clone(),
             multiscale: input.made.clone(),
             input_vertices: input.mesh.vertices.len(),
             input_tets: input.mesh.tets.len(),
             statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
             fidelity,
-            off_model: adapted.off_model,
+            off_model: extracted.off_model,
+            overgrown: adapted.overgrown,
+            astray: adapted.astray,
             operations: operations(&adapted.work),
-            seconds: Seconds::default(),
+            seconds: Seconds { geometry: adapted.geometry.as_secs_f64(), ..Seconds::default() },
             mesh,
+            names,
             metrics: extracted.metrics,
         }
     }
 
     /// The table for the terminal.
-    pub fn text(&self, arguments: &Arguments) -> String {
+    pub fn text(&self) -> String {
         let mut table = Table::new();
         table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
         if let Some(made) = &self.multiscale {
@@ -104,8 +134,26 @@ impl Report {
         }
         table.statistics(&self.statistics);
         table.fidelity(&self.fidelity);
-        if self.off_model > 0 {
-            table.row("found no room on the model", format_args!("{} vertices", self.off_model));
+        if let [first, ..] = self.off_model[..] {
+            let (count, at) = (self.off_model.len(), place(self.mesh.vertices[first as usize]));
+            let what = "their tetrahedra would be inverted there";
+            table.row(
+                "found no room on the model",
+                format_args!("{count} vertices, {what}; the first: {} at {at}", first + 1),
+            );
+        }
+        if self.astray > 0 {
+            table.row(
+                "beyond the bounds",
+                format_args!("{} surface triangles: no room to split them, or their vertices must stay", self.astray),
+            );
+        }
+        if self.overgrown {
+            table.row(
+                "stopped growing",
+                "far more vertices than the metric's complexity accounts for: it asks on a curved wall for cells",
+            );
+            table.row("", "much flatter than the wall bends within an edge; bound it by --aspect-ratio or --hmax, or give --cad and --field");
         }
         table.line("");
         table.line(&format!("{:<14}{:>12}{:>12}{:>9}{:>10}", "operation", "attempts", "done", "sweeps", "seconds"));
@@ -114,13 +162,16 @@ impl Report {
             let line = format!("{:<14}{:>12}{:>12}{:>9}{:>10.2}", kind.name(), o.attempts, o.done, o.sweeps, o.seconds);
             table.line(&line);
         }
-        let Seconds { read_and_classify, adapt, total } = self.seconds;
+        let Seconds { read_and_classify, adapt, geometry, total } = self.seconds;
         table.row(
             "seconds",
-            format_args!("{total:.2} (reading {read_and_classify:.2}, adapting {adapt:.2}), {} threads", self.threads),
+            format_args!(
+                "{total:.2} (reading {read_and_classify:.2}, adapting {adapt:.2}, of that {geometry:.2} thread seconds in the model), {} threads",
+                self.asked.threads
+            ),
         );
-        let metric = files::metric_path(arguments);
-        table.row("written", format_args!("{}, {}", self.output.display(), metric.display()));
+        let metric = self.asked.metric_path();
+        table.row("written", format_args!("{}, {}", self.asked.output.display(), metric.display()));
         table.text().to_owned()
     }
 }

@@ -2,7 +2,7 @@
 use super::hints::Hints;
 use super::{Classification, Error, Report, corners, coverage, entities, patches, ridges, settle, units};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, Features};
-use crate::geometry::{Entity, Geometry, Model, Topology};
+use crate::geometry::{EdgeEntity, Entity, FaceEntity, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
 use crate::tasks::Team;
 
@@ -51,7 +51,10 @@ pub fn classify(
     }
     let topology = model.topology();
     units::check(mesh, topology)?;
+    let (edge_borders, face_borders) = borders(topology);
     let fit = Fit {
+        edge_borders,
+        face_borders,
         team,
         mesh,
         model,
@@ -80,6 +83,25 @@ pub(super) struct Fit<'a> {
     /// The tolerance given, or that of an entity which states none.
     pub tolerance: f64,
     given: bool,
+    /// For each edge the greatest tolerance of its vertices, for each face that of its edges and their vertices: what lies on them may be
+    /// so far off the edge or face that they bound.
+    edge_borders: Vec<f64>,
+    face_borders: Vec<f64>,
+}
+
+/// The greatest tolerance of what bounds each edge and each face.
+fn borders(topology: &Topology) -> (Vec<f64>, Vec<f64>) {
+    let of_edge = |edge: &EdgeEntity| {
+        let ends = edge.vertices.into_iter().flatten();
+        ends.map(|v| topology.vertices[v as usize].tolerance).fold(0.0, f64::max)
+    };
+    let edges: Vec<f64> = topology.edges.iter().map(of_edge).collect();
+    let of_face = |face: &FaceEntity| {
+        let bounds = face.edges.iter().map(|&e| topology.edges[e as usize].tolerance.max(edges[e as usize]));
+        bounds.fold(0.0, f64::max)
+    };
+    let faces = topology.faces.iter().map(of_face).collect();
+    (edges, faces)
 }
 
 impl Fit<'_> {
@@ -106,7 +128,12 @@ impl Fit<'_> {
 
     /// How near is too near for chance. A tolerance that the user gives may span several entities.
     pub fn sure(&self, entity: Entity) -> f64 {
-        SLACK * self.usual(entity)
+        let border = match entity {
+            Entity::Edge(edge) => self.edge_borders[edge as usize],
+            Entity::Face(face) => self.face_borders[face as usize],
+            Entity::Vertex(_) | Entity::Interior => 0.0,
+        };
+        (SLACK * self.usual(entity)).max(2.0 * border)
     }
 
     /// A point of the mesh.

@@ -55,6 +55,24 @@ pub mod ffi {
         sizes: [f64; 2],
     }
 
+    /// A name and a colour (#RRGGBB); empty where there is none.
+    struct LabelRecord {
+        name: String,
+        colour: String,
+    }
+
+    /// The far field around a body: a box, or a sphere where the radius is positive; cut at a plane where the axis is not −1.
+    struct DomainRecord {
+        /// The box; with a sphere what is kept of it.
+        low: [f64; 3],
+        high: [f64; 3],
+        centre: [f64; 3],
+        radius: f64,
+        /// Normal of the plane of symmetry, and its place on that axis.
+        axis: i32,
+        at: f64,
+    }
+
     unsafe extern "C++" {
         include!("geo-adapt/cpp/occt.hpp");
 
@@ -70,6 +88,10 @@ pub mod ffi {
         fn bounds(self: &Model) -> Result<[f64; 6]>;
         fn face_area(self: &Model, face: u32) -> Result<f64>;
         fn edge_length(self: &Model, edge: u32) -> Result<f64>;
+        fn write_brep(self: &Model, path: &str) -> Result<()>;
+        /// Of an edge (dimension 1), face (2) or solid (3).
+        fn label(self: &Model, dimension: u32, index: u32) -> Result<LabelRecord>;
+        fn domain(self: &Model, domain: &DomainRecord) -> Result<SharedPtr<Model>>;
 
         type Evaluator;
         fn new_evaluator(model: &SharedPtr<Model>) -> Result<UniquePtr<Evaluator>>;

@@ -3,9 +3,10 @@ use super::bridge::ffi;
 use super::curve::Curve;
 use super::surface::Surface;
 use super::{OcctModel, Shape};
-use crate::geometry::{CurveKind, EdgeEntity, FaceEntity, SurfaceKind, Topology, VertexEntity};
+use crate::geometry::{CurveKind, EdgeEntity, FaceEntity, Label, Names, SurfaceKind, Topology, VertexEntity};
 use crate::mesh::vector::distance;
 use cxx::{Exception, UniquePtr};
+use std::collections::BTreeMap;
 
 /// Where the p-curves give only a numerical range, this share of it is added at each end.
 const RANGE_MARGIN: f64 = 1e-7;
@@ -36,7 +37,28 @@ pub fn build(occt: cxx::SharedPtr<ffi::Model>) -> Result<OcctModel, Exception> {
     }
     connect(&mut topology);
     let rounded = topology.faces.iter().map(|face| is_rounded(&topology, face)).collect();
-    Ok(OcctModel { topology, occt, surfaces, curves, rounded, size })
+    let names = names(&occt, &topology)?;
+    Ok(OcctModel { topology, names, occt, surfaces, curves, rounded, size })
+}
+
+/// The labels of edges, faces and solids by their numbers from 1.
+fn names(occt: &ffi::Model, topology: &Topology) -> Result<Names, Exception> {
+    let of = |dimension: u32, count: u32| {
+        let mut labels = BTreeMap::new();
+        for i in 0..count {
+            let ffi::LabelRecord { name, colour } = occt.label(dimension, i)?;
+            let [name, colour] = [name, colour].map(|text| Some(text).filter(|text| !text.is_empty()));
+            if name.is_some() || colour.is_some() {
+                labels.insert(i as i32 + 1, Label { name, colour });
+            }
+        }
+        Ok(labels)
+    };
+    Ok(Names {
+        edges: of(1, topology.edges.len() as u32)?,
+        triangles: of(2, topology.faces.len() as u32)?,
+        tetrahedra: of(3, topology.solids)?,
+    })
 }
 
 /// Agreement with OCCT, relative to the model's size, without which a closed form is not used: a scaled location

@@ -2,7 +2,7 @@
 use super::OcctModel;
 use super::bridge::ffi;
 use super::entities;
-use crate::geometry::Error;
+use crate::geometry::{Error, FarField};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -30,6 +30,26 @@ pub fn read(path: &Path) -> Result<OcctModel, Error> {
     let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
     let occt = ffi::load_model(name, format as u32).map_err(|error| fail(error.what().into()))?;
     entities::build(occt).map_err(|error| fail(format!("OpenCASCADE cannot use the model: {}", error.what())))
+}
+
+/// Writes a model: see [`OcctModel::write_brep`].
+pub fn write(occt: &ffi::Model, path: &Path) -> Result<(), Error> {
+    let fail = |message: String| Error::Model { path: path.into(), message };
+    let name = path.to_str().ok_or_else(|| fail("the file's name is not UTF-8; rename it".into()))?;
+    let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
+    occt.write_brep(name).map_err(|error| fail(error.what().into()))
+}
+
+/// The far field without a body: see [`OcctModel::domain`].
+pub fn domain(occt: &ffi::Model, far: &FarField) -> Result<OcctModel, Error> {
+    let fail = |message: String| Error::Model { path: "the far field".into(), message };
+    let (centre, radius) = far.sphere.unwrap_or_default();
+    let (axis, at) = far.symmetry.map_or((-1, 0.0), |(axis, at)| (axis as i32, at));
+    let [low, high] = far.bounds;
+    let record = ffi::DomainRecord { low, high, centre, radius, axis, at };
+    let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
+    let domain = occt.domain(&record).map_err(|error| fail(error.what().into()))?;
+    entities::build(domain).map_err(|error| fail(format!("OpenCASCADE cannot use it: {}", error.what())))
 }
 
 /// The format by the file's extension.

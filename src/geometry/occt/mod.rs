@@ -11,7 +11,7 @@ mod project;
 mod range;
 mod surface;
 
-use super::{Error, Geometry, Topology};
+use super::{Error, FarField, Geometry, Names, Topology};
 use bridge::ffi;
 use cells::Cell;
 use curve::Curve;
@@ -35,6 +35,7 @@ impl<T> Shape<T> {
 /// A B-rep model read by OpenCASCADE. Coordinates are the numbers that the file states, whatever their unit.
 pub struct OcctModel {
     topology: Topology,
+    names: Names,
     occt: cxx::SharedPtr<ffi::Model>,
     surfaces: Vec<Shape<Surface>>,
     curves: Vec<Shape<Curve>>,
@@ -53,6 +54,25 @@ impl OcctModel {
         load::read(path)
     }
 
+    /// The names and colours of its edges, faces and solids.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
+    /// Gives it other names.
+    pub fn rename(&mut self, names: Names) {
+        self.names = names;
+    }
+
+    /// The far field without this body. Faces of the body that have no name are called wall, those of the far field farfield, that in
+    /// the plane of symmetry symmetry, the solid fluid.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when OpenCASCADE cannot subtract the body.
+    pub fn domain(&self, far: &FarField) -> Result<Self, Error> {
+        load::domain(&self.occt, far)
+    }
+
     /// Area of a face, in the square of the model's unit; none where OCCT finds none.
     pub fn face_area(&self, face: u32) -> Option<f64> {
         (face < self.topology.faces.len() as u32).then(|| self.occt.face_area(face).ok()).flatten()
@@ -61,6 +81,14 @@ impl OcctModel {
     /// Length of an edge; none where OCCT finds none.
     pub fn edge_length(&self, edge: u32) -> Option<f64> {
         (edge < self.topology.edges.len() as u32).then(|| self.occt.edge_length(edge).ok()).flatten()
+    }
+
+    /// Writes the model as OpenCASCADE's BREP text, for another program: faces, edges and vertices in our order.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when the file cannot be written.
+    pub fn write_brep(&self, path: &std::path::Path) -> Result<(), Error> {
+        load::write(&self.occt, path)
     }
 }
 

@@ -8,6 +8,7 @@ mod binary;
 mod cursor;
 mod error;
 mod keyword;
+mod msh;
 mod points;
 mod read;
 mod sink;
@@ -17,6 +18,7 @@ mod write;
 
 pub use beside::write_beside;
 pub use error::Error;
+pub use msh::read_msh;
 pub use points::read_points;
 pub use solution::{FieldKind, Solution, SolutionField};
 

@@ -1,0 +1,39 @@
+// Names and colours of faces, edges and solids, as CAD programs write them.
+#pragma once
+
+#include <NCollection_DataMap.hxx>
+#include <TopTools_ShapeMapHasher.hxx>
+#include <TopoDS_Shape.hxx>
+
+#include <string>
+
+class STEPControl_Reader;
+
+namespace geo_adapt {
+
+/// What the file says of a shape; empty where it says nothing.
+struct Label
+{
+  std::string name;
+  std::string colour; // "#RRGGBB", sRGB
+};
+
+/// Labels of shapes without their location: the instances of a part have its names.
+using Labels = NCollection_DataMap<TopoDS_Shape, Label, TopTools_ShapeMapHasher>;
+
+/// A shape as the labels know it.
+inline TopoDS_Shape unplaced(const TopoDS_Shape& shape)
+{
+  return shape.Located(TopLoc_Location());
+}
+
+/// Gives `to` the label of `from`, if that has one and `to` has none.
+void hand_on(Labels& labels, const TopoDS_Shape& from, const TopoDS_Shape& to);
+
+/// The labels of a STEP file whose shapes were transferred.
+Labels step_labels(const STEPControl_Reader& reader);
+
+/// A file of several solids that touch: their common faces, edges and vertices are made one, and there once. Labels are handed on.
+TopoDS_Shape connected(const TopoDS_Shape& shape, Labels& labels);
+
+} // namespace geo_adapt

@@ -1,0 +1,185 @@
+//! One mesher after the other, one algorithm after the other, until a mesh is valid and lies on the whole model.
+use super::driver::{Choice, Rung, places};
+use super::process::{self, Failure, Workplace};
+use super::{gmsh, netgen};
+use crate::geometry::classify::{Classification, Options, classify};
+use crate::geometry::{Geometry, Model};
+use crate::mesh::validity;
+use crate::mesh::{TetMesh, io};
+use crate::tasks::Team;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// What the mesh should be like.
+pub struct Wish {
+    /// Greatest size, model units.
+    pub greatest: f64,
+    /// Segments for a radian of curvature.
+    pub segments: f64,
+    /// Diagonal of the model's box.
+    pub diagonal: f64,
+    /// How long a run may take.
+    pub limit: Duration,
+}
+
+/// A mesh on its model.
+pub struct Meshed {
+    /// The mesh; references are the numbers of faces, edges and solids from 1.
+    pub mesh: TetMesh,
+    /// Where its boundary lies.
+    pub place: Classification,
+    /// Who made it.
+    pub by: Rung,
+    /// What the user should know.
+    pub notices: Vec<String>,
+}
+
+/// Why a rung gave nothing.
+enum Miss {
+    /// No such program.
+    NotThere(String),
+    /// It took too long.
+    TooLong(String),
+    /// It failed, or its mesh was not good.
+    Failed(String),
+}
+
+/// Tries the rungs in turn, the first good mesh is taken.
+///
+/// # Errors
+/// When none is good, with what the last ones said; when there is no mesher, with what to install.
+pub fn climb(team: Team<'_>, model: &Model, wish: &Wish, choice: Choice, log: &Path) -> Result<Meshed, String> {
+    let place = Workplace::new().map_err(|error| format!("no folder for the mesher's files: {error}"))?;
+    process::begin(log).map_err(|error| error.to_string())?;
+    let brep = place.file("model.brep");
+    model.write_brep(&brep).map_err(|error| error.to_string())?;
+    let (mut missing, mut failed): (Vec<String>, Vec<(Rung, String)>) = (Vec::new(), Vec::new());
+    let (mut gone, mut slow) = (Vec::new(), Vec::new());
+    for rung in Rung::of(choice) {
+        // What was too long once is not tried finer.
+        if gone.contains(&rung.program()) || rung.finer() > 1.0 && slow.contains(&rung.program()) {
+            continue;
+        }
+        match attempt(team, model, wish, rung, &place, &brep, log) {
+            Ok((mesh, classification)) => {
+                let notices = failed.iter().map(|(rung, why)| format!("{rung} gave no good mesh: {why}")).collect();
+                return Ok(Meshed { mesh, place: classification, by: rung, notices });
+            }
+            Err(Miss::NotThere(why)) => {
+                gone.push(rung.program());
+                missing.push(why);
+            }
+            Err(Miss::TooLong(why)) => {
+                slow.push(rung.program());
+                failed.push((rung, why));
+            }
+            Err(Miss::Failed(why)) => failed.push((rung, why)),
+        }
+    }
+    Err(describe(&missing, &failed, log))
+}
+
+/// The error of a ladder without a good rung.
+fn describe(missing: &[String], failed: &[(Rung, String)], log: &Path) -> String {
+    let missing = missing.join("; ");
+    let Some((rung, why)) = failed.last() else {
+        return format!("there is no mesher to begin with: {missing}");
+    };
+    let count = failed.len();
+    let also = if missing.is_empty() { String::new() } else { format!("; not tried: {missing}") };
+    format!(
+        "no mesher made a valid mesh of it in {count} attempts (all they said is in {}); the last, {rung}: {why}{also}. \
+         Repair the model (tiny edges, faces that intersect) or give another --size",
+        log.display()
+    )
+}
+
+/// One rung: the mesh, valid and on the model.
+fn attempt(
+    team: Team<'_>,
+    model: &Model,
+    wish: &Wish,
+    rung: Rung,
+    place: &Workplace,
+    brep: &Path,
+    log: &Path,
+) -> Result<(TetMesh, Classification), Miss> {
+    let out = place.file("out.msh");
+    let _ = std::fs::remove_file(&out);
+    start(wish, rung, place, [brep, &out], log)?;
+    let failed = |why: String| {
+        let told = process::last_lines(log);
+        Miss::Failed(if told.contains("rror") { format!("{why} ({told})") } else { why })
+    };
+    if !out.is_file() {
+        return Err(failed("it wrote no mesh".into()));
+    }
+    let mesh = io::read_msh(&out).map_err(|error| failed(error.to_string()))?;
+    judge(team, mesh, model).map_err(failed)
+}
+
+/// Runs the program, wherever it is found first.
+fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Path) -> Result<(), Miss> {
+    let (variable, name, remedy) = match rung {
+        Rung::Gmsh { .. } => (gmsh::VARIABLE, gmsh::NAME, gmsh::REMEDY),
+        Rung::Netgen { .. } => (netgen::VARIABLE, "python3", netgen::REMEDY),
+    };
+    for program in places(variable, name) {
+        let command = command(&program, wish, rung, place, files);
+        let mut command = command.map_err(|error| Miss::Failed(format!("no file for it: {error}")))?;
+        match process::run(&mut command, log, wish.limit) {
+            Ok(()) => return Ok(()),
+            Err(Failure::NotStarted(_)) => {}
+            Err(Failure::Ended(status)) if status.code() == Some(NO_MODULE) && matches!(rung, Rung::Netgen { .. }) => {}
+            Err(failure) => {
+                let why = format!("it {failure}: {}", process::last_lines(log));
+                return Err(if matches!(failure, Failure::TooLong(_)) {
+                    Miss::TooLong(why)
+                } else {
+                    Miss::Failed(why)
+                });
+            }
+        }
+    }
+    Err(Miss::NotThere(format!("{} was not found ({remedy}, or let {variable} name it)", rung.program())))
+}
+
+/// Exit code of netgen.py where its Python has no netgen.
+const NO_MODULE: i32 = 77;
+
+fn command(
+    program: &PathBuf,
+    wish: &Wish,
+    rung: Rung,
+    place: &Workplace,
+    files: [&Path; 2],
+) -> std::io::Result<std::process::Command> {
+    match rung {
+        Rung::Gmsh { surface, volume, finer } => gmsh::command(program, (surface, volume, finer), wish, place, files),
+        Rung::Netgen { finer } => netgen::command(program, finer, wish, place, files),
+    }
+}
+
+/// A mesh is good when it is one, fills every solid, and covers every face, edge and vertex of the model.
+fn judge(team: Team<'_>, mut mesh: TetMesh, model: &Model) -> Result<(TetMesh, Classification), String> {
+    let topology = model.topology();
+    // Seams and poles are no features: what is listed on them would be taken for ridges.
+    let is_ridge = |id: i32| {
+        let edge = id as usize;
+        edge >= 1 && edge <= topology.edges.len() && topology.is_ridge(edge as u32 - 1)
+    };
+    let listed = std::mem::take(&mut mesh.edges);
+    listed.iter().filter(|(_, id)| is_ridge(*id)).for_each(|(nodes, id)| mesh.edges.push(nodes, id));
+    mesh.association.edges.retain(|on| is_ridge(on.id));
+    let validity = validity::check(&mesh);
+    if let Some(flaw) = validity.flaws.first() {
+        return Err(format!("its mesh is not valid: {flaw}"));
+    }
+    let empty = (1..=topology.solids as i32).find(|solid| !mesh.tets.refs.contains(solid));
+    if let Some(solid) = empty {
+        return Err(format!("its mesh has no tetrahedra in solid {solid} of {}", topology.solids));
+    }
+    let (place, _) = classify(team, &mesh, model, &Options::default()).map_err(|error| error.to_string())?;
+    mesh.triangles.refs = place.faces.iter().map(|&face| face as i32 + 1).collect();
+    Ok((mesh, place))
+}

@@ -1,0 +1,165 @@
+//! `geo-adapt bootstrap`: the first mesh of a model.
+//!
+//! A mesher that is started as a program makes some valid mesh of the model (`ladder`), and our own kernel adapts it to the metric of the
+//! geometry (`refine`). The model goes to the mesher as we have it in memory, so that its numbers of faces, edges and solids are ours.
+pub mod domain;
+mod driver;
+mod gmsh;
+mod ladder;
+mod netgen;
+mod process;
+mod refine;
+
+use super::adapt::report::Asked;
+use super::metric::common::check_output;
+use super::metric::geometry::GeometryArguments;
+use super::{Outcome, load, names};
+use crate::geometry::classify::associate;
+use crate::geometry::{Geometry, Model};
+use crate::mesh::io;
+use crate::tasks::{Plan, Pool, Team, stage};
+use driver::Choice;
+use ladder::{Meshed, Wish};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// Help on --far-field.
+const FAR_FIELD: &str = "Mesh the space around the solids instead, for external flow: box:XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX, or box:FACTOR \
+(so many extents of the body beyond it on all sides), sphere:RADIUS (about the body's middle) or sphere:X,Y,Z,RADIUS, without them. Its \
+faces are called farfield, those of the body as in the model, else wall. This domain is written beside the mesh as .brep, with its names \
+as .names.json, for `adapt --cad`. On the body sizes are at most a tenth of its diagonal";
+
+/// Arguments of `geo-adapt bootstrap`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The model, of one or several solids: .step, .stp, .iges, .igs, .brep or .egads
+    model: PathBuf,
+    /// Where the mesh goes: .mesh or .meshb; its metric is written beside it as .solb, what the mesher said as .log
+    #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
+    output: PathBuf,
+    /// Greatest size, in model units [default: a tenth of the diagonal of the model's box]
+    #[arg(long, value_name = "H", value_parser = super::positive, allow_negative_numbers = true)]
+    size: Option<f64>,
+    #[command(flatten)]
+    sizes: GeometryArguments,
+    /// Greatest complexity, about half the number of vertices: where the geometry asks for more its sizes are enlarged
+    #[arg(long, value_name = "C", value_parser = super::positive, default_value = "100000", allow_negative_numbers = true)]
+    complexity: f64,
+    /// Mesh the space around the solids instead, for external flow: a box or a sphere without them
+    #[arg(long, value_name = "box:…|sphere:…", long_help = FAR_FIELD)]
+    far_field: Option<domain::Spec>,
+    /// The body is one half: cut the far field at the plane face where the body ends in this direction, and call that symmetry
+    #[arg(long, value_enum, value_name = "AXIS", requires = "far_field")]
+    symmetry: Option<domain::Axis>,
+    /// Leave the mesh as the mesher made it
+    #[arg(long)]
+    no_adapt: bool,
+    /// Who makes the mesh that is adapted; by default gmsh, and netgen where gmsh fails
+    #[arg(long, value_enum, default_value_t = Choice::default())]
+    mesher: Choice,
+    /// Seconds that one run of the mesher may take
+    #[arg(long, value_name = "S", value_parser = super::positive, default_value = "300", allow_negative_numbers = true)]
+    time_limit: f64,
+    /// Threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    threads: Option<u16>,
+    /// Write what was done as JSON
+    #[arg(long, value_name = "FILE.json", conflicts_with = "no_adapt")]
+    report: Option<PathBuf>,
+    /// No progress and no table; errors only
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let start = Instant::now();
+    arguments.check()?;
+    let threads = arguments.threads.map_or_else(super::cores, usize::from);
+    let pool = Pool::new(threads)?;
+    let team = Team::new(&pool, Plan::default());
+    let domain = arguments.far_field.as_ref();
+    let domain = domain.map(|spec| domain::build(&arguments.model, spec, arguments.symmetry, &arguments.output));
+    let domain = domain.transpose()?;
+    let path = domain.as_ref().unwrap_or(&arguments.model);
+    let model = load::model(path)?;
+    check_solids(path, &model)?;
+    stage("model read");
+    let options = arguments.sizes.options(&model, arguments.limits(), None);
+    let wish = Wish {
+        greatest: options.greatest,
+        segments: options.segments,
+        diagonal: model.topology().diagonal(),
+        limit: Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX),
+    };
+    let log = arguments.log();
+    let meshed = ladder::climb(team, &model, &wish, arguments.mesher, &log)
+        .map_err(|error| format!("{}: {error}", arguments.model.display()))?;
+    stage("meshed");
+    for notice in meshed.notices.iter().filter(|_| !arguments.quiet) {
+        eprintln!("geo-adapt: note: {notice}");
+    }
+    if arguments.no_adapt {
+        return arguments.write_as_it_is(&meshed, &model);
+    }
+    let asked =
+        Asked { input: arguments.model.clone(), output: arguments.output.clone(), threads, complexity_wanted: None };
+    refine::run(arguments, &pool, (meshed, model), &asked, start)
+}
+
+/// Refuses a model that is no volume.
+fn check_solids(path: &Path, model: &Model) -> Result<(), String> {
+    if model.topology().solids > 0 {
+        return Ok(());
+    }
+    let faces = model.topology().faces.len();
+    Err(format!(
+        "{}: the model has no solid, only surfaces ({faces} faces): there is nothing to fill; join them to a closed solid in the CAD \
+         program and export that",
+        path.display()
+    ))
+}
+
+impl Arguments {
+    /// Refuses before the work what would fail after it.
+    fn check(&self) -> Result<(), String> {
+        let inputs = [self.model.as_path()];
+        check_output(&self.output, &["mesh", "meshb"], &inputs)?;
+        check_output(&self.output.with_extension("solb"), &["solb"], &inputs)?;
+        check_output(&self.log(), &["log"], &inputs)?;
+        if self.far_field.is_some() {
+            check_output(&domain::path(&self.output), &["brep"], &inputs)?;
+        }
+        self.report.as_ref().map_or(Ok(()), |report| check_output(report, &["json"], &inputs))
+    }
+
+    /// What the mesher says goes beside the mesh.
+    fn log(&self) -> PathBuf {
+        self.output.with_extension("log")
+    }
+
+    fn limits(&self) -> crate::metric::Limits {
+        crate::metric::Limits { hmax: self.size, ..Default::default() }
+    }
+
+    /// Writes the mesher's own mesh, on the model.
+    fn write_as_it_is(&self, meshed: &Meshed, model: &Model) -> Outcome {
+        let mut mesh = meshed.mesh.clone();
+        associate(&mut mesh, &meshed.place);
+        io::write_mesh(&self.output, &mesh)?;
+        names::write(&self.output, model.names())?;
+        if !self.quiet {
+            let solids = model.topology().solids;
+            super::print(&format!(
+                "{}: {} vertices, {} tetrahedra in {solids} solid{}; written: {}\n",
+                meshed.by,
+                mesh.vertices.len(),
+                mesh.tets.len(),
+                if solids == 1 { "" } else { "s" },
+                self.output.display()
+            ));
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,158 @@
+//! Runs of other programs: with a time limit, their output in a log.
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+/// How long between two looks at whether a program has ended.
+const LOOK: Duration = Duration::from_millis(10);
+
+/// Lines of the log that an error tells.
+const LAST_LINES: usize = 3;
+
+/// Why a program did not do its work.
+#[derive(Debug)]
+pub enum Failure {
+    /// It could not be started.
+    NotStarted(io::Error),
+    /// It took longer than the limit, s, and was killed.
+    TooLong(f64),
+    /// It ended otherwise than with code 0.
+    Ended(ExitStatus),
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::NotStarted(error) => write!(f, "could not be started ({error})"),
+            Self::TooLong(seconds) => write!(f, "had not ended after {seconds} s and was killed (--time-limit)"),
+            Self::Ended(status) => match signal(*status) {
+                Some(signal) => write!(f, "was killed or crashed (signal {signal})"),
+                None => write!(f, "ended with {status}"),
+            },
+        }
+    }
+}
+
+#[cfg(unix)]
+fn signal(status: ExitStatus) -> Option<i32> {
+    std::os::unix::process::ExitStatusExt::signal(&status)
+}
+
+#[cfg(not(unix))]
+fn signal(_: ExitStatus) -> Option<i32> {
+    None
+}
+
+/// Runs a program until it ends or the limit is over; what it says is appended to the log, under a line with its command.
+///
+/// # Errors
+/// [`Failure`]; also when the log cannot be written.
+pub fn run(command: &mut Command, log: &Path, limit: Duration) -> Result<(), Failure> {
+    let open = || OpenOptions::new().create(true).append(true).open(log);
+    let (mut out, err) = open().and_then(|out| Ok((out, open()?))).map_err(Failure::NotStarted)?;
+    let _ = writeln!(out, "== {command:?}");
+    let began = Instant::now();
+    let child = command.stdin(Stdio::null()).stdout(out).stderr(err).spawn();
+    let mut child = child.map_err(Failure::NotStarted)?;
+    loop {
+        match child.try_wait().map_err(Failure::NotStarted)? {
+            Some(status) if status.success() => return Ok(()),
+            Some(status) => return Err(Failure::Ended(status)),
+            None if began.elapsed() > limit => {
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(Failure::TooLong(limit.as_secs_f64()));
+            }
+            None => std::thread::sleep(LOOK),
+        }
+    }
+}
+
+/// Makes the log new.
+pub fn begin(log: &Path) -> io::Result<()> {
+    File::create(log).map(drop).map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", log.display())))
+}
+
+/// The last lines of the log that say something, errors before all else.
+pub fn last_lines(log: &Path) -> String {
+    let bytes = fs::read(log).unwrap_or_default();
+    let text = String::from_utf8_lossy(&bytes);
+    let from = text.rfind("== \"").unwrap_or(0);
+    let lines: Vec<&str> = text[from..].lines().skip(1).map(str::trim).filter(|line| !line.is_empty()).collect();
+    let errors: Vec<&str> = lines.iter().copied().filter(|line| line.contains("rror")).collect();
+    let told = if errors.is_empty() { &lines } else { &errors };
+    told[told.len().saturating_sub(LAST_LINES)..].join(" | ")
+}
+
+/// A folder of this run, which goes with it.
+pub struct Workplace {
+    folder: PathBuf,
+}
+
+impl Workplace {
+    /// In the system's folder for such.
+    pub fn new() -> io::Result<Self> {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        loop {
+            let number = NEXT.fetch_add(1, Ordering::Relaxed);
+            let folder = std::env::temp_dir().join(format!("geo-adapt-{}-{number}", std::process::id()));
+            match fs::create_dir(&folder) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {} // left by a run that was killed
+                made => return made.map(|()| Self { folder }),
+            }
+        }
+    }
+
+    /// A file in it.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+}
+
+impl Drop for Workplace {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str, limit: f64) -> (Result<(), Failure>, String) {
+        let place = Workplace::new().unwrap();
+        let log = place.file("log");
+        begin(&log).unwrap();
+        let done = run(Command::new("sh").args(["-c", script]), &log, Duration::from_secs_f64(limit));
+        (done, last_lines(&log))
+    }
+
+    #[test]
+    fn the_log_has_what_was_said_and_errors_come_first() {
+        let (done, told) = shell("echo one; echo two >&2; echo three; echo four", 60.0);
+        assert!(done.is_ok());
+        assert_eq!(told, "two | three | four");
+        let (done, told) = shell("echo Error: no room; echo goodbye; exit 3", 60.0);
+        assert_eq!(told, "Error: no room");
+        assert!(done.unwrap_err().to_string().contains("exit status: 3"));
+    }
+
+    #[test]
+    fn what_hangs_is_killed_and_what_crashes_is_told() {
+        let began = Instant::now();
+        let (done, _) = shell("exec sleep 60", 0.1);
+        assert!(matches!(done, Err(Failure::TooLong(_))) && began.elapsed() < Duration::from_secs(30));
+        let (done, _) = shell("kill -SEGV $$", 60.0);
+        assert!(done.unwrap_err().to_string().contains("signal 11"));
+    }
+
+    #[test]
+    fn a_program_that_is_not_there_is_told_so() {
+        let place = Workplace::new().unwrap();
+        let done = run(&mut Command::new("/nowhere/mesher"), &place.file("log"), Duration::from_secs(1));
+        assert!(matches!(done, Err(Failure::NotStarted(_))));
+    }
+}

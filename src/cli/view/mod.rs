@@ -1,0 +1,266 @@
+//! `geo-adapt view`.
+mod look;
+
+use super::load;
+use super::metric::common::{Failure, RunArguments, check_output};
+use super::table::figure;
+use crate::geometry::{Evaluate, Geometry, Model, classify, fidelity};
+use crate::mesh::TetMesh;
+use crate::mesh::io::{Read, read_mesh, read_solution};
+use crate::mesh::vector::Vec3;
+use crate::metric::{Analytic, Field, Statistics, Sym3};
+use crate::tasks::{GRAIN, Plan, Team, stage};
+use crate::view::cut::Part;
+use crate::view::picture::{Colour, Options, write_picture};
+use crate::view::{Given, Names, ScalarField, Scene, write_page};
+use look::LookArguments;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Arguments of `geo-adapt view`.
+#[derive(clap::Args)]
+#[command(group(clap::ArgGroup::new("written").required(true).multiple(true).args(["output", "png"])))]
+pub struct Arguments {
+    /// The mesh: .mesh or .meshb; names of its references may lie beside it as MESH.names.json
+    mesh: PathBuf,
+    /// A page for the browser: .html. All is in this one file
+    #[arg(short, long, visible_short_alias = 'x', value_name = "PAGE.html")]
+    output: Option<PathBuf>,
+    /// A picture: .png
+    #[arg(long, value_name = "PICTURE.png")]
+    png: Option<PathBuf>,
+    /// The CAD model: its edges, and distances from it
+    #[arg(long, value_name = "MODEL")]
+    cad: Option<PathBuf>,
+    /// The metric at the mesh's vertices that shapes are measured in: .sol or .solb
+    #[arg(long, value_name = "FILE", conflicts_with = "analytic")]
+    metric: Option<PathBuf>,
+    /// An analytic metric field
+    #[arg(long, value_name = "NAME")]
+    analytic: Option<Analytic>,
+    /// Fields at the mesh's vertices to colour by: .sol or .solb; may be given several times
+    #[arg(long, value_name = "FILE")]
+    field: Vec<PathBuf>,
+    #[command(flatten)]
+    look: LookArguments,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let inputs = arguments.inputs();
+    for (output, ending) in [(&arguments.output, "html"), (&arguments.png, "png")] {
+        output.as_deref().map(|output| check_output(output, &[ending], &inputs)).transpose()?;
+    }
+    let pool = arguments.run.pool()?;
+    let team = Team::new(&pool, Plan::default());
+    let read = read_mesh(&arguments.mesh)?;
+    arguments.run.note(&read.notices);
+    let mesh = read.content;
+    if mesh.tets.is_empty() && mesh.triangles.is_empty() {
+        let name = arguments.mesh.display();
+        return Err(format!("{name}: neither tetrahedra nor triangles: there is nothing to show").into());
+    }
+    stage("mesh read");
+    let given = arguments.given(team, &mesh)?;
+    stage("measured");
+    let scene = Scene::new(team, &mesh, given);
+    stage("scene");
+    let options = arguments.options(&scene)?;
+    if let Some(page) = &arguments.output {
+        write_page(team, &scene, &options, page)?;
+        stage("page written");
+    }
+    if let Some(picture) = &arguments.png {
+        write_picture(team, &scene, &options, picture)?;
+        stage("picture written");
+    }
+    for path in [&arguments.output, &arguments.png].into_iter().flatten() {
+        let megabytes = std::fs::metadata(path).map_or(0.0, |file| file.len() as f64 / 1e6);
+        arguments.run.print(&format!("{}: {megabytes:.2} MB\n", path.display()));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+type Outcome = Result<ExitCode, Failure>;
+
+impl Arguments {
+    fn inputs(&self) -> Vec<&Path> {
+        let some = [Some(&self.mesh), self.cad.as_ref(), self.metric.as_ref()];
+        some.into_iter().flatten().chain(&self.field).map(PathBuf::as_path).collect()
+    }
+
+    /// Reads and measures what comes with the mesh.
+    fn given(&self, team: Team<'_>, mesh: &TetMesh) -> Result<Given, Failure> {
+        let logs = self.logs(team, mesh)?;
+        let metrics = logs.as_ref().map(|logs| team.map(GRAIN, logs.len(), |v| logs[v].exp()));
+        let statistics = match &metrics {
+            Some(metrics) => Statistics::in_metric(team, mesh, metrics),
+            None => Statistics::in_space(team, mesh),
+        };
+        let mut figures = figures(&statistics);
+        let mut fields = Vec::new();
+        for path in &self.field {
+            fields.extend(self.read_field(team, path, mesh.vertices.len())?);
+        }
+        let mut model_edges = Vec::new();
+        if let Some(path) = &self.cad {
+            let model = load::model(path)?;
+            model_edges = edges_of(&model);
+            fields.push(self.distances(team, mesh, &model, &mut figures));
+        }
+        let file = self.mesh.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let title = self.look.title.clone().unwrap_or(file);
+        Ok(Given { title, logs, fields, names: Names::beside(&self.mesh)?, model_edges, figures })
+    }
+
+    /// ln M at the vertices, when there is a metric.
+    fn logs(&self, team: Team<'_>, mesh: &TetMesh) -> Result<Option<Vec<Sym3>>, Failure> {
+        if let Some(path) = &self.metric {
+            let Read { content, notices } = Field::read_logs(team, path, mesh.vertices.len())?;
+            self.run.note(&notices);
+            return Ok(Some(content));
+        }
+        Ok(self.analytic.map(|field| team.map(GRAIN, mesh.vertices.len(), |v| field.log_at(mesh.vertices[v]))))
+    }
+
+    fn read_field(&self, team: Team<'_>, path: &Path, vertices: usize) -> Result<Vec<ScalarField>, Failure> {
+        let Read { content, notices } = read_solution(path)?;
+        self.run.note(&notices);
+        let (name, found) = (path.display(), content.vertices);
+        if found != vertices {
+            let message = format!("values at {found} vertices, but the mesh has {vertices}: give a field of this mesh");
+            return Err(format!("{name}: {message}").into());
+        }
+        if content.fields.is_empty() {
+            return Err(format!("{name}: no field at the vertices; a field file holds one or more").into());
+        }
+        let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        Ok(ScalarField::of_solution(team, &stem, &content))
+    }
+
+    /// Distances of the vertices from what they lie on; where the mesh does not fit the model, from its nearest face.
+    fn distances(&self, team: Team<'_>, mesh: &TetMesh, model: &Model, figures: &mut Vec<[String; 2]>) -> ScalarField {
+        let distances = match classify::classify(team, mesh, model, &classify::Options::default()) {
+            Ok((classification, report)) => {
+                self.run.note(&report.notices);
+                figures.push(row("on the model", "yes"));
+                fidelity::distances(team, mesh, model, &classification)
+            }
+            Err(error) => {
+                self.run.note(&[format!("{}: {error}", self.mesh.display())]);
+                figures.push(row("on the model", &format!("no: {error}")));
+                fidelity::distances_from_faces(team, mesh, model)
+            }
+        };
+        let greatest = distances.iter().copied().filter(|d| d.is_finite()).fold(0.0, f64::max);
+        figures.push(row("greatest distance from the model", &figure(greatest)));
+        ScalarField::new(team, "distance".into(), team.map(GRAIN, distances.len(), |v| distances[v] as f32))
+    }
+
+    /// How it is to look.
+    fn options(&self, scene: &Scene<'_>) -> Result<Options, Failure> {
+        let look = &self.look;
+        if let Some(unknown) = look.hide.iter().find(|&&one| scene.surfaces.iter().all(|known| known.reference != one))
+        {
+            let known: Vec<String> = scene.surfaces.iter().take(20).map(|one| one.reference.to_string()).collect();
+            let (name, known) = (self.mesh.display(), known.join(", "));
+            return Err(format!("{name}: --hide: no triangle has the reference {unknown}; there are {known}").into());
+        }
+        if look.below.is_some() && scene.mesh.tets.is_empty() {
+            return Err(format!("{}: --below: there are no tetrahedra", self.mesh.display()).into());
+        }
+        let hidden = look.hide.iter().copied().collect();
+        let part = Part { plane: look.cut, hidden, below: look.below.map(|below| below as f32) };
+        Ok(Options {
+            size: look.size,
+            view: look.view.map(|view| view.0),
+            at: look.at.map(|at| at.0),
+            zoom: look.zoom,
+            colour: self.colour(scene, &part)?,
+            part,
+            range: look.range.map(|range| range.0),
+            wire: !look.no_wire,
+        })
+    }
+
+    fn colour(&self, scene: &Scene<'_>, part: &Part) -> Result<Colour, Failure> {
+        let fields = &scene.given.fields;
+        let Some(by) = &self.look.color else {
+            let measured = self.metric.is_some() || self.analytic.is_some();
+            return Ok(if !self.field.is_empty() {
+                Colour::Field(0)
+            } else if part.plane.is_some() || part.below.is_some() || measured {
+                Colour::Quality
+            } else {
+                Colour::Reference
+            });
+        };
+        match by.as_str() {
+            "reference" => return Ok(Colour::Reference),
+            "quality" => return Ok(Colour::Quality),
+            "field" if !self.field.is_empty() => return Ok(Colour::Field(0)),
+            _ => {}
+        }
+        if let Some(number) = fields.iter().position(|field| field.name == *by) {
+            return Ok(Colour::Field(number));
+        }
+        let names = ["reference", "quality"].into_iter().chain(fields.iter().map(|field| field.name.as_str()));
+        let names = names.collect::<Vec<_>>().join(", ");
+        let remedy = match by.as_str() {
+            "field" => "; give a --field",
+            "distance" => "; give a --cad",
+            "size" | "aspect" => "; give a --metric",
+            _ => "",
+        };
+        Err(format!("--color: nothing is called '{by}'{remedy}; there are {names}").into())
+    }
+}
+
+/// Chords of a curve that is not straight.
+const CHORDS: u32 = 96;
+
+/// The edges of a model as polygons.
+fn edges_of(model: &Model) -> Vec<Vec<Vec3>> {
+    let mut evaluator = model.evaluator();
+    let topology = model.topology();
+    let edges = (0..topology.edges.len() as u32).filter(|&edge| topology.is_ridge(edge));
+    edges
+        .map(|edge| {
+            let [first, last] = topology.edges[edge as usize].range;
+            let along = |i: u32| first + (last - first) * f64::from(i) / f64::from(CHORDS);
+            (0..=CHORDS).map(|i| evaluator.edge_frame(edge, along(i)).point).collect()
+        })
+        .collect()
+}
+
+fn row(name: &str, value: &str) -> [String; 2] {
+    [name.into(), value.into()]
+}
+
+/// The figures of a mesh for its page.
+fn figures(statistics: &Statistics) -> Vec<[String; 2]> {
+    let (lengths, ratios) = (&statistics.edge_lengths, &statistics.mean_ratios);
+    let mut rows = vec![
+        row("vertices", &statistics.vertices.to_string()),
+        row("tetrahedra", &statistics.tets.to_string()),
+        row("triangles", &statistics.triangles.to_string()),
+        row("tagged edges", &statistics.tagged_edges.to_string()),
+    ];
+    if statistics.tets > 0 {
+        rows.push(row("volume", &figure(statistics.volume)));
+        rows.push(row("mean ratio, least", &figure(ratios.min)));
+        rows.push(row("mean ratio, mean", &figure(ratios.mean)));
+        let unit = if statistics.metric.is_some() { "in the metric" } else { "model units" };
+        for (what, value) in [("least", lengths.min), ("mean", lengths.mean), ("greatest", lengths.max)] {
+            rows.push(row(&format!("edge length, {unit}, {what}"), &figure(value)));
+        }
+    }
+    if let Some(metric) = &statistics.metric {
+        rows.push(row("unit edges (1/√2 to √2)", &format!("{:.2} %", 100.0 * metric.unit_edges)));
+        rows.push(row("complexity", &figure(metric.complexity)));
+        rows.push(row("vertices / complexity", &figure(metric.vertices_per_complexity)));
+    }
+    rows
+}

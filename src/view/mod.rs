@@ -1,0 +1,24 @@
+//! A mesh as one sees it: a page that any browser opens, and pictures without a browser.
+//!
+//! `scene` is what there is to show (surface, regions, ridges, qualities, fields, names), `cut` which part of it; `page` packs it
+//! all into one HTML file, whose JavaScript does the same cut again, and `picture` draws it here, with the parts `camera`, `raster`, `image`, `sheet`
+//! (what stands around the scene) and `font`.
+mod camera;
+pub mod colour;
+pub mod cut;
+mod font;
+mod image;
+mod names;
+mod pack;
+mod page;
+pub mod picture;
+mod raster;
+mod scene;
+mod sheet;
+mod surface;
+mod values;
+
+pub use names::Names;
+pub use page::write_page;
+pub use scene::{Given, Quality, Scene};
+pub use values::ScalarField;

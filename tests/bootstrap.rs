@@ -1,0 +1,391 @@
+//! `geo-adapt bootstrap`: from a model alone to a valid mesh that lies on it, with its names.
+//!
+//! gmsh must be there (scripts/setup.sh installs it). Without it the tests that need it say so and pass; under tests/run
+//! (GEO_ADAPT_SET_UP) they fail.
+#![cfg(all(feature = "occt", unix))]
+mod common;
+
+use common::adapting::{complaint, stderr, text};
+use common::program;
+use geo_adapt::mesh::vector::{area2, norm, volume6};
+use geo_adapt::mesh::{TetMesh, io, validity};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Whether there is a mesher.
+fn is_set_up() -> bool {
+    let there = Command::new("gmsh").arg("--version").output().is_ok_and(|run| run.status.success());
+    assert!(there || std::env::var_os("GEO_ADAPT_SET_UP").is_none(), "gmsh is not there");
+    if !there {
+        eprintln!("not run: gmsh is not there; tests/run installs it");
+    }
+    there
+}
+
+fn model(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry").join(name)
+}
+
+/// A folder with the results of one model.
+struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn run(&self, model: &Path, arguments: &[&str]) -> Output {
+        self.command(model, arguments).output().unwrap()
+    }
+
+    fn command(&self, model: &Path, arguments: &[&str]) -> Command {
+        let mut command = program();
+        command.arg("bootstrap").arg(model).arg("-o").arg(self.path("out.meshb")).args(arguments);
+        command.args(["--threads", "1"]);
+        command
+    }
+
+    /// A run that must succeed: the mesh, valid.
+    fn mesh(&self, model: &Path, arguments: &[&str]) -> TetMesh {
+        let run = self.run(model, arguments);
+        assert_eq!(run.status.code(), Some(0), "{}: {}", model.display(), stderr(&run));
+        self.written("out.meshb")
+    }
+
+    fn written(&self, name: &str) -> TetMesh {
+        let mesh = io::read_mesh(&self.path(name)).unwrap().content;
+        assert!(validity::check(&mesh).is_valid(), "{:?}", validity::check(&mesh));
+        mesh
+    }
+
+    fn json(&self, name: &str) -> Value {
+        serde_json::from_slice(&std::fs::read(self.path(name)).unwrap()).unwrap()
+    }
+
+    /// A program that does what the shell script says.
+    fn script(&self, name: &str, script: &str) -> String {
+        let path = self.path(name);
+        std::fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+        text(&path)
+    }
+}
+
+/// Volumes by reference of the region.
+fn volumes(mesh: &TetMesh) -> BTreeMap<i32, f64> {
+    let mut volumes = BTreeMap::new();
+    for (nodes, region) in mesh.tets.iter() {
+        let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
+        *volumes.entry(region).or_insert(0.0) += volume6(a, b, c, d) / 6.0;
+    }
+    volumes
+}
+
+fn area(mesh: &TetMesh, is_meant: impl Fn(i32) -> bool) -> f64 {
+    let meant = mesh.triangles.iter().filter(|(_, reference)| is_meant(*reference));
+    meant
+        .map(|(nodes, _)| {
+            let [a, b, c] = nodes.map(|v| mesh.vertices[v as usize]);
+            norm(area2(a, b, c)) / 2.0
+        })
+        .sum()
+}
+
+fn near(value: f64, wanted: f64, relative: f64) {
+    assert!((value - wanted).abs() <= relative * wanted.abs(), "{value} for {wanted}");
+}
+
+/// References of the triangles that are called so.
+fn called(names: &Value, kind: &str, name: &str) -> Vec<i32> {
+    let labels = names[kind].as_object().unwrap();
+    labels.iter().filter(|(_, label)| label["name"] == name).map(|(number, _)| number.parse().unwrap()).collect()
+}
+
+/// References of the triangles with a tetrahedron on both sides.
+fn interfaces(mesh: &TetMesh) -> BTreeSet<i32> {
+    let mut sides: BTreeMap<[u32; 3], usize> = BTreeMap::new();
+    let sorted = |mut nodes: [u32; 3]| {
+        nodes.sort_unstable();
+        nodes
+    };
+    for &[a, b, c, d] in &mesh.tets.nodes {
+        for face in [[a, b, c], [a, b, d], [a, c, d], [b, c, d]] {
+            *sides.entry(sorted(face)).or_default() += 1;
+        }
+    }
+    mesh.triangles.iter().filter(|(nodes, _)| sides[&sorted(*nodes)] == 2).map(|(_, reference)| reference).collect()
+}
+
+#[test]
+fn models_become_valid_meshes_on_all_their_faces() {
+    if !is_set_up() {
+        return;
+    }
+    let volume = [
+        ("cube-cylinder", 1.0 - std::f64::consts::PI / 16.0),
+        ("cone", f64::NAN),
+        ("torus", f64::NAN),
+        ("sphere-in-box", f64::NAN),
+        ("thin-plate", 0.04),
+        ("wing", f64::NAN),
+    ];
+    for (name, volume) in volume {
+        let place = Place::new();
+        let model = model(&format!("{name}.step"));
+        let report = text(&place.path("report.json"));
+        let mesh = place.mesh(&model, &["--report", &report]);
+        let report = place.json("report.json");
+        assert!(report["statistics"]["mean_ratios"]["min"].as_f64().unwrap() > 0.2, "{name}: {}", report["statistics"]);
+        assert!(report["fidelity"]["from_model"]["distance"].as_f64().unwrap() < 1e-9, "{name}");
+        assert_eq!(report["off_model"], 0, "{name}");
+        // References are the numbers of the faces: what classify finds by itself agrees.
+        let run = program()
+            .arg("classify")
+            .arg(place.path("out.meshb"))
+            .arg("--cad")
+            .arg(&model)
+            .arg("-o")
+            .arg(place.path("again.meshb"))
+            .output()
+            .unwrap();
+        assert_eq!(stderr(&run), "", "{name}");
+        assert_eq!(place.written("again.meshb").triangles, mesh.triangles, "{name}");
+        if !volume.is_nan() {
+            near(volumes(&mesh)[&1], volume, 0.01);
+        }
+    }
+}
+
+#[test]
+fn the_same_model_gives_the_same_file_and_no_adapt_leaves_the_meshers() {
+    if !is_set_up() {
+        return;
+    }
+    let [one, two] = [Place::new(), Place::new()];
+    for place in [&one, &two] {
+        place.mesh(&model("block-on-plate.step"), &["--no-adapt"]);
+    }
+    let bytes = |place: &Place| std::fs::read(place.path("out.meshb")).unwrap();
+    assert!(bytes(&one) == bytes(&two));
+    assert!(!one.path("out.solb").exists());
+    let plain = one.written("out.meshb");
+    assert!(!plain.association.is_empty());
+    one.mesh(&model("block-on-plate.step"), &["--size", "0.3"]);
+    assert!(bytes(&one) != bytes(&two) && one.path("out.solb").exists());
+    assert!(one.written("out.meshb").tets.len() > 2 * plain.tets.len());
+}
+
+#[test]
+fn solids_that_touch_share_their_faces() {
+    if !is_set_up() {
+        return;
+    }
+    let place = Place::new();
+    let mesh = place.mesh(&model("two-materials.step"), &[]);
+    let of_region = volumes(&mesh);
+    assert_eq!(of_region.keys().collect::<Vec<_>>(), [&1, &2]);
+    near(of_region[&1], 1.0, 1e-9);
+    near(of_region[&2], 1.0, 1e-9);
+    let between = interfaces(&mesh);
+    assert_eq!(between.len(), 1);
+    near(area(&mesh, |reference| between.contains(&reference)), 1.0, 1e-9);
+    assert_eq!(mesh.triangles.refs.iter().collect::<BTreeSet<_>>().len(), 11);
+    // The same faces are there when the model is read again.
+    let run = program()
+        .arg("classify")
+        .arg(place.path("out.meshb"))
+        .arg("--cad")
+        .arg(model("two-materials.step"))
+        .arg("-o")
+        .arg(place.path("again.meshb"))
+        .output()
+        .unwrap();
+    assert_eq!((run.status.code(), stderr(&run)), (Some(0), String::new()));
+}
+
+#[test]
+fn a_solid_that_touches_a_part_of_a_face_shares_that_part() {
+    if !is_set_up() {
+        return;
+    }
+    let place = Place::new();
+    let mesh = place.mesh(&model("block-on-plate.step"), &[]);
+    let of_region = volumes(&mesh);
+    near(of_region[&1], 16.0, 1e-9);
+    near(of_region[&2], 2.0, 1e-9);
+    let between = interfaces(&mesh);
+    near(area(&mesh, |reference| between.contains(&reference)), 2.0, 1e-9);
+    // 5 sides and the ring around the block, 5 sides of the block, what is between.
+    assert_eq!(mesh.triangles.refs.iter().collect::<BTreeSet<_>>().len(), 12);
+}
+
+#[test]
+fn names_and_colours_go_through_bootstrap_and_adapt() {
+    if !is_set_up() {
+        return;
+    }
+    let place = Place::new();
+    let first = place.mesh(&model("two-materials.step"), &[]);
+    let names = place.json("out.names.json");
+    let [inlet] = called(&names, "triangles", "inlet")[..] else { panic!("{names}") };
+    assert_eq!(names["triangles"][inlet.to_string()]["colour"], "#008000");
+    assert_eq!(called(&names, "triangles", "outlet").len(), 1);
+    assert_eq!(called(&names, "tetrahedra", "copper"), [1]);
+    assert_eq!(names["tetrahedra"]["2"], serde_json::json!({ "name": "steel", "colour": "#0000FF" }));
+    let adapt = |arguments: &[&str]| {
+        let mut command = program();
+        command.arg("adapt").arg(place.path("out.meshb")).arg("--metric").arg(place.path("out.solb")).arg("--cad");
+        command.arg(model("two-materials.step")).arg("-o").arg(place.path("adapted.meshb")).args(arguments);
+        command.args(["--threads", "1"]).output().unwrap()
+    };
+    let run = adapt(&["--freeze", "inlet", "--local", "region:steel:h=0.1"]);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    assert_eq!(place.json("adapted.names.json"), names);
+    let adapted = place.written("adapted.meshb");
+    let count =
+        |mesh: &TetMesh, wanted: i32| mesh.triangles.refs.iter().filter(|&&reference| reference == wanted).count();
+    assert_eq!(count(&adapted, inlet), count(&first, inlet));
+    let in_region = |mesh: &TetMesh, wanted: i32| mesh.tets.refs.iter().filter(|&&r| r == wanted).count();
+    assert!(in_region(&adapted, 2) > 2 * in_region(&first, 2));
+    let message = complaint(&adapt(&["--freeze", "outflow"]));
+    assert!(message.contains("called outflow; there are copper, inlet, outlet, steel"), "{message}");
+    std::fs::write(place.path("out.names.json"), "[1]").unwrap();
+    let message = complaint(&adapt(&[]));
+    assert!(message.contains("out.names.json: no names of references"), "{message}");
+}
+
+#[test]
+fn model_lists_names_and_colours() {
+    let run = program().arg("model").arg(model("two-materials.step")).output().unwrap();
+    let listing = String::from_utf8(run.stdout).unwrap();
+    for line in ["1  copper  #FF0000", "2  steel   #0000FF", "inlet   #008000", "2 solids, 11 faces"] {
+        assert!(listing.contains(line), "{line} is not in\n{listing}");
+    }
+    let run = program().arg("model").arg(model("two-materials.step")).arg("--json").output().unwrap();
+    let listing: Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!(listing["names"]["tetrahedra"]["1"]["name"], "copper");
+}
+
+#[test]
+fn a_far_field_is_the_space_around_the_body() {
+    if !is_set_up() {
+        return;
+    }
+    let place = Place::new();
+    let mesh = place.mesh(&model("cube.step"), &["--far-field", "box:-3,-3,-3,4,4,4"]);
+    near(volumes(&mesh)[&1], 342.0, 1e-9);
+    let names = place.json("out.names.json");
+    let area_of = |name: &str| {
+        let references = called(&names, "triangles", name);
+        area(&mesh, |reference| references.contains(&reference))
+    };
+    near(area_of("wall"), 6.0, 1e-9);
+    near(area_of("farfield"), 6.0 * 49.0, 1e-9);
+    assert_eq!(called(&names, "tetrahedra", "fluid"), [1]);
+    // The domain that was written is the model of the mesh.
+    let run = program()
+        .arg("adapt")
+        .arg(place.path("out.meshb"))
+        .arg("--cad")
+        .arg(place.path("out.brep"))
+        .arg("--metric")
+        .arg(place.path("out.solb"))
+        .arg("-o")
+        .arg(place.path("adapted.meshb"))
+        .args(["--freeze", "farfield", "--local", "wall:h=0.1"])
+        .output()
+        .unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    assert_eq!(place.json("adapted.names.json"), names);
+}
+
+#[test]
+fn half_a_body_has_a_plane_of_symmetry() {
+    if !is_set_up() {
+        return;
+    }
+    let place = Place::new();
+    let mesh = place.mesh(&model("cube.step"), &["--far-field", "sphere:4", "--symmetry", "z"]);
+    let half = std::f64::consts::TAU / 3.0 * 64.0;
+    near(volumes(&mesh)[&1], half - 1.0, 0.05);
+    assert!(mesh.vertices.iter().all(|x| x[2] >= -1e-12), "nothing is below the plane");
+    let names = place.json("out.names.json");
+    let symmetry = called(&names, "triangles", "symmetry");
+    near(area(&mesh, |r| symmetry.contains(&r)), std::f64::consts::PI * 16.0 - 1.0, 0.05);
+    let wall = called(&names, "triangles", "wall");
+    near(area(&mesh, |r| wall.contains(&r)), 5.0, 1e-9);
+    // In a box of so many extents of the body, cut by the same plane.
+    let mesh = place.mesh(&model("cube.step"), &["--far-field", "box:2", "--symmetry", "z"]);
+    near(volumes(&mesh)[&1], 25.0 * 3.0 - 1.0, 1e-9);
+    let message = complaint(&place.run(&model("torus.step"), &["--far-field", "box:2", "--symmetry", "x"]));
+    assert!(message.contains("no plane face of the body"), "{message}");
+}
+
+#[test]
+fn where_no_mesher_is_the_error_says_what_to_install() {
+    let place = Place::new();
+    let run = place
+        .command(&model("cube.step"), &[])
+        .env("GEO_ADAPT_GMSH", "/nowhere/gmsh")
+        .env("GEO_ADAPT_NETGEN_PYTHON", "/nowhere/python")
+        .output()
+        .unwrap();
+    let message = complaint(&run);
+    assert!(message.contains("there is no mesher") && message.contains("apt install gmsh"), "{message}");
+    assert!(message.contains("pip install netgen-mesher"), "{message}");
+    assert!(!place.path("out.meshb").exists());
+}
+
+#[test]
+fn a_mesher_that_crashes_hangs_or_writes_rubbish_is_told_in_one_error() {
+    let place = Place::new();
+    let with = |script: &str, arguments: &[&str]| {
+        let gmsh = place.script("gmsh", script);
+        let arguments = [&["--mesher", "gmsh"], arguments].concat();
+        complaint(&place.command(&model("cube.step"), &arguments).env("GEO_ADAPT_GMSH", gmsh).output().unwrap())
+    };
+    let message = with("echo 'Error : no elements in volume 1'; exit 1", &[]);
+    assert!(message.contains("Error : no elements in volume 1") && message.contains("out.log"), "{message}");
+    assert!(with("kill -KILL $$", &[]).contains("killed or crashed (signal 9)"));
+    assert!(with("exec sleep 60", &["--time-limit", "0.1"]).contains("--time-limit"));
+    assert!(with("exit 0", &[]).contains("it wrote no mesh"));
+    let rubbish = "while [ \"$1\" != -o ]; do shift; done; echo rubbish > \"$2\"";
+    assert!(with(rubbish, &[]).contains("no tetrahedra in it"));
+    // One tetrahedron is a mesh, but none of the cube.
+    let one = "while [ \"$1\" != -o ]; do shift; done; printf '$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\\n1 4 1 4\\n3 1 0 4\\n1\\n2\\n3\\n4\\n\
+        0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n$EndNodes\\n$Elements\\n2 5 1 5\\n2 1 2 4\\n1 1 2 3\\n2 1 2 4\\n3 1 3 4\\n4 2 3 4\\n3 1 4 1\\n5 1 2 3 4\\n$EndElements\\n' > \"$2\"";
+    let message = with(one, &[]);
+    assert!(message.contains("no mesher made a valid mesh"), "{message}");
+    assert!(!place.path("out.meshb").exists());
+}
+
+#[test]
+fn what_cannot_be_meshed_is_refused_before_the_work() {
+    let place = Place::new();
+    let cube = std::fs::read_to_string(model("cube.step")).unwrap();
+    let open = cube.replace("ADVANCED_BREP_SHAPE_REPRESENTATION", "MANIFOLD_SURFACE_SHAPE_REPRESENTATION");
+    let (before, after) = open.split_once("MANIFOLD_SOLID_BREP('',").unwrap();
+    let (shell, after) = after.split_once(')').unwrap();
+    let path = place.path("surfaces.step");
+    std::fs::write(&path, format!("{before}SHELL_BASED_SURFACE_MODEL('',({shell})){after}")).unwrap();
+    let message = complaint(&place.run(&path, &[]));
+    assert!(message.contains("the model has no solid, only surfaces (6 faces)"), "{message}");
+    let message = complaint(&place.run(&path, &["--far-field", "box:2"]));
+    assert!(message.contains("the model has no solid"), "{message}");
+    let message = complaint(&place.run(&model("cube.step"), &["--far-field", "box:0.5,0.5,0.5,2,2,2"]));
+    assert!(message.contains("reaches beyond the far field"), "{message}");
+    for arguments in [&["--far-field", "cone:3"][..], &["--symmetry", "x"], &["--mesher", "mine"], &["--size", "-1"]] {
+        assert_eq!(place.run(&model("cube.step"), arguments).status.code(), Some(2), "{arguments:?}");
+    }
+    let message = complaint(&place.run(&place.path("none.step"), &[]));
+    assert!(message.contains("none.step"), "{message}");
+}
