@@ -39,7 +39,7 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 8] = [
+    const SOURCES: [&str; 9] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
         "cpp/connect.cpp",
@@ -47,6 +47,7 @@ mod occt {
         "cpp/damage.cpp",
         "cpp/model.cpp",
         "cpp/evaluate.cpp",
+        "cpp/splines.cpp",
         "cpp/write.cpp",
     ];
 
@@ -85,9 +86,13 @@ mod occt {
             .flag("-Wall")
             .flag("-Wextra")
             .compile("geo-adapt-occt");
-        for source in
-            SOURCES.iter().chain(&["cpp/occt.hpp", "cpp/names.hpp", "cpp/damage.hpp", "src/geometry/occt/bridge.rs"])
-        {
+        for source in SOURCES.iter().chain(&[
+            "cpp/occt.hpp",
+            "cpp/names.hpp",
+            "cpp/damage.hpp",
+            "cpp/splines.hpp",
+            "src/geometry/occt/bridge.rs",
+        ]) {
             println!("cargo:rerun-if-changed={source}");
         }
         if let Ok(folder) = std::env::var("OCCT_LIB") {

@@ -95,6 +95,14 @@ fn describe(model: &Model) -> String {
         }
     }
     summarize(&mut text, topology);
+    let bridged = model.faces_on_bridge();
+    if !bridged.is_empty() {
+        let _ = writeln!(
+            text,
+            "by OpenCASCADE     faces {} (no native evaluation of their surface: slower)",
+            list(&bridged)
+        );
+    }
     text
 }
 

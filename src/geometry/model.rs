@@ -95,6 +95,17 @@ impl Model {
         }
     }
 
+    /// Faces whose surface has no copy in Rust: OpenCASCADE evaluates them point by point, which is slower.
+    pub fn faces_on_bridge(&self) -> Vec<u32> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => {
+                (0..model.topology().faces.len() as u32).filter(|&face| model.is_on_bridge(face)).collect()
+            }
+            Model::Discrete(_) => Vec::new(),
+        }
+    }
+
     /// Length of an edge, in the model's unit; none where the backend does not tell.
     pub fn edge_length(&self, edge: u32) -> Option<f64> {
         match self {

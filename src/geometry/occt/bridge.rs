@@ -73,8 +73,30 @@ pub mod ffi {
         at: f64,
     }
 
+    /// A copy of a spline or a conic, its location applied (cpp/splines.cpp).
+    struct Spline {
+        /// 0 none, 1 a spline; origin, x and y of: 2 O + tX, 3 O + cos t X + sin t Y, 4 O + cosh t X + sinh t Y,
+        /// 5 O + t²X + tY; of a surface: 6 revolution about the axis O, X, 7 extrusion along X.
+        kind: u32,
+        /// Of u and v; the second is 0 on curves.
+        degrees: [u32; 2],
+        /// Zero where not periodic.
+        periods: [f64; 2],
+        rational: bool,
+        /// Each as often as its multiplicity, a periodic spline's with those beyond its ends: those of u, then those of v.
+        knots: Vec<f64>,
+        /// How many of them are u's, on surfaces.
+        first_knots: u32,
+        /// wx, wy, wz, w of each pole, v fastest; a periodic spline's go round as its knots do.
+        poles: Vec<f64>,
+        origin: [f64; 3],
+        x: [f64; 3],
+        y: [f64; 3],
+    }
+
     unsafe extern "C++" {
         include!("geo-adapt/cpp/occt.hpp");
+        include!("geo-adapt/cpp/splines.hpp");
 
         type Model;
         fn load_model(path: &str, format: u32) -> Result<SharedPtr<Model>>;
@@ -92,6 +114,11 @@ pub mod ffi {
         /// Of an edge (dimension 1), face (2) or solid (3).
         fn label(self: &Model, dimension: u32, index: u32) -> Result<LabelRecord>;
         fn domain(self: &Model, domain: &DomainRecord) -> Result<SharedPtr<Model>>;
+
+        fn surface_spline(model: &Model, face: u32) -> Result<Spline>;
+        fn surface_generatrix(model: &Model, face: u32) -> Result<Spline>;
+        fn curve_spline(model: &Model, edge: u32) -> Result<Spline>;
+        fn pcurve_spline(model: &Model, edge: u32, face: u32, reversed: bool) -> Result<Spline>;
 
         type Evaluator;
         fn new_evaluator(model: &SharedPtr<Model>) -> Result<UniquePtr<Evaluator>>;

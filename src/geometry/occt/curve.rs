@@ -1,20 +1,34 @@
-//! Lines and circles in closed form, and the descent to the closest point on any other curve.
+//! Curves as they were copied from OCCT, and the descent to the closest point where there is no closed form.
 use super::bridge::ffi;
+use super::spline::SplineCurve;
+use super::swept::Conic;
 use crate::geometry::CurveFrame;
 use crate::mesh::vector::{Vec3, add, distance, dot, scale, sub};
 
-/// A curve in closed form, copied from OCCT once.
-#[derive(Clone, Copy, Debug)]
+/// A curve copied from OCCT once.
+#[derive(Clone, Debug)]
 pub enum Curve {
     /// C(t) = O + t·X.
     Line { origin: Vec3, x: Vec3 },
     /// C(t) = O + R (cos t X + sin t Y).
     Circle { origin: Vec3, x: Vec3, y: Vec3, radius: f64 },
+    /// An ellipse, hyperbola or parabola; of p-curves and generatrices also lines and circles.
+    Conic(Conic),
+    /// B-spline or Bezier.
+    Spline(Box<SplineCurve>),
     /// Evaluated by OCCT.
     General,
 }
 
 impl Curve {
+    /// The copy that the bridge gave; none where it gave none.
+    pub fn copied(record: &ffi::Spline) -> Option<Self> {
+        match record.kind {
+            1 => SplineCurve::new(record).map(|spline| Self::Spline(Box::new(spline))),
+            _ => Conic::new(record).map(Self::Conic),
+        }
+    }
+
     /// The closed form of a record's kind (GeomAbs_CurveType).
     pub fn new(kind: u32, form: &ffi::Form) -> Self {
         match kind {
@@ -24,9 +38,12 @@ impl Curve {
         }
     }
 
-    /// C, C′ and C″; none without a closed form.
+    /// C, C′ and C″; none without a copy.
+    #[inline]
     pub fn frame(&self, t: f64) -> Option<CurveFrame> {
         match *self {
+            Self::Spline(ref spline) => Some(spline.frame(t)),
+            Self::Conic(ref conic) => Some(conic.frame(t)),
             Self::Line { origin, x } => Some(CurveFrame { point: add(origin, scale(x, t)), d1: x, d2: [0.0; 3] }),
             Self::Circle { origin, x, y, radius } => {
                 let (sin, cos) = t.sin_cos();
@@ -46,8 +63,18 @@ impl Curve {
                 let arm = sub(point, origin);
                 Some(dot(arm, y).atan2(dot(arm, x)))
             }
-            Self::General => None,
+            Self::Conic(_) | Self::Spline(_) | Self::General => None,
         }
+    }
+
+    /// Ends of the smooth spans, where they are known.
+    pub fn breaks(&self) -> &[f64] {
+        if let Self::Spline(spline) = self { spline.breaks() } else { &[] }
+    }
+
+    /// Degree between the breaks.
+    pub fn degree(&self) -> usize {
+        if let Self::Spline(spline) = self { spline.degree() } else { 1 }
     }
 }
 

@@ -1,17 +1,15 @@
-//! The entities of a loaded model as a [`Topology`], and its analytic shapes in Rust.
+//! The entities of a loaded model as a [`Topology`], and copies of its shapes.
 use super::bridge::ffi;
-use super::curve::Curve;
-use super::surface::Surface;
-use super::{OcctModel, Shape};
+use super::{OcctModel, Shape, copy};
 use crate::geometry::{CurveKind, EdgeEntity, FaceEntity, Label, Names, SurfaceKind, Topology, VertexEntity};
-use crate::mesh::vector::distance;
-use cxx::{Exception, UniquePtr};
+use cxx::Exception;
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 /// Where the p-curves give only a numerical range, this share of it is added at each end.
 const RANGE_MARGIN: f64 = 1e-7;
 
-/// Lists the entities and copies the analytic shapes.
+/// Lists the entities and copies their shapes.
 pub fn build(occt: cxx::SharedPtr<ffi::Model>) -> Result<OcctModel, Exception> {
     let mut evaluator = ffi::new_evaluator(&occt)?;
     let mut topology = Topology { bounds: corners(occt.bounds()?), solids: occt.solid_count()?, ..Topology::default() };
@@ -24,21 +22,22 @@ pub fn build(occt: cxx::SharedPtr<ffi::Model>) -> Result<OcctModel, Exception> {
     }
     for i in 0..occt.edge_count()? {
         let record = occt.edge_record(i)?;
-        let curve = closed_curve(&mut evaluator, i, &record, size)?;
-        curves.push(Shape::new(curve, (4 * record.spans as usize).clamp(16, 512), 0));
+        let curve = copy::curve(&occt, &mut evaluator, i, &record, size)?;
+        curves.push(Shape::new(curve, [record.spans, 0]));
         topology.edges.push(edge_entity(&record));
     }
     for i in 0..occt.face_count()? {
         let record = occt.face_record(i)?;
-        let surface = closed_surface(&mut evaluator, i, &record, size)?;
-        let counts = record.spans.map(|n| (2 * n as usize).clamp(8, 48));
-        surfaces.push(Shape::new(surface, counts[0], counts[1]));
+        let surface = copy::surface(&occt, &mut evaluator, i, &record, size)?;
+        surfaces.push(Shape::new(surface, record.spans));
         add_face(&mut topology, i, &record);
     }
     connect(&mut topology);
     let rounded = topology.faces.iter().map(|face| is_rounded(&topology, face)).collect();
+    let pcurves = copy::pcurves(&occt, &mut evaluator, &topology)?;
+    let trims = topology.faces.iter().map(|_| OnceLock::new()).collect();
     let names = names(&occt, &topology)?;
-    Ok(OcctModel { topology, names, occt, surfaces, curves, rounded, size })
+    Ok(OcctModel { topology, names, occt, surfaces, curves, pcurves, trims, rounded, size })
 }
 
 /// The labels of edges, faces and solids by their numbers from 1.
@@ -59,59 +58,6 @@ fn names(occt: &ffi::Model, topology: &Topology) -> Result<Names, Exception> {
         triangles: of(2, topology.faces.len() as u32)?,
         tetrahedra: of(3, topology.solids)?,
     })
-}
-
-/// Agreement with OCCT, relative to the model's size, without which a closed form is not used: a scaled location
-/// changes a line's parameters, for one.
-const AGREEMENT: f64 = 1e-13;
-
-/// An edge's line or circle, if it has the points that OCCT has.
-fn closed_curve(
-    evaluator: &mut UniquePtr<ffi::Evaluator>,
-    edge: u32,
-    record: &ffi::EdgeRecord,
-    size: f64,
-) -> Result<Curve, Exception> {
-    if record.degenerate || record.kind > 1 {
-        return Ok(Curve::General);
-    }
-    let curve = Curve::new(record.kind, &evaluator.pin_mut().curve_form(edge)?);
-    for s in [0.0, 0.3, 1.0] {
-        let t = record.range[0] * (1.0 - s) + record.range[1] * s;
-        let mut out = [0.0; 9];
-        evaluator.pin_mut().curve_d2(edge, t, &mut out)?;
-        let agrees = |frame: crate::geometry::CurveFrame| {
-            distance(frame.point, [out[0], out[1], out[2]]) <= AGREEMENT * size
-                && distance(frame.d1, [out[3], out[4], out[5]]) <= AGREEMENT * (1.0 + size)
-        };
-        if !curve.frame(t).is_some_and(agrees) {
-            return Ok(Curve::General);
-        }
-    }
-    Ok(curve)
-}
-
-/// A face's analytic surface, if it has the points that OCCT has.
-fn closed_surface(
-    evaluator: &mut UniquePtr<ffi::Evaluator>,
-    face: u32,
-    record: &ffi::FaceRecord,
-    size: f64,
-) -> Result<Surface, Exception> {
-    if record.kind > 4 {
-        return Ok(Surface::General);
-    }
-    let surface = Surface::new(record.kind, &evaluator.pin_mut().surface_form(face)?);
-    let [u0, u1, v0, v1] = record.range;
-    for [s, r] in [[0.0, 0.0], [1.0, 0.4], [0.3, 1.0]] {
-        let uv = [u0 * (1.0 - s) + u1 * s, v0 * (1.0 - r) + v1 * r];
-        let mut out = [0.0; 3];
-        evaluator.pin_mut().surface_d0(face, uv[0], uv[1], &mut out)?;
-        if !surface.jet(uv).is_some_and(|jet| distance(jet.point, out) <= AGREEMENT * size) {
-            return Ok(Surface::General);
-        }
-    }
-    Ok(surface)
 }
 
 fn edge_entity(record: &ffi::EdgeRecord) -> EdgeEntity {

@@ -1,19 +1,17 @@
 //! The evaluator of one thread: points, derivatives, normals and curvatures.
 use super::OcctModel;
 use super::bridge::ffi;
-use super::range::{bring_near, place};
+use super::range::{self, bring_near, place};
 use super::surface::{Jet, Surface};
 use super::{newton, project};
 use crate::geometry::{CurveFrame, Evaluate, OnCurve, OnSurface, SurfaceFrame};
 use crate::mesh::vector::{Vec3, cross, distance, dot, norm, scale, unit};
 use cxx::UniquePtr;
 
-/// Evaluator of one thread: its own adaptors and classifiers, and a pad for the global search.
+/// Evaluator of one thread: its own adaptors and classifiers.
 pub struct OcctEvaluator<'a> {
     pub(super) model: &'a OcctModel,
     pub(super) occt: UniquePtr<ffi::Evaluator>,
-    /// Cells that the search has not ruled out, with their least distances.
-    pub(super) pad: Vec<(f64, u32)>,
 }
 
 /// Below this sine or share of the longer side, Su × Sv does not tell a normal.
@@ -25,7 +23,7 @@ impl<'a> OcctEvaluator<'a> {
     pub(super) fn new(model: &'a OcctModel) -> Self {
         // It only reserves memory: the adaptors are made when first asked for.
         let occt = ffi::new_evaluator(&model.occt).expect("memory for an evaluator");
-        Self { model, occt, pad: Vec::new() }
+        Self { model, occt }
     }
 
     /// The distance that OCCT's own search (BRepExtrema) finds from a face or an edge: slow, the oracle of the tests.
@@ -33,11 +31,48 @@ impl<'a> OcctEvaluator<'a> {
         self.occt.reference_distance(is_face, index, &point).ok()
     }
 
-    /// Point and derivatives; NaN where OCCT cannot evaluate.
-    pub(super) fn jet(&mut self, face: u32, uv: [f64; 2]) -> Jet {
-        if let Some(jet) = self.model.surfaces[face as usize].form.jet(uv) {
-            return jet;
+    /// OCCT's own S, Su, Sv, Suu, Suv, Svv: the oracle of the tests.
+    #[doc(hidden)]
+    pub fn reference_surface(&mut self, face: u32, uv: [f64; 2]) -> [Vec3; 6] {
+        let jet = self.jet_by_occt(face, uv);
+        [jet.point, jet.du, jet.dv, jet.duu, jet.duv, jet.dvv]
+    }
+
+    /// Ours, from the copy where there is one.
+    #[doc(hidden)]
+    pub fn surface_derivatives(&mut self, face: u32, uv: [f64; 2]) -> [Vec3; 6] {
+        let jet = self.jet(face, uv);
+        [jet.point, jet.du, jet.dv, jet.duu, jet.duv, jet.dvv]
+    }
+
+    /// OCCT's own C, C′, C″: the oracle of the tests.
+    #[doc(hidden)]
+    pub fn reference_curve(&mut self, edge: u32, t: f64) -> [Vec3; 3] {
+        let frame = self.curve_by_occt(edge, t);
+        [frame.point, frame.d1, frame.d2]
+    }
+
+    /// The point of an edge's p-curve, by OCCT or (`copied`) from the copy; none where there is none.
+    #[doc(hidden)]
+    pub fn pcurve(&mut self, edge: u32, face: u32, t: f64, copied: bool) -> Option<[f64; 2]> {
+        if copied {
+            let pcurve = self.model.pcurves[edge as usize].iter().find(|pcurve| pcurve.face == face)?;
+            return pcurve.curve.frame(t).map(|frame| [frame.point[0], frame.point[1]]);
         }
+        let mut uv = [0.0; 2];
+        self.occt.pin_mut().pcurve_d0(edge, face, t, &mut uv).unwrap_or(false).then_some(uv)
+    }
+
+    /// Point and derivatives; NaN where OCCT has to evaluate and cannot.
+    #[inline]
+    pub(super) fn jet(&mut self, face: u32, uv: [f64; 2]) -> Jet {
+        match self.model.surfaces[face as usize].form.jet(uv) {
+            Some(jet) => jet,
+            None => self.jet_by_occt(face, uv),
+        }
+    }
+
+    fn jet_by_occt(&mut self, face: u32, uv: [f64; 2]) -> Jet {
         let mut out = [f64::NAN; 18];
         if self.occt.pin_mut().surface_d2(face, uv[0], uv[1], &mut out).is_err() {
             out = [f64::NAN; 18];
@@ -56,17 +91,27 @@ impl<'a> OcctEvaluator<'a> {
         if done.is_ok() { out } else { [f64::NAN; 3] }
     }
 
-    /// C(t) and derivatives, t as it is; NaN where OCCT cannot evaluate.
+    /// C(t) and derivatives, t as it is; NaN where OCCT has to evaluate and cannot.
+    #[inline]
     pub(super) fn curve(&mut self, edge: u32, t: f64) -> CurveFrame {
-        if let Some(frame) = self.model.curves[edge as usize].form.frame(t) {
-            return frame;
+        match self.model.curves[edge as usize].form.frame(t) {
+            Some(frame) => frame,
+            None => self.curve_by_occt(edge, t),
         }
+    }
+
+    fn curve_by_occt(&mut self, edge: u32, t: f64) -> CurveFrame {
         let mut out = [f64::NAN; 9];
         if self.occt.pin_mut().curve_d2(edge, t, &mut out).is_err() {
             out = [f64::NAN; 9];
         }
         let part = |k: usize| [out[k], out[k + 1], out[k + 2]];
         CurveFrame { point: part(0), d1: part(3), d2: part(6) }
+    }
+
+    /// Whether OCCT's classifier finds the parameters in the trimmed face or on its boundary.
+    pub(super) fn inside_by_occt(&mut self, face: u32, uv: [f64; 2]) -> bool {
+        self.occt.pin_mut().inside(face, uv[0], uv[1]).unwrap_or(false)
     }
 
     /// Parameters within the face's range.
@@ -135,7 +180,7 @@ impl<'a> OcctEvaluator<'a> {
             [0, 1].map(|k: usize| bring_near(foot[k], uv[k], period[k]).clamp(range[k][0], range[k][1]))
         } else {
             let size = self.model.size;
-            newton::descend(|uv| self.jet(face, uv), target, uv, range, size).uv
+            newton::descend(|uv| self.jet(face, uv), target, uv, range, range::longest(range), size).uv
         };
         let near = (0..2).all(|k| (better[k] - uv[k]).abs() <= 0.05 * (range[k][1] - range[k][0]));
         let closer =
@@ -208,10 +253,7 @@ impl Evaluate for OcctEvaluator<'_> {
             return None;
         }
         let (t, _) = place(t, entity.range, entity.period);
-        let mut uv = [0.0; 2];
-        if !self.occt.pin_mut().pcurve_d0(edge, face, t, &mut uv).unwrap_or(false) {
-            return None;
-        }
+        let uv = self.pcurve(edge, face, t, true).or_else(|| self.pcurve(edge, face, t, false))?;
         let uv = [0, 1].map(|k: usize| {
             let entity = &topology.faces[face as usize];
             let [low, high] = entity.range[k];

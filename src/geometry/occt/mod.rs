@@ -1,34 +1,43 @@
-//! The OpenCASCADE backend: OCCT loads, lists and evaluates (cpp/); projections are here. Analytic surfaces and curves
-//! are copied once and evaluated in Rust; what is left goes over the bridge.
+//! The OpenCASCADE backend: OCCT loads and lists (cpp/). Surfaces and curves are copied once and evaluated in Rust, where
+//! projections are too; what has no copy (offset surfaces, for one) is evaluated over the bridge.
+mod basis;
 mod bridge;
-mod cells;
+mod copy;
 mod curve;
 mod entities;
 mod evaluator;
+mod hull;
 mod load;
 mod newton;
 mod project;
 mod range;
+mod spline;
 mod surface;
+mod swept;
+mod tree;
+mod trim;
 
 use super::{Error, FarField, Geometry, Names, Topology};
 use bridge::ffi;
-use cells::Cell;
+use copy::PCurve;
 use curve::Curve;
 pub use evaluator::OcctEvaluator;
 use std::sync::OnceLock;
 use surface::Surface;
+use tree::Tree;
+use trim::Trim;
 
-/// A closed form, and the cells for the global search, made when first asked for.
+/// A copy, and the pieces for the global search, made when first asked for.
 struct Shape<T> {
     form: T,
-    counts: [usize; 2],
-    cells: OnceLock<Vec<Cell>>,
+    /// Smooth spans in u and v, as OCCT counts them.
+    spans: [u32; 2],
+    tree: OnceLock<Tree>,
 }
 
 impl<T> Shape<T> {
-    fn new(form: T, u: usize, v: usize) -> Self {
-        Self { form, counts: [u, v], cells: OnceLock::new() }
+    fn new(form: T, spans: [u32; 2]) -> Self {
+        Self { form, spans, tree: OnceLock::new() }
     }
 }
 
@@ -39,6 +48,10 @@ pub struct OcctModel {
     occt: cxx::SharedPtr<ffi::Model>,
     surfaces: Vec<Shape<Surface>>,
     curves: Vec<Shape<Curve>>,
+    /// Of each edge, its curves in the parameters of its faces.
+    pcurves: Vec<Vec<PCurve>>,
+    /// Of each face, where its parameters are known to be inside; made when first asked for.
+    trims: Vec<OnceLock<Trim>>,
     /// Whether a face has edges whose chords may leave it.
     rounded: Vec<bool>,
     /// The greater of the box's diagonal and the largest coordinate: what rounding is measured by.
@@ -76,6 +89,43 @@ impl OcctModel {
     /// Area of a face, in the square of the model's unit; none where OCCT finds none.
     pub fn face_area(&self, face: u32) -> Option<f64> {
         (face < self.topology.faces.len() as u32).then(|| self.occt.face_area(face).ok()).flatten()
+    }
+
+    /// Whether a face has no copy, so that OCCT evaluates it point by point.
+    pub fn is_on_bridge(&self, face: u32) -> bool {
+        matches!(self.surfaces[face as usize].form, Surface::General)
+    }
+
+    /// Widths in u and v of the smooth span about parameters of a face, over its degree: derivatives are differences of
+    /// points over them.
+    #[doc(hidden)]
+    pub fn face_span(&self, face: u32, uv: [f64; 2]) -> [f64; 2] {
+        let (form, range) = (&self.surfaces[face as usize].form, self.topology.faces[face as usize].range);
+        [0, 1].map(|k: usize| range::span_about(form.breaks(k), range[k], uv[k]) / form.degree(k) as f64)
+    }
+
+    /// The same of an edge.
+    #[doc(hidden)]
+    pub fn edge_span(&self, edge: u32, t: f64) -> f64 {
+        let (form, range) = (&self.curves[edge as usize].form, self.topology.edges[edge as usize].range);
+        range::span_about(form.breaks(), range, t) / form.degree() as f64
+    }
+
+    /// The same model with its splines and swept surfaces evaluated by OCCT: what copies are measured against.
+    #[doc(hidden)]
+    pub fn without_copies(mut self) -> Self {
+        for shape in &mut self.surfaces {
+            if matches!(shape.form, Surface::Spline(_) | Surface::Swept(_)) {
+                *shape = Shape::new(Surface::General, shape.spans);
+            }
+        }
+        for shape in &mut self.curves {
+            if matches!(shape.form, Curve::Spline(_) | Curve::Conic(_)) {
+                *shape = Shape::new(Curve::General, shape.spans);
+            }
+        }
+        self.pcurves.iter_mut().flatten().for_each(|pcurve| pcurve.curve = Curve::General);
+        self
     }
 
     /// Length of an edge; none where OCCT finds none.

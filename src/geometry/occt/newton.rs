@@ -20,12 +20,14 @@ pub struct SurfacePoint {
 /// itself): Newton's method on |S(u, v) − p|², with the first fundamental form in the place of the second derivatives
 /// where those are not convex. A parameter at its bound that wants beyond it stays there while the other one moves.
 ///
+/// No step is longer than `longest`: near a pole, where S_u vanishes, it would leave no digits of u.
 /// `size` is the size of the model, for what counts as rounding. NaN in gives NaN out.
 pub fn descend(
     mut jet: impl FnMut([f64; 2]) -> Jet,
     point: Vec3,
     start: [f64; 2],
     bounds: [[f64; 2]; 2],
+    longest: [f64; 2],
     size: f64,
 ) -> SurfacePoint {
     let clamp = |uv: [f64; 2]| [0, 1].map(|k: usize| uv[k].clamp(bounds[k][0], bounds[k][1]));
@@ -35,6 +37,9 @@ pub fn descend(
     let mut foot = false;
     for _ in 0..ITERATIONS {
         let Some((mut step, held)) = newton_step(&here, sub(here.point, point), uv, bounds) else { break };
+        for k in 0..2 {
+            step[k] = step[k].clamp(-longest[k], longest[k]);
+        }
         let mut moved = None;
         for _ in 0..HALVINGS {
             let next = clamp([uv[0] + step[0], uv[1] + step[1]]);

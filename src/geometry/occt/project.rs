@@ -1,9 +1,11 @@
-//! Closest points: closed forms where there are, else a descent from the guess, and cells that rule the rest out.
-use super::cells::{self, Cell};
+//! Closest points: closed forms where there are, else a descent from the guess, and a tree of pieces that rules the rest out.
 use super::curve::{self, CurvePoint};
 use super::evaluator::OcctEvaluator;
+use super::hull::{self, as_jet};
 use super::newton::{self, SurfacePoint};
-use super::range::{is_whole, place};
+use super::range::{is_whole, longest, place};
+use super::tree::{Jets, Node, Source, Tree, cuts};
+use super::trim;
 use crate::geometry::{Evaluate, OnCurve, OnSurface};
 use crate::mesh::vector::{Vec3, distance};
 
@@ -50,42 +52,55 @@ fn nearer(a: OnCurve, b: OnCurve) -> OnCurve {
     if b.distance < a.distance { b } else { a }
 }
 
-/// The search on a curve without a closed form: down from the guess or the nearest cell, then into every other cell
-/// that may hold a closer point.
-fn search_curve(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f64>, limit: f64) -> Option<CurvePoint> {
+/// The pieces of an edge, made when first asked for.
+fn edge_tree<'a>(on: &mut OcctEvaluator<'a>, edge: u32) -> &'a Tree {
     let model = on.model;
     let (shape, range) = (&model.curves[edge as usize], model.topology.edges[edge as usize].range);
-    let cells =
-        shape.cells.get_or_init(|| cells::cut(|uv| on.curve(edge, uv[0]).point, [range, [0.0; 2]], shape.counts));
-    let nearest = nearest_cell(cells, point, limit)?;
-    let start = guess.filter(|t| t.is_finite()).map_or(nearest.middle()[0], |t| place(t, range, None).0);
-    let mut best = curve::descend(|t| on.curve(edge, t), point, start, range, model.size);
-    for cell in cells {
-        let [low, high] = cell.bounds[0];
+    shape.tree.get_or_init(|| {
+        let spans = (shape.spans[0] as usize).max(4);
+        let period = model.topology.edges[edge as usize].period;
+        let cuts = cuts(range, period, shape.form.breaks(), spans);
+        let mut jet = |uv: [f64; 2]| as_jet(on.curve(edge, uv[0]));
+        let hull =
+            &mut |jet: &mut Jets, piece: [[f64; 2]; 2], out: &mut _| hull::of_curve(&shape.form, jet, piece[0], out);
+        Tree::new(&mut Source { jet: &mut jet, hull }, [cuts, vec![0.0, 0.0]], [None; 2])
+    })
+}
+
+/// The search on a curve without a closed form: down from the guess or the nearest piece, then into every other piece
+/// that may hold a closer point.
+fn search_curve(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f64>, limit: f64) -> Option<CurvePoint> {
+    let tree = edge_tree(on, edge);
+    let (range, size) = (on.model.topology.edges[edge as usize].range, on.model.size);
+    let start = match guess.filter(|t| t.is_finite()) {
+        Some(t) => place(t, range, None).0,
+        None => tree.nearest(point, limit)?.middle()[0],
+    };
+    let mut best = curve::descend(|t| on.curve(edge, t), point, start, range, size);
+    // A closed edge's ends are two ends to the descent.
+    let periods = [None; 2];
+    tree.visit(point, best.distance, |leaf, limit| {
+        let [low, high] = leaf.bounds[0];
         let width = high - low;
-        let known = best.t >= low - width && best.t <= high + width;
-        if !known && cell.least_distance(point) < best.distance {
-            let found = curve::descend(|t| on.curve(edge, t), point, cell.middle()[0], cell.bounds[0], model.size);
+        if leaf.is_covered([best.t, 0.0], periods, limit) {
+            return limit;
+        }
+        let simple = leaf.is_simple(point, limit);
+        for &s in starts(simple) {
+            let found = curve::descend(|t| on.curve(edge, t), point, low + s * width, leaf.bounds[0], size);
             if found.distance < best.distance * CLOSER {
-                best = curve::descend(|t| on.curve(edge, t), point, found.t, range, model.size);
+                best = curve::descend(|t| on.curve(edge, t), point, found.t, range, size);
             }
         }
-    }
+        best.distance
+    });
     best.distance.is_finite().then_some(best)
 }
 
-/// The cell whose middle is nearest, if any cell reaches within the limit; none for a point that is no number.
-fn nearest_cell(cells: &[Cell], point: Vec3, limit: f64) -> Option<&Cell> {
-    let mut nearest = (f64::INFINITY, None);
-    let mut reached = false;
-    for cell in cells {
-        let length = distance(cell.center, point);
-        reached |= length - cell.radius < limit;
-        if length < nearest.0 {
-            nearest = (length, Some(cell));
-        }
-    }
-    nearest.1.filter(|_| reached)
+/// Where descents in a piece start, as shares of its sides: from its middle, and where the distance may have several
+/// minima from its quarters too.
+fn starts(simple: bool) -> &'static [f64] {
+    if simple { &[0.5] } else { &[0.5, 0.2, 0.8] }
 }
 
 /// Closest point of a face near the guess. Chords of its edges may leave the face, where its edges do not follow the parameters: there
@@ -100,7 +115,8 @@ pub fn on_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: [f64; 2
     } else if guess[0].is_finite() && guess[1].is_finite() {
         let (start, _) = on.placed(face, guess);
         let bounds = open_bounds(on, face);
-        let found = newton::descend(|uv| on.jet(face, uv), point, start, bounds, model.size);
+        let longest = longest(model.topology.faces[face as usize].range);
+        let found = newton::descend(|uv| on.jet(face, uv), point, start, bounds, longest, model.size);
         if found.foot && is_within(on, face, found.uv) {
             return finish(on, face, &found, point);
         }
@@ -157,9 +173,11 @@ fn is_within(on: &mut OcctEvaluator, face: u32, uv: [f64; 2]) -> bool {
     !on.model.rounded[face as usize] || inside(on, face, on.placed(face, uv).0)
 }
 
-/// Whether the parameters lie in the trimmed face.
+/// Whether the parameters, which lie in the face's range, lie in the trimmed face.
 fn inside(on: &mut OcctEvaluator, face: u32, uv: [f64; 2]) -> bool {
-    on.occt.pin_mut().inside(face, uv[0], uv[1]).unwrap_or(false)
+    let model = on.model;
+    let trim = model.trims[face as usize].get_or_init(|| trim::build(on, face));
+    trim.known(&model.topology.faces[face as usize], uv).unwrap_or_else(|| on.inside_by_occt(face, uv))
 }
 
 /// The closest point of a trimmed analytic face is one of the feet, or on its edges. When it is the surface's closest
@@ -200,67 +218,77 @@ fn on_edges(on: &mut OcctEvaluator, face: u32, point: Vec3, limit: f64) -> Optio
     Some(at(on, face, uv, point))
 }
 
-/// The search on a surface without a closed form: a foot that the descent from the guess (or the nearest cell) reaches
-/// inside the face is the answer when no other cell may hold a closer point; else the edges and those cells decide.
-fn search_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> Option<OnSurface> {
+/// The pieces of a face, made when first asked for.
+fn face_tree<'a>(on: &mut OcctEvaluator<'a>, face: u32) -> &'a Tree {
     let model = on.model;
-    let (shape, range) = (&model.surfaces[face as usize], model.topology.faces[face as usize].range);
-    let cells = shape.cells.get_or_init(|| cells::cut(|uv| on.surface_point(face, uv), range, shape.counts));
-    let start = guess.map_or_else(|| nearest_cell(cells, point, f64::INFINITY).map(Cell::middle), Some)?;
+    let (shape, entity) = (&model.surfaces[face as usize], &model.topology.faces[face as usize]);
+    shape.tree.get_or_init(|| {
+        let cuts = [0, 1].map(|k: usize| {
+            let spans = (shape.spans[k] as usize).max(2);
+            cuts(entity.range[k], entity.period[k], shape.form.breaks(k), spans)
+        });
+        let mut jet = |uv: [f64; 2]| on.jet(face, uv);
+        let hull =
+            &mut |jet: &mut Jets, piece: [[f64; 2]; 2], out: &mut _| hull::of_surface(&shape.form, jet, piece, out);
+        Tree::new(&mut Source { jet: &mut jet, hull }, cuts, entity.period)
+    })
+}
+
+/// The search on a surface without a closed form. A foot that the descent from the guess (or the nearest piece) reaches
+/// inside the face is the answer when no other piece holds a closer point, inside or not; else the edges and those
+/// pieces decide.
+fn search_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> Option<OnSurface> {
+    let tree = face_tree(on, face);
+    let size = on.model.size;
+    let start = guess.or_else(|| tree.nearest(point, f64::INFINITY).map(Node::middle))?;
     let (start, _) = on.placed(face, start);
     let first = descend_inside(on, face, point, start);
     let mut best = first;
-    let mut pad = std::mem::take(&mut on.pad);
-    pad.clear();
-    let limit = first.map_or(f64::INFINITY, |best| best.distance);
-    for (i, cell) in cells.iter().enumerate() {
-        let least = cell.least_distance(point);
-        if least < limit && !first.is_some_and(|first| is_beside(on, face, cell, first.uv)) {
-            pad.push((least, i as u32));
-        }
+    let mut edges_asked = first.is_none();
+    if edges_asked {
+        best = on_edges(on, face, point, f64::INFINITY);
     }
-    if !pad.is_empty() {
-        best = on_edges(on, face, point, limit).or(best);
-        pad.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        for &(least, i) in &pad {
-            let limit = best.map_or(f64::INFINITY, |best| best.distance);
-            if least >= limit {
-                break;
+    let periods = on.model.topology.faces[face as usize].period;
+    let far = |best: Option<OnSurface>| best.map_or(f64::INFINITY, |best| best.distance);
+    tree.visit(point, far(best), |leaf, limit| {
+        if first.is_some_and(|first| leaf.is_covered(first.uv, periods, first.distance)) {
+            return limit;
+        }
+        let simple = leaf.is_simple(point, limit);
+        for &s in starts(simple) {
+            for &r in starts(simple) {
+                let [[u0, u1], [v0, v1]] = leaf.bounds;
+                let start = [u0 + s * (u1 - u0), v0 + r * (v1 - v0)];
+                let found =
+                    newton::descend(|uv| on.jet(face, uv), point, start, leaf.bounds, longest(leaf.bounds), size);
+                if found.distance.is_nan() || found.distance >= far(best) * CLOSER {
+                    continue;
+                }
+                if inside(on, face, on.placed(face, found.uv).0) {
+                    best = Some(polished(on, face, point, &found));
+                } else if !edges_asked {
+                    edges_asked = true;
+                    best = on_edges(on, face, point, far(best)).or(best);
+                }
             }
-            best = search_cell(on, face, point, &cells[i as usize], limit).or(best);
         }
-    }
-    on.pad = pad;
+        far(best)
+    });
     best
 }
 
 /// The foot that the descent from `start` reaches, if it lies in the face.
 fn descend_inside(on: &mut OcctEvaluator, face: u32, point: Vec3, start: [f64; 2]) -> Option<OnSurface> {
     let (bounds, size) = (open_bounds(on, face), on.model.size);
-    let found = newton::descend(|uv| on.jet(face, uv), point, start, bounds, size);
+    let longest = longest(on.model.topology.faces[face as usize].range);
+    let found = newton::descend(|uv| on.jet(face, uv), point, start, bounds, longest, size);
     let found = found.foot.then(|| finish(on, face, &found, point))?;
     inside(on, face, found.uv).then_some(found)
 }
 
-/// The closest point of one cell, if it lies in the face and is closer than `limit`; then the foot that it leads to.
-fn search_cell(on: &mut OcctEvaluator, face: u32, point: Vec3, cell: &Cell, limit: f64) -> Option<OnSurface> {
-    let size = on.model.size;
-    let found = newton::descend(|uv| on.jet(face, uv), point, cell.middle(), cell.bounds, size);
-    if found.distance.is_nan() || found.distance >= limit * CLOSER || !inside(on, face, found.uv) {
-        return None;
-    }
-    let rough = finish(on, face, &found, point);
-    let polished = descend_inside(on, face, point, found.uv);
-    Some(polished.filter(|polished| polished.distance <= rough.distance).unwrap_or(rough))
-}
-
-/// Whether the parameters lie in the cell or in one that touches it.
-fn is_beside(on: &OcctEvaluator, face: u32, cell: &Cell, uv: [f64; 2]) -> bool {
-    let period = on.model.topology.faces[face as usize].period;
-    (0..2).all(|k| {
-        let [low, high] = cell.bounds[k];
-        let middle = 0.5 * (low + high);
-        let off = super::range::bring_near(uv[k], middle, period[k]) - middle;
-        off.abs() <= 1.5 * (high - low)
-    })
+/// What a descent within a piece has found, or the foot that it leads to.
+fn polished(on: &mut OcctEvaluator, face: u32, point: Vec3, found: &SurfacePoint) -> OnSurface {
+    let rough = finish(on, face, found, point);
+    let foot = descend_inside(on, face, point, rough.uv);
+    foot.filter(|foot| foot.distance <= rough.distance).unwrap_or(rough)
 }

@@ -20,7 +20,18 @@ pub fn bring_near(x: f64, near: f64, period: Option<f64>) -> f64 {
     period.map_or(x, |period| x - period * ((x - near) / period).round())
 }
 
+/// The longest steps of a descent: half of the ranges.
+pub fn longest(ranges: [[f64; 2]; 2]) -> [f64; 2] {
+    ranges.map(|[low, high]| 0.5 * (high - low))
+}
+
 /// Whether the range spans the whole period.
 pub fn is_whole(range: [f64; 2], period: Option<f64>) -> bool {
     period.is_some_and(|period| range[1] - range[0] >= period * (1.0 - 1e-9))
+}
+
+/// Width of the interval between two breaks that `t` lies in, or of the range where there are none about it.
+pub fn span_about(breaks: &[f64], range: [f64; 2], t: f64) -> f64 {
+    let about = breaks.windows(2).find(|pair| pair[0] <= t && t <= pair[1]);
+    about.map_or(range[1] - range[0], |pair| pair[1] - pair[0])
 }

@@ -1,5 +1,7 @@
-//! Analytic surfaces in closed form: evaluation and feet of perpendiculars.
+//! Surfaces as they were copied from OCCT: evaluation, and feet of perpendiculars where there is a closed form.
 use super::bridge::ffi;
+use super::spline::SplineSurface;
+use super::swept::Swept;
 use crate::mesh::vector::{Vec3, add, dot, scale, sub};
 use std::f64::consts::PI;
 
@@ -29,8 +31,8 @@ pub struct Axes {
     z: Vec3,
 }
 
-/// A surface in closed form, copied from OCCT once; parametrised as OCCT does.
-#[derive(Clone, Copy, Debug)]
+/// A surface copied from OCCT once; parametrised as OCCT does.
+#[derive(Clone, Debug)]
 pub enum Surface {
     /// O + u X + v Y.
     Plane(Axes),
@@ -42,6 +44,10 @@ pub enum Surface {
     Sphere(Axes, f64),
     /// O + (R + r cos v) e(u) + r sin v Z.
     Torus(Axes, f64, f64),
+    /// B-spline or Bezier.
+    Spline(Box<SplineSurface>),
+    /// Of revolution or extrusion of a curve.
+    Swept(Box<Swept>),
     /// Evaluated by OCCT.
     General,
 }
@@ -97,7 +103,8 @@ impl Surface {
         }
     }
 
-    /// Point and derivatives; none without a closed form.
+    /// Point and derivatives; none without a copy.
+    #[inline]
     pub fn jet(&self, [u, v]: [f64; 2]) -> Option<Jet> {
         let zero = [0.0; 3];
         Some(match self {
@@ -122,8 +129,28 @@ impl Surface {
                 let (sin, cos) = v.sin_cos();
                 revolve(axes, u, [major + r * cos, -r * sin, -r * cos], [r * sin, r * cos, -r * sin])
             }
+            Self::Spline(spline) => spline.jet([u, v]),
+            Self::Swept(swept) => return swept.jet([u, v]),
             Self::General => return None,
         })
+    }
+
+    /// Ends of the smooth spans of u (0) or v (1), where they are known.
+    pub fn breaks(&self, k: usize) -> &[f64] {
+        match self {
+            Self::Spline(spline) => spline.breaks(k),
+            Self::Swept(swept) => swept.breaks(k),
+            _ => &[],
+        }
+    }
+
+    /// Degree in u (0) or v (1) between the breaks.
+    pub fn degree(&self, k: usize) -> usize {
+        match self {
+            Self::Spline(spline) => spline.degree(k),
+            Self::Swept(swept) => swept.degree(k),
+            _ => 1,
+        }
     }
 
     /// Foot of the closest perpendicular on the whole surface; none without a closed form. Where every angle is as
@@ -148,7 +175,7 @@ impl Surface {
                 let off = |r: f64, v: f64| (r - radius - v * sin).hypot(local[2] - v * cos);
                 if off(-rho, far) < off(rho, near) { [u + PI, far] } else { [u, near] }
             }
-            Self::General => return None,
+            Self::Spline(_) | Self::Swept(_) | Self::General => return None,
         })
     }
 
@@ -169,7 +196,7 @@ impl Surface {
                 let other = local[2].atan2(-local[0].hypot(local[1]) - major);
                 Feet::new(&[[u, v], [u, v + PI], [u + PI, other], [u + PI, other + PI]])
             }
-            Self::General => return None,
+            Self::Spline(_) | Self::Swept(_) | Self::General => return None,
         })
     }
 
@@ -181,7 +208,7 @@ impl Surface {
             | Self::Cone(axes, ..)
             | Self::Sphere(axes, _)
             | Self::Torus(axes, ..) => axes,
-            Self::General => return None,
+            Self::Spline(_) | Self::Swept(_) | Self::General => return None,
         };
         let arm = sub(point, axes.origin);
         Some([dot(arm, axes.x), dot(arm, axes.y), dot(arm, axes.z)])

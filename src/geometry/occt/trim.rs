@@ -1,0 +1,191 @@
+//! Which parameters lie in a trimmed face: told at once by a grid over its range, except in the cells that an edge
+//! crosses, where OCCT's classifier is asked.
+use super::curve::Curve;
+use super::evaluator::OcctEvaluator;
+use super::hull::{self, as_jet};
+use super::tree::cuts;
+use crate::geometry::{FaceEntity, Topology};
+use crate::mesh::vector::Vec3;
+
+/// Cells of the grid in each direction.
+const CELLS: usize = 64;
+/// Pieces that an edge is cut into at least.
+const PIECES: usize = 64;
+/// How near to the border of the range, as a share of it, a p-curve must lie to be that border.
+const BORDER: f64 = 3e-7;
+/// What boxes of pieces are grown by, as a share of a cell.
+const GROWTH: f64 = 0.1;
+
+/// What is known of a face's trimming.
+#[derive(Debug)]
+pub enum Trim {
+    /// All of its range is inside.
+    Whole,
+    /// By cells, those of v side by side.
+    Grid(Box<[[Place; CELLS]; CELLS]>),
+    /// Nothing: an edge has no copy of its p-curve.
+    Unknown,
+}
+
+/// Where a cell lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// Not yet known; when the grid is done there is none left.
+    Free,
+    Inside,
+    Outside,
+    /// An edge crosses it.
+    Crossed,
+}
+
+impl Trim {
+    /// Whether the parameters lie in the face, if that is known without asking OCCT. They lie in the face's range.
+    #[inline]
+    pub fn known(&self, face: &FaceEntity, uv: [f64; 2]) -> Option<bool> {
+        let grid = match self {
+            Self::Whole => return uv.iter().all(|x| x.is_finite()).then_some(true),
+            Self::Grid(grid) => grid,
+            Self::Unknown => return None,
+        };
+        let share = |k: usize| (uv[k] - face.range[k][0]) / (face.range[k][1] - face.range[k][0]);
+        let (s, r) = (share(0), share(1));
+        if !((0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&r)) {
+            return None;
+        }
+        let cell = |s: f64| ((s * CELLS as f64) as usize).min(CELLS - 1);
+        match grid[cell(s)][cell(r)] {
+            Place::Inside => Some(true),
+            Place::Outside => Some(false),
+            Place::Free | Place::Crossed => None,
+        }
+    }
+}
+
+/// The trimming of a face.
+pub fn build(on: &mut OcctEvaluator, index: u32) -> Trim {
+    let topology = &on.model.topology;
+    let face = &topology.faces[index as usize];
+    let mut boxes = Vec::new();
+    let mut bordered = true;
+    for &edge in &face.edges {
+        let Some(pcurve) = on.model.pcurves[edge as usize].iter().find(|pcurve| pcurve.face == index) else {
+            return Trim::Unknown;
+        };
+        let seam = topology.edges[edge as usize].seam;
+        if seam && pcurve.other.is_none() {
+            return Trim::Unknown;
+        }
+        for curve in std::iter::once(&pcurve.curve).chain(&pcurve.other) {
+            if matches!(curve, Curve::General) {
+                return Trim::Unknown;
+            }
+            let first = boxes.len();
+            pieces(topology, edge, curve, &mut boxes);
+            bordered &= is_border(face, &boxes[first..]);
+        }
+    }
+    if bordered && samples_inside(on, index) {
+        return Trim::Whole;
+    }
+    let mut grid = Box::new([[Place::Free; CELLS]; CELLS]);
+    let topology = &on.model.topology;
+    boxes.iter().for_each(|piece| cross(&mut grid, &topology.faces[index as usize], piece));
+    fill(on, index, &mut grid);
+    Trim::Grid(grid)
+}
+
+/// Boxes (of u and v) of the pieces of a p-curve.
+fn pieces(topology: &Topology, edge: u32, curve: &Curve, out: &mut Vec<[[f64; 2]; 2]>) {
+    let mut points: Vec<Vec3> = Vec::new();
+    let ends = cuts(topology.edges[edge as usize].range, None, curve.breaks(), 1);
+    let parts = PIECES.div_ceil(ends.len() - 1).max(2);
+    for span in ends.windows(2) {
+        for k in 0..parts {
+            let at =
+                |k: usize| if k == parts { span[1] } else { span[0] + (span[1] - span[0]) * k as f64 / parts as f64 };
+            points.clear();
+            let mut jet = |uv: [f64; 2]| curve.frame(uv[0]).map_or_else(nowhere, as_jet);
+            let margin = hull::of_curve(curve, &mut jet, [at(k), at(k + 1)], &mut points);
+            out.push([0, 1].map(|k: usize| {
+                let low = points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+                [low - margin, points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max) + margin]
+            }));
+        }
+    }
+}
+
+/// A general curve has been sent away before.
+fn nowhere() -> super::surface::Jet {
+    as_jet(crate::geometry::CurveFrame { point: [f64::NAN; 3], d1: [0.0; 3], d2: [0.0; 3] })
+}
+
+/// Whether a p-curve runs along one border of the face's range.
+fn is_border(face: &FaceEntity, boxes: &[[[f64; 2]; 2]]) -> bool {
+    (0..2).any(|k| {
+        let [low, high] = face.range[k];
+        let slack = BORDER * (high - low);
+        let shifts = face.period[k].map_or([0.0; 3], |period| [-period, 0.0, period]);
+        [low, high].into_iter().any(|border| {
+            shifts
+                .iter()
+                .any(|shift| boxes.iter().all(|piece| piece[k].iter().all(|x| (x + shift - border).abs() <= slack)))
+        })
+    })
+}
+
+/// Whether OCCT finds nine points of the range inside.
+fn samples_inside(on: &mut OcctEvaluator, index: u32) -> bool {
+    let range = on.model.topology.faces[index as usize].range;
+    let at = |k: usize, s: f64| range[k][0] + s * (range[k][1] - range[k][0]);
+    let shares = [0.11, 0.53, 0.87];
+    shares.iter().all(|&s| shares.iter().all(|&r| on.inside_by_occt(index, [at(0, s), at(1, r)])))
+}
+
+/// Marks the cells that a box meets, wherever periods bring it.
+fn cross(grid: &mut [[Place; CELLS]; CELLS], face: &FaceEntity, piece: &[[f64; 2]; 2]) {
+    let turns = |k: usize| if face.period[k].is_some() { -1..=1 } else { 0..=0 };
+    let cells = |k: usize, turn: i32| {
+        let [low, high] = face.range[k];
+        let shift = face.period[k].unwrap_or(0.0) * f64::from(turn);
+        let [from, to] = piece[k].map(|x| (x + shift - low) / (high - low) * CELLS as f64);
+        // A box beyond the range meets no cell; one at its border, rounded, meets the first or last.
+        let from = (from - GROWTH).floor().max(0.0) as usize;
+        let to = (to + GROWTH).floor();
+        if to < 0.0 { 0..0 } else { from..(to as usize + 1).min(CELLS) }
+    };
+    for turn in turns(0) {
+        for i in cells(0, turn) {
+            for other in turns(1) {
+                for j in cells(1, other) {
+                    grid[i][j] = Place::Crossed;
+                }
+            }
+        }
+    }
+}
+
+/// Asks OCCT once for each connected part of the cells that no edge crosses.
+fn fill(on: &mut OcctEvaluator, index: u32, grid: &mut [[Place; CELLS]; CELLS]) {
+    let range = on.model.topology.faces[index as usize].range;
+    let middle = |k: usize, i: usize| range[k][0] + (range[k][1] - range[k][0]) * (i as f64 + 0.5) / CELLS as f64;
+    let mut stack = Vec::new();
+    for start in 0..CELLS * CELLS {
+        let (i, j) = (start / CELLS, start % CELLS);
+        if grid[i][j] != Place::Free {
+            continue;
+        }
+        let inside = on.inside_by_occt(index, [middle(0, i), middle(1, j)]);
+        let place = if inside { Place::Inside } else { Place::Outside };
+        grid[i][j] = place;
+        stack.push((i, j));
+        while let Some((i, j)) = stack.pop() {
+            let beside = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
+            for (i, j) in beside.into_iter().filter(|&(i, j)| i < CELLS && j < CELLS) {
+                if grid[i][j] == Place::Free {
+                    grid[i][j] = place;
+                    stack.push((i, j));
+                }
+            }
+        }
+    }
+}
