@@ -1,0 +1,1 @@
+"""Families of models; write_all.py writes their files here."""
