@@ -17,8 +17,9 @@ use super::metric::common::check_output;
 use super::metric::geometry::GeometryArguments;
 use super::{Outcome, load, names};
 use crate::geometry::classify::associate;
-use crate::geometry::{Geometry, Model};
+use crate::geometry::{Geometry, Model, Topology};
 use crate::mesh::io;
+use crate::mesh::vector::distance;
 use crate::tasks::{Plan, Pool, Team, stage};
 use driver::Choice;
 use ladder::{Meshed, Wish};
@@ -92,7 +93,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let options = arguments.sizes.options(&model, arguments.limits(), None);
     let wish = Wish {
         greatest: options.greatest,
-        least: options.least,
+        least: options.least.max(LEAST * small_face(model.topology())),
         diagonal: model.topology().diagonal(),
         segments: options.segments,
         stop: stop_on_interrupt(),
@@ -120,6 +121,17 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let asked =
         Asked { input: arguments.model.clone(), output: arguments.output.clone(), threads, complexity_wanted: None };
     refine::run(arguments, &pool, (meshed, model), &asked, (start, wish.stop))
+}
+
+/// Least size by curvature that the mesher is told, of a small face: at an apex it would make a thousand times as many cells as are left
+/// of them, and more than that our kernel finds by itself.
+const LEAST: f64 = 1e-3;
+
+/// The diagonal of a face's box, a quarter of the faces being smaller: the body's scale, also in a far field.
+fn small_face(topology: &Topology) -> f64 {
+    let mut diagonals: Vec<f64> = topology.faces.iter().map(|face| distance(face.bounds[0], face.bounds[1])).collect();
+    diagonals.sort_by(f64::total_cmp);
+    diagonals.get(diagonals.len() / 4).copied().unwrap_or_default()
 }
 
 /// Refuses a model that is no volume.
