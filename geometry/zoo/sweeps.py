@@ -60,11 +60,25 @@ def open_box():
 
 
 def star_tower():
-    """A closed spline like a star with five points, extruded: one wall that waves, with a seam."""
+    """A closed uniform cubic B-spline like a star with five points, extruded: one periodic wall that waves, with a seam."""
     import cadquery
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+    from OCP.Geom import Geom_BSplineCurve
+    from OCP.gp import gp_Pnt
+    from OCP.TColgp import TColgp_Array1OfPnt
+    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 
-    points = [(r * math.cos(math.pi * i / 5), r * math.sin(math.pi * i / 5)) for i, r in enumerate([0.6, 0.35] * 5)]
-    return cadquery.Workplane().spline(points, periodic=True).close().extrude(0.8)
+    poles = TColgp_Array1OfPnt(1, 10)
+    knots, multiplicities = TColStd_Array1OfReal(1, 11), TColStd_Array1OfInteger(1, 11)
+    for i in range(10):
+        r, angle = [0.7, 0.3][i % 2], math.pi * i / 5
+        poles.SetValue(i + 1, gp_Pnt(r * math.cos(angle), r * math.sin(angle), 0.0))
+    for i in range(11):
+        knots.SetValue(i + 1, float(i))
+        multiplicities.SetValue(i + 1, 1)
+    curve = Geom_BSplineCurve(poles, knots, multiplicities, 3, True)
+    wire = cadquery.Wire.assembleEdges([cadquery.Edge(BRepBuilderAPI_MakeEdge(curve).Edge())])
+    return cadquery.Workplane().add(cadquery.Solid.extrudeLinear(wire, [], cadquery.Vector(0, 0, 0.8)))
 
 
 MODELS = {
