@@ -275,6 +275,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
         self.context.limits.collapse_floor = 0.0;
         self.context.limits.longest_new = f64::INFINITY;
+        (self.context.limits.tilt, self.context.limits.spread) = (-1.0, -1.0);
         let items = std::mem::take(&mut self.waiting);
         self.sweep(Kind::Project, &Retire, &items);
         self.gather_waiting();

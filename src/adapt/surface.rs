@@ -259,7 +259,8 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Holds new triangles, with tags, against the old ones: `slack` is for the tilt alone.
     pub fn compare_normals(&mut self, old: Facing, new: &[([VertexId; 3], u32)], slack: f64) -> Result<(), Refusal> {
         let limits = self.context.limits;
-        let tilt = (old.worst.tilt - slack).min(limits.tilt).max(1e-3);
+        // A negative limit allows any: a vertex that must go, goes.
+        let tilt = if limits.tilt < 0.0 { -1.0 } else { (old.worst.tilt - slack).min(limits.tilt).max(1e-3) };
         let spread = old.worst.spread.min(limits.spread);
         let chord = old.worst.chord.max(limits.chord);
         let turned = new.iter().any(|&(triangle, tag)| {
