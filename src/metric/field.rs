@@ -49,7 +49,12 @@ impl Field {
         Self::write_each(team, path, logs.len(), |v| logs[v].exp())
     }
 
-    fn write_each(team: Team<'_>, path: &Path, count: usize, metric: impl Fn(usize) -> Sym3 + Sync) -> Result<(), Error> {
+    fn write_each(
+        team: Team<'_>,
+        path: &Path,
+        count: usize,
+        metric: impl Fn(usize) -> Sym3 + Sync,
+    ) -> Result<(), Error> {
         let kind = FieldKind::SymmetricTensor;
         let mut values = vec![0.0; kind.values() * count];
         team.fill(kind.values() * GRAIN, &mut values, |start, chunk| {

@@ -24,7 +24,9 @@ pub(super) fn solution_to(team: Team<'_>, path: &Path, solution: &Solution) -> R
     let binary = is_binary(path, "sol")?;
     check_solution(team, solution).map_err(|(place, message)| Error::content(path, place, message))?;
     let sections = solution_sections(solution);
-    write_beside(path, |to| write_sections(to, binary, version(&sections), &sections, &Content::Solution(team, solution)))
+    write_beside(path, |to| {
+        write_sections(to, binary, version(&sections), &sections, &Content::Solution(team, solution))
+    })
 }
 
 /// Whether a path's extension is `name` with a b behind it, not `name` alone.
@@ -216,7 +218,8 @@ fn check_solution(team: Team<'_>, solution: &Solution) -> Result<(), Fault> {
             let message = format!("{length} values; {} at each of {vertices} vertices are expected", kind.values());
             return Err((format!("{name}, field {number}"), message));
         }
-        let parts = team.chunks(GRAIN * kind.values(), values.len(), |range| values[range].iter().all(|x| x.is_finite()));
+        let parts =
+            team.chunks(GRAIN * kind.values(), values.len(), |range| values[range].iter().all(|x| x.is_finite()));
         if parts.contains(&false) {
             check_finite(Keyword::SolAtVertices, values.chunks(kind.values()))?;
         }

@@ -40,6 +40,9 @@ pub struct Fitted {
     /// How well the points tell the terms apart, in [0, 1]: the least share of a term's column that is no combination of those before,
     /// where a product of two coordinates counts as small as it is beside their squares.
     pub quality: f64,
+    /// The share of the values' variance that the fit leaves unexplained, per degree of freedom (1 - adjusted R²): small where the field is
+    /// smooth at the distance of the points, near 1 across a jump; 1 where there are no more points than terms.
+    pub unexplained: f64,
 }
 
 impl Quadratic {
@@ -81,6 +84,7 @@ fn fit(blocks: &[[Lanes; 5]], points: usize, columns: &mut [Lanes]) -> Option<Fi
     // Σ |y|² = 3.
     fill(blocks, &to_y, 0.75 / points as f64, columns);
     let (factors, pivots, quality) = orthogonalise(blocks.len(), columns);
+    let unexplained = unexplained(points, blocks.len(), columns, &factors);
     // Back from the last term; those that are not quadratic are not asked for.
     let mut h = [0.0; TERMS];
     for k in (LINEAR..TERMS).rev() {
@@ -88,7 +92,7 @@ fn fit(blocks: &[[Lanes; 5]], points: usize, columns: &mut [Lanes]) -> Option<Fi
         h[k] = factors[k][TERMS] - rest;
     }
     let hessian = congruent(&to_y, &[h[4], h[5], h[6], h[7], h[8], h[9]]);
-    (pivots && hessian.0.iter().all(|x| x.is_finite())).then_some(Fitted { hessian, quality })
+    (pivots && hessian.0.iter().all(|x| x.is_finite())).then_some(Fitted { hessian, quality, unexplained })
 }
 
 /// The lower triangle of C⁻¹, y = C⁻¹ d: the inverse of Cholesky's factor of the points' second moments, row by row.
@@ -163,6 +167,24 @@ fn orthogonalise(height: usize, columns: &mut [Lanes]) -> ([[f64; TERMS + 1]; TE
         }
     }
     (factors, least > 0.0, least.sqrt())
+}
+
+/// 1 - adjusted R² from the orthogonal columns: what is left of the right-hand side beside all but its constant.
+#[inline(always)]
+fn unexplained(points: usize, height: usize, columns: &[Lanes], factors: &[[f64; TERMS + 1]; TERMS]) -> f64 {
+    let square = |k: usize| {
+        let column = &columns[k * height..(k + 1) * height];
+        product(column, column)
+    };
+    let rest = square(TERMS);
+    let explained: f64 = (1..TERMS).map(|k| square(k) * factors[k][TERMS] * factors[k][TERMS]).sum();
+    let (whole, free) = (rest + explained, points.saturating_sub(TERMS));
+    if free == 0 {
+        return 1.0;
+    }
+    let share = rest / free as f64 * (points - 1) as f64 / whole;
+    // A constant field is explained.
+    if whole > 0.0 { share } else { 0.0 }
 }
 
 /// The scalar product of two columns.
