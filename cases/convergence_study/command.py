@@ -30,7 +30,7 @@ HELD_FROM = 64_000
 BOUNDS = {
     "sinfun3": [Bound("order", "≥", 0.62, 0.62)],
     "tanh3": [Bound("order", "≥", 0.62, 0.62)],
-    "sinatan3": [Bound("order", "≥", 0.62, 0.54), Bound("times less than uniform", "≥", 20, 17)],
+    "sinatan3": [Bound("order", "≥", 0.62, 0.53), Bound("times less than uniform", "≥", 20, 17)],
 }
 # Gradation and recovery for each. Where a scalar is smooth Hessians by L2 projection are as good as fits; one with a jump asks for the
 # recovery that is made for jumps.

@@ -48,8 +48,8 @@ impl Limiter {
     #[inline]
     fn roughness(self, fitted: &Fitted, step: f64) -> f64 {
         let [low, high] = STEPS.map(|share| share * self.range);
-        let unexplained = (fitted.unexplained.min(1.0) - ROUGH) / (1.0 - ROUGH);
-        (unexplained * ((step - low) / (high - low)).min(1.0)).max(0.0)
+        let unexplained = ((fitted.unexplained - ROUGH) / (1.0 - ROUGH)).clamp(0.0, 1.0);
+        unexplained * ((step - low) / (high - low)).clamp(0.0, 1.0)
     }
 
     /// Whether the fit to the first ring, good but of few points, is better than that to two: these cross a jump that the first does not.
