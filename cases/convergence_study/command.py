@@ -37,7 +37,7 @@ BOUNDS = {
 METHODS = {
     "sinfun3": ["--gradation", "3", "--hessian", "l2"],
     "tanh3": ["--gradation", "3", "--hessian", "l2"],
-    "sinatan3": ["--gradation", "3", "--hessian", "jumps"],
+    "sinatan3": ["--gradation", "6", "--hessian", "jumps"],
 }
 # Parts of the error that the quadrature may be off by.
 DOUBT = 0.02
