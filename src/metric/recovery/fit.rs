@@ -41,16 +41,17 @@ pub fn hessians(
             limiter,
             seen: Seen::default(),
             stencil: Vec::new(),
-            fit: Quadratic::default(),
+            fit: Quadratic::telling(limiter.is_some()),
             span: [0.0; 2],
         };
         for (slot, vertex) in found.iter_mut().zip(start as u32..) {
             *slot = around.hessian(vertex);
         }
     });
-    let is_jump = team.map(GRAIN, found.len(), |v| found[v].1);
-    let mut found: Vec<Option<Sym3>> = team.map(GRAIN, found.len(), |v| found[v].0);
+    let both = found;
+    let mut found: Vec<Option<Sym3>> = team.map(GRAIN, both.len(), |v| both[v].0);
     if limiter.is_some() {
+        let is_jump = team.map(GRAIN, both.len(), |v| both[v].1);
         limiter::average(team, rings, &mut found, &is_jump);
     }
     let unfitted = found.iter().filter(|hessian| hessian.is_none()).count();

@@ -30,6 +30,8 @@ pub struct Quadratic {
     points: usize,
     /// The columns of the terms and the right-hand side, one after the other, each as long as there are blocks.
     columns: Vec<Lanes>,
+    /// Whether [`Fitted::unexplained`] is asked for: a quarter more work.
+    explains: bool,
 }
 
 /// A fit.
@@ -41,11 +43,17 @@ pub struct Fitted {
     /// where a product of two coordinates counts as small as it is beside their squares.
     pub quality: f64,
     /// The share of the values' variance that the fit leaves unexplained, per degree of freedom (1 - adjusted R²): small where the field is
-    /// smooth at the distance of the points, near 1 across a jump; 1 where there are no more points than terms.
+    /// smooth at the distance of the points, near 1 across a jump; 1 where there are no more points than terms;
+    /// 0 where it was not asked for.
     pub unexplained: f64,
 }
 
 impl Quadratic {
+    /// One whose fits tell what they leave unexplained, or not.
+    pub fn telling(explains: bool) -> Self {
+        Self { explains, ..Self::default() }
+    }
+
     /// Forgets all points, and takes the vertex itself.
     #[inline]
     pub fn start(&mut self) {
@@ -74,17 +82,17 @@ impl Quadratic {
             return None;
         }
         self.columns.resize((TERMS + 1) * self.blocks.len(), Lanes::ZERO);
-        fit(&self.blocks, self.points, &mut self.columns)
+        fit(&self.blocks, self.points, &mut self.columns, self.explains)
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn fit(blocks: &[[Lanes; 5]], points: usize, columns: &mut [Lanes]) -> Option<Fitted> {
+fn fit(blocks: &[[Lanes; 5]], points: usize, columns: &mut [Lanes], explains: bool) -> Option<Fitted> {
     let to_y = whitening(blocks)?;
     // Σ |y|² = 3.
     fill(blocks, &to_y, 0.75 / points as f64, columns);
     let (factors, pivots, quality) = orthogonalise(blocks.len(), columns);
-    let unexplained = unexplained(points, blocks.len(), columns, &factors);
+    let unexplained = if explains { unexplained(points, blocks.len(), columns, &factors) } else { 0.0 };
     // Back from the last term; those that are not quadratic are not asked for.
     let mut h = [0.0; TERMS];
     for k in (LINEAR..TERMS).rev() {
