@@ -79,7 +79,7 @@ fn the_file_is_the_same_on_any_number_of_threads() {
         assert_eq!(found.status.code(), Some(0), "{}", stderr(&found));
         std::fs::read(work.path("made.solb")).unwrap()
     };
-    for hessian in ["fit", "l2"] {
+    for hessian in ["fit", "l2", "jumps"] {
         let alone = bytes(hessian, "1");
         assert!(bytes(hessian, "2") == alone && bytes(hessian, "5") == alone, "{hessian}");
     }

@@ -41,9 +41,28 @@ impl Field {
 
     /// Writes .sol or .solb by the extension.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
-        let values = self.metrics.iter().flat_map(|m| m.0).collect();
-        let field = SolutionField { kind: FieldKind::SymmetricTensor, values };
-        Ok(io::write_solution(path, &Solution { vertices: self.metrics.len(), fields: vec![field] })?)
+        Self::write_each(Team::alone(), path, self.metrics.len(), |v| self.metrics[v])
+    }
+
+    /// Writes M = exp of these logarithms, shape (n,), as [`Field::write`] does.
+    pub fn write_logs(team: Team<'_>, path: &Path, logs: &[Sym3]) -> Result<(), Error> {
+        Self::write_each(team, path, logs.len(), |v| logs[v].exp())
+    }
+
+    fn write_each(
+        team: Team<'_>,
+        path: &Path,
+        count: usize,
+        metric: impl Fn(usize) -> Sym3 + Sync,
+    ) -> Result<(), Error> {
+        let kind = FieldKind::SymmetricTensor;
+        let mut values = vec![0.0; kind.values() * count];
+        team.fill(kind.values() * GRAIN, &mut values, |start, chunk| {
+            let rows = chunk.as_chunks_mut().0;
+            rows.iter_mut().zip(start / kind.values()..).for_each(|(row, v)| *row = metric(v).0);
+        });
+        let solution = Solution { vertices: count, fields: vec![SolutionField { kind, values }] };
+        Ok(io::write_solution_on(team, path, &solution)?)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::io::{self, Read, read_mesh};
 use crate::mesh::vector::distance;
 use crate::metric::{Field, Limits, Sym3, field};
-use crate::tasks::{GRAIN, Pool, Team};
+use crate::tasks::{Pool, Team};
 use std::path::{Path, PathBuf};
 
 /// An error that ends the subcommand with code 2.
@@ -59,8 +59,7 @@ impl OutputArgument {
 
     /// Writes M = exp of these logarithms.
     pub fn write_logs(&self, team: Team<'_>, logs: &[Sym3]) -> Result<(), Failure> {
-        let metrics = team.map(GRAIN, logs.len(), |v| logs[v].exp());
-        Ok(Field { metrics }.write(&self.output)?)
+        Ok(Field::write_logs(team, &self.output, logs)?)
     }
 }
 

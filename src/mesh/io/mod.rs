@@ -23,6 +23,7 @@ pub use points::read_points;
 pub use solution::{FieldKind, Solution, SolutionField};
 
 use super::TetMesh;
+use crate::tasks::Team;
 use std::path::Path;
 
 /// What was read, and what was passed over: one line a notice, to be shown to the user.
@@ -67,5 +68,13 @@ pub fn read_solution(path: &Path) -> Result<Read<Solution>, Error> {
 /// [`Error::Content`] for another extension, a wrong number of values or a value that is not finite,
 /// [`Error::System`] when the file cannot be written.
 pub fn write_solution(path: &Path, solution: &Solution) -> Result<(), Error> {
-    write::solution_to(path, solution)
+    write_solution_on(Team::alone(), path, solution)
+}
+
+/// As [`write_solution`], on the threads of a team: the same file to the last byte.
+///
+/// # Errors
+/// As there.
+pub fn write_solution_on(team: Team<'_>, path: &Path, solution: &Solution) -> Result<(), Error> {
+    write::solution_to(team, path, solution)
 }

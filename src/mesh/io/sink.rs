@@ -17,6 +17,10 @@ pub(super) trait Sink {
     fn real(&mut self, value: f64);
     /// The end of a row.
     fn end_row(&mut self) -> io::Result<()>;
+    /// Appends a row of reals to the bytes as [`Sink::real`] and [`Sink::end_row`] would: for tasks that encode many rows at once.
+    fn encode(row: impl Iterator<Item = f64>, bytes: &mut Vec<u8>);
+    /// Hands on rows that are encoded.
+    fn rows(&mut self, bytes: &[u8]) -> io::Result<()>;
     /// The end of the file.
     fn end(self) -> io::Result<()>;
 }
@@ -60,6 +64,17 @@ impl Sink for AsciiSink<'_> {
         self.buffer.pop(); // the blank
         self.buffer.push(b'\n');
         flush_full(self.to, &mut self.buffer, BUFFER)
+    }
+
+    fn encode(row: impl Iterator<Item = f64>, bytes: &mut Vec<u8>) {
+        row.for_each(|value| write!(bytes, "{value:?} ").expect("writing to memory"));
+        bytes.pop(); // the blank
+        bytes.push(b'\n');
+    }
+
+    fn rows(&mut self, bytes: &[u8]) -> io::Result<()> {
+        flush_full(self.to, &mut self.buffer, 0)?;
+        self.to.write_all(bytes)
     }
 
     fn end(mut self) -> io::Result<()> {
@@ -157,6 +172,15 @@ impl Sink for BinarySink<'_> {
     #[inline]
     fn end_row(&mut self) -> io::Result<()> {
         flush_full(self.to, &mut self.buffer, BUFFER)
+    }
+
+    fn encode(row: impl Iterator<Item = f64>, bytes: &mut Vec<u8>) {
+        row.for_each(|value| bytes.extend_from_slice(&value.to_le_bytes()));
+    }
+
+    fn rows(&mut self, bytes: &[u8]) -> io::Result<()> {
+        flush_full(self.to, &mut self.buffer, 0)?;
+        self.to.write_all(bytes)
     }
 
     fn end(mut self) -> io::Result<()> {

@@ -4,8 +4,12 @@ use super::sink::{AsciiSink, BinarySink, Sink, version};
 use super::source::Section;
 use super::{Error, Solution, SolutionField, write_beside};
 use crate::mesh::{Elements, TetMesh};
+use crate::tasks::{GRAIN, Team};
 use std::io::{self, Write};
 use std::path::Path;
+
+/// Rows of a solution that are encoded before they are written: some megabytes, and enough tasks for all threads.
+const ROWS: usize = 64 * GRAIN;
 
 /// Writes a mesh by the path's extension.
 pub(super) fn mesh_to(path: &Path, mesh: &TetMesh) -> Result<(), Error> {
@@ -16,11 +20,13 @@ pub(super) fn mesh_to(path: &Path, mesh: &TetMesh) -> Result<(), Error> {
 }
 
 /// Writes a solution by the path's extension.
-pub(super) fn solution_to(path: &Path, solution: &Solution) -> Result<(), Error> {
+pub(super) fn solution_to(team: Team<'_>, path: &Path, solution: &Solution) -> Result<(), Error> {
     let binary = is_binary(path, "sol")?;
-    check_solution(solution).map_err(|(place, message)| Error::content(path, place, message))?;
+    check_solution(team, solution).map_err(|(place, message)| Error::content(path, place, message))?;
     let sections = solution_sections(solution);
-    write_beside(path, |to| write_sections(to, binary, version(&sections), &sections, &Content::Solution(solution)))
+    write_beside(path, |to| {
+        write_sections(to, binary, version(&sections), &sections, &Content::Solution(team, solution))
+    })
 }
 
 /// Whether a path's extension is `name` with a b behind it, not `name` alone.
@@ -40,7 +46,7 @@ fn is_binary(path: &Path, name: &str) -> Result<bool, Error> {
 /// What is written.
 pub(super) enum Content<'a> {
     Mesh(&'a TetMesh),
-    Solution(&'a Solution),
+    Solution(Team<'a>, &'a Solution),
 }
 
 /// The sections of a mesh, empty ones left out.
@@ -95,7 +101,7 @@ fn emit<S: Sink>(mut sink: S, sections: &[Section], content: &Content) -> io::Re
         sink.section(section);
         match content {
             Content::Mesh(mesh) => emit_mesh(&mut sink, section.keyword, mesh)?,
-            Content::Solution(solution) => emit_solution(&mut sink, solution)?,
+            Content::Solution(team, solution) => emit_solution(*team, &mut sink, solution)?,
         }
     }
     sink.end()
@@ -156,12 +162,20 @@ fn emit_association<S: Sink>(sink: &mut S, keyword: Keyword, mesh: &TetMesh) -> 
     }
 }
 
-fn emit_solution<S: Sink>(sink: &mut S, solution: &Solution) -> io::Result<()> {
-    for vertex in 0..solution.vertices {
-        for SolutionField { kind, values } in &solution.fields {
-            values[vertex * kind.values()..][..kind.values()].iter().for_each(|&x| sink.real(x));
-        }
-        sink.end_row()?;
+fn emit_solution<S: Sink>(team: Team<'_>, sink: &mut S, solution: &Solution) -> io::Result<()> {
+    let row = |vertex: usize| {
+        solution.fields.iter().flat_map(move |SolutionField { kind, values }| {
+            values[vertex * kind.values()..][..kind.values()].iter().copied()
+        })
+    };
+    for start in (0..solution.vertices).step_by(ROWS) {
+        let count = ROWS.min(solution.vertices - start);
+        let encoded = team.chunks(GRAIN, count, |range| {
+            let mut bytes = Vec::new();
+            range.for_each(|vertex| S::encode(row(start + vertex), &mut bytes));
+            bytes
+        });
+        encoded.iter().try_for_each(|bytes| sink.rows(bytes))?;
     }
     Ok(())
 }
@@ -193,7 +207,7 @@ fn check_mesh(mesh: &TetMesh) -> Result<(), Fault> {
     check_finite(Keyword::OnFaces, on.faces.iter().map(|v| [v.uv[0], v.uv[1], v.r]))
 }
 
-fn check_solution(solution: &Solution) -> Result<(), Fault> {
+fn check_solution(team: Team<'_>, solution: &Solution) -> Result<(), Fault> {
     let name = Keyword::SolAtVertices.name();
     if solution.fields.is_empty() {
         return Err((name.into(), "the solution has no field; nothing is written".into()));
@@ -204,7 +218,11 @@ fn check_solution(solution: &Solution) -> Result<(), Fault> {
             let message = format!("{length} values; {} at each of {vertices} vertices are expected", kind.values());
             return Err((format!("{name}, field {number}"), message));
         }
-        check_finite(Keyword::SolAtVertices, values.chunks(kind.values()))?;
+        let parts =
+            team.chunks(GRAIN * kind.values(), values.len(), |range| values[range].iter().all(|x| x.is_finite()));
+        if parts.contains(&false) {
+            check_finite(Keyword::SolAtVertices, values.chunks(kind.values()))?;
+        }
     }
     Ok(())
 }
@@ -266,7 +284,7 @@ mod tests {
             let rows = 4 * (24 + int) + 5 * int + 2 * int + 24;
             assert_eq!(bytes.len(), 8 + 5 * (4 + position) + 4 + 3 * int + rows, "version {version}");
             assert_eq!(mesh_from(Path::new("m"), &bytes).unwrap().content, mesh);
-            let (sections, content) = (solution_sections(&solution), Content::Solution(&solution));
+            let (sections, content) = (solution_sections(&solution), Content::Solution(Team::alone(), &solution));
             let mut bytes = Vec::new();
             write_sections(&mut bytes, true, version, &sections, &content).unwrap();
             assert_eq!(solution_from(Path::new("s"), &bytes).unwrap().content, solution);

@@ -20,7 +20,7 @@ use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::tasks::{GRAIN, Team};
 pub use measure::{Growths, measure};
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering::Relaxed};
 
 /// An intersection that raises no eigenvalue by more than this share, half of it in size, is no change. (With 1e-6 a field of strong and
 /// turning anisotropy takes half as many updates more, for sizes that no mesh can tell apart.)
@@ -31,6 +31,9 @@ const CLASS: f64 = 1.25;
 
 /// Vertices a task: one takes a microsecond or two.
 const FEW: usize = 1 << 8;
+
+/// Vertices of a task that writes updates back, and updates from which on tasks do.
+const OWN: usize = 1 << 14;
 
 /// What grading did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -56,12 +59,9 @@ pub fn grade(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3], ratio: f64) -> G
 }
 
 /// Where a vertex waits to tell its neighbours.
-#[derive(Clone, Copy, PartialEq)]
-enum Place {
-    Nowhere,
-    Near,
-    Far,
-}
+const NOWHERE: u8 = 0;
+const NEAR: u8 = 1;
+const FAR: u8 = 2;
 
 /// A vertex gets another metric.
 #[derive(Clone, Copy)]
@@ -82,11 +82,12 @@ struct Grading<'a> {
     frames: Vec<Frame>,
     /// ln r.
     pace: f64,
-    places: Vec<Place>,
+    /// [`NOWHERE`], [`NEAR`] or [`FAR`].
+    places: Vec<AtomicU8>,
     /// Of who waits, the least size that is news.
     news: Vec<f64>,
     /// Who tells its neighbours in this round.
-    telling: Vec<bool>,
+    telling: Vec<AtomicBool>,
     /// Who is told.
     told: Vec<AtomicBool>,
     changed: Vec<bool>,
@@ -108,9 +109,9 @@ impl<'a> Grading<'a> {
             frames: team.map(GRAIN, count, |v| Frame::of_log(&logs[v])),
             logs,
             pace,
-            places: vec![Place::Nowhere; count],
+            places: (0..count).map(|_| AtomicU8::new(NOWHERE)).collect(),
             news: vec![0.0; count],
-            telling: vec![false; count],
+            telling: (0..count).map(|_| AtomicBool::new(false)).collect(),
             told: (0..count).map(|_| AtomicBool::new(false)).collect(),
             changed: vec![false; count],
         }
@@ -166,42 +167,78 @@ impl<'a> Grading<'a> {
     fn settle(&mut self, waiting: &[(u32, f64)]) -> [usize; 2] {
         let (mut near, mut far) = (Vec::new(), Vec::with_capacity(waiting.len()));
         for &(v, news) in waiting {
-            (self.places[v as usize], self.news[v as usize]) = (Place::Far, news);
+            *self.places[v as usize].get_mut() = FAR;
+            self.news[v as usize] = news;
             far.push(v);
         }
         let mut limit = 0.0;
         let [mut rounds, mut updates] = [0; 2];
         loop {
             if near.is_empty() {
-                // Who was near meanwhile may be in the list twice, or no more be far.
-                far.retain(|&v| self.places[v as usize] == Place::Far);
                 let Some(least) = self.least_news(&far) else { return [rounds, updates] };
                 limit = least * CLASS;
-                far.retain(|&v| {
-                    let is_near = self.news[v as usize] <= limit;
-                    if is_near && self.places[v as usize] == Place::Far {
-                        self.places[v as usize] = Place::Near;
-                        near.push(v);
-                    }
-                    !is_near
-                });
+                [near, far] = self.split(&far, limit);
             }
             let updated = self.round(&near);
-            near.clear();
             rounds += 1;
             updates += updated.len();
-            for Update { vertex, log, frame, news } in updated {
-                let at = vertex as usize;
-                (self.logs[at], self.frames[at], self.changed[at]) = (log, frame, true);
-                let before = if self.places[at] == Place::Nowhere { f64::INFINITY } else { self.news[at] };
-                self.news[at] = news.min(before);
-                let place = if self.news[at] <= limit { Place::Near } else { Place::Far };
-                if self.places[at] != place {
-                    self.places[at] = place;
-                    if place == Place::Near { near.push(vertex) } else { far.push(vertex) }
+            let [more_near, more_far] = self.write_back(&updated, limit);
+            near = more_near;
+            far.extend(more_far);
+        }
+    }
+
+    /// Of those that wait, who is near, and who stays far. Who was near meanwhile may be in the list twice, or no more be far.
+    fn split(&self, waiting: &[u32], limit: f64) -> [Vec<u32>; 2] {
+        let parts = self.team.chunks(GRAIN, waiting.len(), |range| {
+            let (mut near, mut far) = (Vec::new(), Vec::new());
+            for &v in &waiting[range] {
+                let place = &self.places[v as usize];
+                if self.news[v as usize] > limit {
+                    far.extend((place.load(Relaxed) == FAR).then_some(v));
+                } else {
+                    // Of two only one sees that it was far.
+                    near.extend(place.compare_exchange(FAR, NEAR, Relaxed, Relaxed).is_ok().then_some(v));
                 }
             }
-        }
+            [near, far]
+        });
+        self.joined(parts)
+    }
+
+    /// Lists of chunks one after the other, the first ones and the second ones.
+    fn joined(&self, parts: Vec<[Vec<u32>; 2]>) -> [Vec<u32>; 2] {
+        [0, 1].map(|which| self.team.join_slices(parts.iter().map(|lists| lists[which].as_slice())))
+    }
+
+    /// Takes over the metrics of these, ascending; returns who is now near, and who is now far.
+    fn write_back(&mut self, updated: &[Update], limit: f64) -> [Vec<u32>; 2] {
+        // A task owns the vertices of a chunk, of all that is kept for them.
+        let own = if updated.len() < OWN { self.logs.len().max(1) } else { OWN };
+        let kept = self.logs.chunks_mut(own).zip(self.frames.chunks_mut(own));
+        let kept = kept.zip(self.news.chunks_mut(own)).zip(self.changed.chunks_mut(own));
+        let kept = kept.zip(self.places.chunks_mut(own));
+        let mut parts: Vec<_> = kept.map(|kept| (kept, [Vec::new(), Vec::new()])).collect();
+        self.team.fill(1, &mut parts, |chunk, parts| {
+            for (chunk, ((((logs, frames), news), changed), places), [near, far]) in
+                parts.iter_mut().zip(chunk..).map(|((kept, lists), chunk)| (chunk, kept, lists))
+            {
+                let place_of = |vertex: usize| updated.partition_point(|update| (update.vertex as usize) < vertex);
+                for update in &updated[place_of(chunk * own)..place_of((chunk + 1) * own)] {
+                    let at = update.vertex as usize - chunk * own;
+                    (logs[at], frames[at], changed[at]) = (update.log, update.frame, true);
+                    let place = places[at].get_mut();
+                    news[at] = if *place == NOWHERE { update.news } else { update.news.min(news[at]) };
+                    let now = if news[at] <= limit { NEAR } else { FAR };
+                    if *place != now {
+                        *place = now;
+                        if now == NEAR { near.push(update.vertex) } else { far.push(update.vertex) }
+                    }
+                }
+            }
+        });
+        let lists = parts.into_iter().map(|(_, lists)| lists).collect();
+        self.joined(lists)
     }
 
     /// The least size that is news at these vertices.
@@ -212,22 +249,28 @@ impl<'a> Grading<'a> {
     }
 
     /// The new metrics of the neighbours of `tellers`, where they change, in the order of the vertices.
-    fn round(&mut self, tellers: &[u32]) -> Vec<Update> {
-        for &p in tellers {
-            self.places[p as usize] = Place::Nowhere;
-            self.telling[p as usize] = true;
-        }
-        let this = &*self;
-        let mut told = this.team.collect(FEW, tellers.len(), |range, told| {
-            let neighbours = tellers[range].iter().flat_map(|&p| this.around.of_vertex(p));
-            told.extend(neighbours.filter(|&&q| !this.told[q as usize].swap(true, Relaxed)));
+    fn round(&self, tellers: &[u32]) -> Vec<Update> {
+        self.team.for_each(GRAIN, tellers.len(), |range| {
+            for &p in &tellers[range] {
+                self.places[p as usize].store(NOWHERE, Relaxed);
+                self.telling[p as usize].store(true, Relaxed);
+            }
         });
-        this.team.sort(&mut told);
-        let updated = this.team.collect(FEW, told.len(), |range, updated| {
-            updated.extend(told[range].iter().filter_map(|&q| this.updated(q)));
+        let mut told = self.team.collect(FEW, tellers.len(), |range, told| {
+            let neighbours = tellers[range].iter().flat_map(|&p| self.around.of_vertex(p));
+            told.extend(neighbours.filter(|&&q| !self.told[q as usize].swap(true, Relaxed)));
         });
-        told.iter().for_each(|&q| *self.told[q as usize].get_mut() = false);
-        tellers.iter().for_each(|&p| self.telling[p as usize] = false);
+        self.team.sort(&mut told);
+        let updated = self.team.collect(FEW, told.len(), |range, updated| {
+            updated.extend(told[range].iter().filter_map(|&q| self.updated(q)));
+        });
+        let end = |flags: &[AtomicBool], list: &[u32]| {
+            self.team.for_each(GRAIN, list.len(), |range| {
+                list[range].iter().for_each(|&v| flags[v as usize].store(false, Relaxed));
+            });
+        };
+        end(&self.told, &told);
+        end(&self.telling, tellers);
         updated
     }
 
@@ -235,7 +278,7 @@ impl<'a> Grading<'a> {
     fn updated(&self, q: u32) -> Option<Update> {
         let before = self.frames[q as usize];
         let (mut now, mut news) = (before, f64::INFINITY);
-        for &p in self.around.of_vertex(q).iter().filter(|&&p| self.telling[p as usize]) {
+        for &p in self.around.of_vertex(q).iter().filter(|&&p| self.telling[p as usize].load(Relaxed)) {
             let excess = self.excess(p, &now, q);
             if let Some((both, least)) = excess.and_then(|relative| now.intersection(&relative, 1.0 + TOLERANCE)) {
                 (now, news) = (both, news.min(least));

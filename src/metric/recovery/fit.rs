@@ -1,4 +1,5 @@
 //! Recovery by a quadratic function for each vertex, fitted to the values of its neighbours and theirs.
+use super::limiter::{self, Limiter};
 use super::quadratic::{Fitted, Quadratic};
 use super::rings::Rings;
 use super::seen::Seen;
@@ -23,16 +24,36 @@ const GOOD: f64 = 0.05;
 const USABLE: f64 = 1e-3;
 
 /// The Hessian of a field at the vertices, (n,) from values (n,), and how many took that of their neighbours. Quadratic functions are met to
-/// rounding at every vertex that has a usable fit: on the boundary as inside.
-pub fn hessians(team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -> (Vec<Sym3>, usize) {
-    let mut found = vec![None; values.len()];
+/// rounding at every vertex that has a usable fit: on the boundary as inside. With a limiter the vertices at jumps have |H| as it says.
+pub fn hessians(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    rings: &Rings,
+    values: &[f64],
+    limiter: Option<Limiter>,
+) -> (Vec<Sym3>, usize) {
+    let mut found = vec![(None, false); values.len()];
     team.fill(VERTICES, &mut found, |start, found| {
-        let mut around =
-            Around { mesh, rings, values, seen: Seen::default(), stencil: Vec::new(), fit: Quadratic::default() };
+        let mut around = Around {
+            mesh,
+            rings,
+            values,
+            limiter,
+            seen: Seen::default(),
+            stencil: Vec::new(),
+            fit: Quadratic::telling(limiter.is_some()),
+            span: [0.0; 2],
+        };
         for (slot, vertex) in found.iter_mut().zip(start as u32..) {
             *slot = around.hessian(vertex);
         }
     });
+    let both = found;
+    let mut found: Vec<Option<Sym3>> = team.map(GRAIN, both.len(), |v| both[v].0);
+    if limiter.is_some() {
+        let is_jump = team.map(GRAIN, both.len(), |v| both[v].1);
+        limiter::average(team, rings, &mut found, &is_jump);
+    }
     let unfitted = found.iter().filter(|hessian| hessian.is_none()).count();
     if unfitted == 0 {
         return (team.map(GRAIN, found.len(), |v| found[v].unwrap_or(Sym3::ZERO)), 0);
@@ -48,31 +69,54 @@ struct Around<'a> {
     mesh: &'a TetMesh,
     rings: &'a Rings,
     values: &'a [f64],
+    limiter: Option<Limiter>,
     seen: Seen,
     /// The vertices around the one in hand, ring by ring.
     stencil: Vec<u32>,
     fit: Quadratic,
+    /// Least and greatest value of the points, from that of the vertex.
+    span: [f64; 2],
 }
 
 impl Around<'_> {
-    fn hessian(&mut self, vertex: u32) -> Option<Sym3> {
+    /// The Hessian, and whether it is one at a jump.
+    fn hessian(&mut self, vertex: u32) -> (Option<Sym3>, bool) {
         self.seen.forget();
         self.seen.insert(vertex);
         self.stencil.clear();
         self.fit.start();
+        self.span = [0.0; 2];
         let good = |fitted: &Fitted| fitted.quality > GOOD;
         let mut last = self.grow(vertex, 0..0);
-        if self.stencil.len() >= ENOUGH
-            && let Some(fitted) = self.fit.fit().filter(good)
-        {
-            return Some(fitted.hessian);
+        let few = self.stencil.len() < ENOUGH;
+        let near = if few && self.limiter.is_none() { None } else { self.fit.fit().filter(good) };
+        let near_step = self.step();
+        if let Some(fitted) = near.filter(|_| !few) {
+            return self.limited(fitted, near_step);
         }
         last = self.grow(vertex, last);
-        if let Some(fitted) = self.fit.fit().filter(good) {
-            return Some(fitted.hessian);
+        if let Some(wide) = self.fit.fit().filter(good) {
+            return match (self.limiter, near) {
+                (Some(limiter), Some(near)) if limiter.prefers(&near, &wide, self.step()) => {
+                    self.limited(near, near_step)
+                }
+                _ => self.limited(wide, self.step()),
+            };
         }
         self.grow(vertex, last);
-        self.fit.fit().filter(|fitted| fitted.quality > USABLE).map(|fitted| fitted.hessian)
+        let fitted = self.fit.fit().filter(|fitted| fitted.quality > USABLE);
+        fitted.map_or((None, false), |fitted| self.limited(fitted, self.step()))
+    }
+
+    /// By how much the values of the points differ.
+    fn step(&self) -> f64 {
+        self.span[1] - self.span[0]
+    }
+
+    #[inline]
+    fn limited(&self, fitted: Fitted, step: f64) -> (Option<Sym3>, bool) {
+        let sharpened = self.limiter.and_then(|limiter| limiter.sharpened(&fitted, step));
+        (Some(sharpened.unwrap_or(fitted.hessian)), sharpened.is_some())
     }
 
     /// Adds the neighbours of the last ring, given by its places in the stencil (empty: of the vertex itself); returns those of the new one.
@@ -95,7 +139,9 @@ impl Around<'_> {
             if self.seen.insert(near) {
                 self.stencil.push(near);
                 let [x, y, z] = sub(self.mesh.vertices[near as usize], p);
-                self.fit.push([x, y, z, self.values[near as usize] - value]);
+                let rise = self.values[near as usize] - value;
+                self.span = [self.span[0].min(rise), self.span[1].max(rise)];
+                self.fit.push([x, y, z, rise]);
             }
         }
     }

@@ -2,6 +2,7 @@
 mod extrapolate;
 mod fit;
 mod l2;
+mod limiter;
 mod quadratic;
 mod rings;
 mod seen;
@@ -25,6 +26,8 @@ pub enum Recovery {
     Fit,
     /// The gradients of the elements, averaged to the vertices, twice: smooths more.
     L2,
+    /// As fit, but made for fields with jumps or shocks: where the values jump the second derivative across counts more, so that fewer and thinner layers come.
+    Jumps,
 }
 
 impl Recovery {
@@ -33,6 +36,7 @@ impl Recovery {
         match self {
             Self::Fit => "fit",
             Self::L2 => "l2",
+            Self::Jumps => "jumps",
         }
     }
 
@@ -44,7 +48,8 @@ impl Recovery {
     pub fn hessians(self, team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -> (Vec<Sym3>, usize) {
         assert_eq!(mesh.vertices.len(), values.len(), "one value a vertex");
         match self {
-            Self::Fit => fit::hessians(team, mesh, rings, values),
+            Self::Fit => fit::hessians(team, mesh, rings, values, None),
+            Self::Jumps => fit::hessians(team, mesh, rings, values, Some(limiter::Limiter::of(team, values))),
             Self::L2 => (l2::hessians(team, mesh, rings, values), 0),
         }
     }

@@ -30,6 +30,8 @@ pub struct Quadratic {
     points: usize,
     /// The columns of the terms and the right-hand side, one after the other, each as long as there are blocks.
     columns: Vec<Lanes>,
+    /// Whether [`Fitted::unexplained`] is asked for: a quarter more work.
+    explains: bool,
 }
 
 /// A fit.
@@ -40,9 +42,18 @@ pub struct Fitted {
     /// How well the points tell the terms apart, in [0, 1]: the least share of a term's column that is no combination of those before,
     /// where a product of two coordinates counts as small as it is beside their squares.
     pub quality: f64,
+    /// The share of the values' variance that the fit leaves unexplained, per degree of freedom (1 - adjusted R²): small where the field is
+    /// smooth at the distance of the points, near 1 across a jump; 1 where there are no more points than terms;
+    /// 0 where it was not asked for.
+    pub unexplained: f64,
 }
 
 impl Quadratic {
+    /// One whose fits tell what they leave unexplained, or not.
+    pub fn telling(explains: bool) -> Self {
+        Self { explains, ..Self::default() }
+    }
+
     /// Forgets all points, and takes the vertex itself.
     #[inline]
     pub fn start(&mut self) {
@@ -71,16 +82,17 @@ impl Quadratic {
             return None;
         }
         self.columns.resize((TERMS + 1) * self.blocks.len(), Lanes::ZERO);
-        fit(&self.blocks, self.points, &mut self.columns)
+        fit(&self.blocks, self.points, &mut self.columns, self.explains)
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn fit(blocks: &[[Lanes; 5]], points: usize, columns: &mut [Lanes]) -> Option<Fitted> {
+fn fit(blocks: &[[Lanes; 5]], points: usize, columns: &mut [Lanes], explains: bool) -> Option<Fitted> {
     let to_y = whitening(blocks)?;
     // Σ |y|² = 3.
     fill(blocks, &to_y, 0.75 / points as f64, columns);
     let (factors, pivots, quality) = orthogonalise(blocks.len(), columns);
+    let unexplained = if explains { unexplained(points, blocks.len(), columns, &factors) } else { 0.0 };
     // Back from the last term; those that are not quadratic are not asked for.
     let mut h = [0.0; TERMS];
     for k in (LINEAR..TERMS).rev() {
@@ -88,7 +100,7 @@ fn fit(blocks: &[[Lanes; 5]], points: usize, columns: &mut [Lanes]) -> Option<Fi
         h[k] = factors[k][TERMS] - rest;
     }
     let hessian = congruent(&to_y, &[h[4], h[5], h[6], h[7], h[8], h[9]]);
-    (pivots && hessian.0.iter().all(|x| x.is_finite())).then_some(Fitted { hessian, quality })
+    (pivots && hessian.0.iter().all(|x| x.is_finite())).then_some(Fitted { hessian, quality, unexplained })
 }
 
 /// The lower triangle of C⁻¹, y = C⁻¹ d: the inverse of Cholesky's factor of the points' second moments, row by row.
@@ -163,6 +175,24 @@ fn orthogonalise(height: usize, columns: &mut [Lanes]) -> ([[f64; TERMS + 1]; TE
         }
     }
     (factors, least > 0.0, least.sqrt())
+}
+
+/// 1 - adjusted R² from the orthogonal columns: what is left of the right-hand side beside all but its constant.
+#[inline(always)]
+fn unexplained(points: usize, height: usize, columns: &[Lanes], factors: &[[f64; TERMS + 1]; TERMS]) -> f64 {
+    let square = |k: usize| {
+        let column = &columns[k * height..(k + 1) * height];
+        product(column, column)
+    };
+    let rest = square(TERMS);
+    let explained: f64 = (1..TERMS).map(|k| square(k) * factors[k][TERMS] * factors[k][TERMS]).sum();
+    let (whole, free) = (rest + explained, points.saturating_sub(TERMS));
+    if free == 0 {
+        return 1.0;
+    }
+    let share = rest / free as f64 * (points - 1) as f64 / whole;
+    // A constant field is explained.
+    if whole > 0.0 { share } else { 0.0 }
 }
 
 /// The scalar product of two columns.

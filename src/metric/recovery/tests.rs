@@ -111,3 +111,43 @@ fn the_same_on_any_number_of_threads() {
         }
     }
 }
+
+#[test]
+fn smooth_fields_have_no_jumps() {
+    let (mesh, before) = stretched(5, &Sym3::diagonal(1.0, 1.0, 1e-3));
+    let values: Vec<f64> = before.iter().map(|&[x, y, z]| (x + 0.5 * y).sin() + z * z).collect();
+    let rings = Rings::of(Team::alone(), &mesh);
+    let [fit, jumps] =
+        [Recovery::Fit, Recovery::Jumps].map(|how| how.hessians(Team::alone(), &mesh, &rings, &values).0);
+    assert_eq!(fit, jumps, "bit for bit");
+}
+
+#[test]
+fn a_jump_is_sharper_and_no_wider() {
+    let (mesh, before) = stretched(8, &Sym3::diagonal(1e-2, 1.0, 1.0));
+    let values: Vec<f64> =
+        before.iter().map(|p| if p[0] + 0.6 * p[1] - 0.3 * p[2] > 0.62 { 3.0 } else { 0.0 }).collect();
+    let rings = Rings::of(Team::alone(), &mesh);
+    let hessians = |how: Recovery, team| how.hessians(team, &mesh, &rings, &values).0;
+    let [fit, jumps] = [Recovery::Fit, Recovery::Jumps].map(|how| hessians(how, Team::alone()));
+    // (A jump along the layers of the mesh would be a parabola to three of them.)
+    let crosses = |v: u32| rings.neighbours(v).iter().any(|&other| values[other as usize] != values[v as usize]);
+    let (mut ratios, mut beside) = (Vec::new(), 0);
+    for v in 0..values.len() as u32 {
+        let at = v as usize;
+        let absolute = |hessian: &Sym3| hessian.eigen().values.map(f64::abs);
+        let [of_fit, of_jumps] =
+            [&fit[at], &jumps[at]].map(|hessian| absolute(hessian).into_iter().fold(0.0, f64::max));
+        if crosses(v) {
+            ratios.push(of_jumps / of_fit);
+        } else if rings.is_inside(v) {
+            assert!(of_jumps <= of_fit, "{:?}: {of_jumps} above {of_fit}", mesh.vertices[at]);
+            beside += 1;
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    assert!(beside > 100 && ratios.len() > 100);
+    assert!(ratios[ratios.len() / 2] > 1.2, "median {}", ratios[ratios.len() / 2]);
+    let pool = Pool::new(3).unwrap();
+    assert_eq!(hessians(Recovery::Jumps, Team::new(&pool, Plan::default())), jumps, "bit for bit on three threads");
+}

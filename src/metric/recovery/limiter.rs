@@ -1,0 +1,99 @@
+//! Hessians at jumps: what a quadratic fit says of a field that is none there, and what a mesh needs to be told.
+//!
+//! Across a jump J of u a linear element of thickness h is wrong by about J whatever its size: as if |H| were J/h² across it, and J·k/h along it
+//! with k the curvature of the jump's surface. A fit to a ring of points says less. It spreads the jump over all of them; its smaller
+//! second derivatives are noise; and vertices beside the jump whose second ring crosses it are taken into the layer. So where the fit
+//! leaves much unexplained of a step that is a part of the field's whole range:
+//! the smoother of two stencils is taken (as ENO schemes do: Harten, Engquist, Osher, Chakravarthy 1987), the strongest second
+//! derivative counts more, and |H| is averaged among neighbours that are at the jump too. All other vertices are left as they are.
+use super::quadratic::Fitted;
+use super::rings::Rings;
+use crate::metric::{Eigen, Sym3};
+use crate::tasks::{GRAIN, Team};
+
+/// A fit that leaves this share of the variance unexplained may be across a jump.
+const ROUGH: f64 = 0.25;
+
+/// Shares of the field's range: a step that is less is none, one that is more is a jump altogether.
+const STEPS: [f64; 2] = [0.1, 0.3];
+
+/// How much stronger the strongest second derivative is made at a jump of which the fit explains nothing.
+const SHARPER: f64 = 6.0;
+
+/// Vertices at the jump are alike when the logarithms of their greatest eigenvalues differ by less than this.
+const ALIKE: f64 = 1.0;
+
+/// How often |H| is averaged.
+const PASSES: usize = 2;
+
+/// Tells jumps from smooth fields.
+#[derive(Clone, Copy, Debug)]
+pub struct Limiter {
+    /// Greatest less least value of the field.
+    range: f64,
+}
+
+impl Limiter {
+    /// Of a field, shape (n,).
+    pub fn of(team: Team<'_>, values: &[f64]) -> Self {
+        let extent = |values: &[f64]| {
+            values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
+        };
+        let parts = team.chunks(GRAIN, values.len(), |range| extent(&values[range]));
+        let [low, high] = extent(parts.as_flattened());
+        Self { range: high - low }
+    }
+
+    /// How much of a jump it is, in [0, 1], that a fit to points whose values differ by `step` leaves unexplained.
+    #[inline]
+    fn roughness(self, fitted: &Fitted, step: f64) -> f64 {
+        let [low, high] = STEPS.map(|share| share * self.range);
+        let unexplained = ((fitted.unexplained - ROUGH) / (1.0 - ROUGH)).clamp(0.0, 1.0);
+        unexplained * ((step - low) / (high - low)).clamp(0.0, 1.0)
+    }
+
+    /// Whether the fit to the first ring, good but of few points, is better than that to two: these cross a jump that the first does not.
+    #[inline]
+    pub fn prefers(self, near: &Fitted, wide: &Fitted, step: f64) -> bool {
+        let size = |fitted: &Fitted| fitted.hessian.0.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+        self.roughness(wide, step) > 0.0 && size(near) < size(wide)
+    }
+
+    /// |H| with its greatest eigenvalue raised, at a jump; none elsewhere.
+    #[inline]
+    pub fn sharpened(self, fitted: &Fitted, step: f64) -> Option<Sym3> {
+        let roughness = self.roughness(fitted, step);
+        (roughness > 0.0).then(|| {
+            let Eigen { values, vectors } = fitted.hessian.eigen();
+            let mut values = values.map(f64::abs);
+            let strongest = (1..3).fold(0, |a, b| if values[b] > values[a] { b } else { a });
+            values[strongest] *= 1.0 + SHARPER * roughness;
+            Sym3::from_eigen(&Eigen { values, vectors })
+        })
+    }
+}
+
+/// Replaces |H| of vertices at a jump by the log-Euclidean mean with those of their neighbours that are there too and alike: the noise of directions
+/// and of small eigenvalues goes.
+pub fn average(team: Team<'_>, rings: &Rings, hessians: &mut [Option<Sym3>], is_jump: &[bool]) {
+    for _ in 0..PASSES {
+        let logs = team.map(GRAIN, hessians.len(), |v| hessians[v].filter(|_| is_jump[v]).map(|hessian| log(&hessian)));
+        team.fill(GRAIN / 8, hessians, |start, hessians| {
+            for (slot, v) in hessians.iter_mut().zip(start..) {
+                let Some((own, top)) = logs[v] else { continue };
+                let near = rings.neighbours(v as u32).iter().filter_map(|&other| logs[other as usize]);
+                let near = near.filter(|(_, other)| (other - top).abs() < ALIKE);
+                let (sum, count) = near.fold((own, 1.0), |(sum, count), (log, _)| (sum.plus(log), count + 1.0));
+                *slot = Some(sum.times(1.0 / count).exp());
+            }
+        });
+    }
+}
+
+/// ln |H| with eigenvalues of 1e-12 of the greatest at least, and the logarithm of that.
+fn log(hessian: &Sym3) -> (Sym3, f64) {
+    let eigen = hessian.eigen();
+    let top = eigen.values.iter().fold(f64::MIN_POSITIVE, |a, x| a.max(x.abs()));
+    let values = eigen.values.map(|x| x.abs().max(1e-12 * top).ln());
+    (Sym3::from_eigen(&Eigen { values, ..eigen }), top.ln())
+}
