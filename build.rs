@@ -39,7 +39,7 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 9] = [
+    const SOURCES: [&str; 10] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
         "cpp/connect.cpp",
@@ -48,11 +48,12 @@ mod occt {
         "cpp/model.cpp",
         "cpp/evaluate.cpp",
         "cpp/splines.cpp",
+        "cpp/tessellate.cpp",
         "cpp/write.cpp",
     ];
 
     /// Toolkits that the bridge calls, callers first.
-    const LIBRARIES: [&str; 16] = [
+    const LIBRARIES: [&str; 17] = [
         "TKIGES",
         "TKSTEP",
         "TKSTEPBase",
@@ -60,6 +61,7 @@ mod occt {
         "TKBO",
         "TKPrim",
         "TKShHealing",
+        "TKMesh",
         "TKTopAlgo",
         "TKGeomAlgo",
         "TKBRep",

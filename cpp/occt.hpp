@@ -66,6 +66,9 @@ public:
   double face_area(std::uint32_t face) const;
   double edge_length(std::uint32_t edge) const;
   void write_brep(rust::Str path) const;
+  /// Triangles of the faces as MSH 2.2, joined along the edges; within a distance and an angle of the surface.
+  void write_tessellation(rust::Str path, double deflection, double angle) const;
+  rust::Vec<std::uint32_t> solid_faces(std::uint32_t solid) const;
   /// Of an edge (dimension 1), face (2) or solid (3).
   LabelRecord label(std::uint32_t dimension, std::uint32_t index) const;
   /// The far field without this body.

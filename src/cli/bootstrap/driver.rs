@@ -22,6 +22,8 @@ pub enum Choice {
 pub enum Rung {
     /// gmsh, with its numbers of the algorithms in two and in three dimensions.
     Gmsh { surface: u32, volume: u32, finer: f64, least: Least },
+    /// gmsh, on OpenCASCADE's own triangles: poor ones, but there are some of any face.
+    Triangles,
     /// netgen.
     Netgen { finer: f64 },
 }
@@ -36,10 +38,11 @@ pub enum Least {
 }
 
 /// What is tried in turn. gmsh: 6 is frontal-Delaunay, 5 Delaunay, 1 MeshAdapt; in three dimensions 1 is Delaunay, 10 HXT, 4 frontal.
-const RUNGS: [Rung; 11] = [
+const RUNGS: [Rung; 12] = [
     Rung::Gmsh { surface: 6, volume: 1, finer: 1.0, least: Least::Usual },
     Rung::Gmsh { surface: 5, volume: 1, finer: 1.0, least: Least::Usual },
     Rung::Gmsh { surface: 6, volume: 10, finer: 1.0, least: Least::Usual },
+    Rung::Triangles,
     Rung::Gmsh { surface: 6, volume: 1, finer: 1.0, least: Least::Large },
     Rung::Gmsh { surface: 1, volume: 1, finer: 1.0, least: Least::Large },
     Rung::Gmsh { surface: 6, volume: 1, finer: 2.0, least: Least::Usual },
@@ -54,7 +57,7 @@ impl Rung {
     /// What may be tried.
     pub fn of(choice: Choice) -> impl Iterator<Item = Self> {
         RUNGS.into_iter().filter(move |rung| match rung {
-            Self::Gmsh { .. } => choice != Choice::Netgen,
+            Self::Gmsh { .. } | Self::Triangles => choice != Choice::Netgen,
             Self::Netgen { .. } => choice != Choice::Gmsh,
         })
     }
@@ -62,7 +65,7 @@ impl Rung {
     /// The program.
     pub fn program(self) -> &'static str {
         match self {
-            Self::Gmsh { .. } => gmsh::NAME,
+            Self::Gmsh { .. } | Self::Triangles => gmsh::NAME,
             Self::Netgen { .. } => netgen::NAME,
         }
     }
@@ -71,6 +74,7 @@ impl Rung {
     pub fn is_light(self) -> bool {
         match self {
             Self::Gmsh { least, .. } => least == Least::Large,
+            Self::Triangles => true,
             Self::Netgen { finer } => finer < 1.0,
         }
     }
@@ -85,6 +89,10 @@ impl std::fmt::Display for Rung {
                     write!(f, ", no small sizes")?;
                 }
                 finer
+            }
+            Self::Triangles => {
+                write!(f, "gmsh (OpenCASCADE's triangles, Delaunay volumes")?;
+                1.0
             }
             Self::Netgen { finer } => {
                 write!(f, "netgen (its usual algorithms")?;

@@ -113,6 +113,9 @@ fn attempt(
 ) -> Result<(TetMesh, Classification), Miss> {
     let out = place.file("out.msh");
     let _ = std::fs::remove_file(&out);
+    if matches!(rung, Rung::Triangles) {
+        gmsh::write_triangles(model, wish, place).map_err(Miss::Failed)?;
+    }
     start(wish, rung, place, [brep, &out], log)?;
     let failed = |why: String| {
         let told = process::last_lines(log);
@@ -128,7 +131,7 @@ fn attempt(
 /// Runs the program, wherever it is found first.
 fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Path) -> Result<(), Miss> {
     let (variable, remedy, places) = match rung {
-        Rung::Gmsh { .. } => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
+        Rung::Gmsh { .. } | Rung::Triangles => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
         Rung::Netgen { .. } => (netgen::VARIABLE, netgen::REMEDY, netgen_places()),
     };
     for program in places {
@@ -166,6 +169,7 @@ fn command(
         Rung::Gmsh { surface, volume, finer, least } => {
             gmsh::command(program, (surface, volume, finer, least), wish, place, files)
         }
+        Rung::Triangles => Ok(gmsh::run(program, &place.file(gmsh::TRIANGLES), files[1])),
         Rung::Netgen { finer } => netgen::command(program, finer, wish, place, files),
     }
 }

@@ -40,6 +40,18 @@ pub fn write(occt: &ffi::Model, path: &Path) -> Result<(), Error> {
     occt.write_brep(name).map_err(|error| fail(error.what().into()))
 }
 
+/// Writes triangles of a model: see [`OcctModel::write_triangles`].
+pub fn write_triangles(occt: &ffi::Model, path: &Path, deflection: f64, angle: f64) -> Result<Vec<Vec<u32>>, Error> {
+    let fail = |message: String| Error::Model { path: path.into(), message };
+    let name = path.to_str().ok_or_else(|| fail("the file's name is not UTF-8; rename it".into()))?;
+    let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
+    let written = occt.write_tessellation(name, deflection, angle).and_then(|()| {
+        let solids = occt.solid_count()?;
+        (0..solids).map(|solid| occt.solid_faces(solid)).collect()
+    });
+    written.map_err(|error| fail(error.what().into()))
+}
+
 /// The far field without a body: see [`OcctModel::domain`].
 pub fn domain(occt: &ffi::Model, far: &FarField) -> Result<OcctModel, Error> {
     let fail = |message: String| Error::Model { path: "the far field".into(), message };
