@@ -88,12 +88,16 @@ fn closest_points_are_as_far_as_cgal_finds_the_triangles() {
     // IGES knows no shells: OCCT's reader alone gives other faces than ours.
     let models: Vec<_> = models().into_iter().filter(|path| path.extension().is_some_and(|x| x != "igs")).collect();
     let share = wanted.unwrap_or(POINTS).div_ceil(models.len());
+    let folder = tempfile::tempdir().unwrap();
     let (mut count, mut coarsest) = (0, 0.0f64);
     for path in &models {
         let model = OcctModel::read(path).unwrap();
         let mut random = Random(21);
         let queries = queries(&model, share, &mut random);
-        let (errors, expected) = ask(&program, path, &queries);
+        // Solids that touch share faces when they are loaded: the oracle gets what we have.
+        let fused = (model.topology().solids > 1).then(|| folder.path().join("fused.brep"));
+        fused.iter().for_each(|fused| model.write_brep(fused).unwrap());
+        let (errors, expected) = ask(&program, fused.as_ref().unwrap_or(path), &queries);
         assert_eq!(errors.len(), model.topology().faces.len(), "{}", path.display());
         assert_eq!(expected.len(), queries.len(), "{}", path.display());
         let mut on = model.evaluator();
