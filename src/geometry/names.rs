@@ -9,7 +9,7 @@ pub struct Label {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// The colour as #RRGGBB (sRGB).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, alias = "color", skip_serializing_if = "Option::is_none")]
     pub colour: Option<String>,
 }
 

@@ -230,7 +230,8 @@ fn gathered<'b>(
     parts.into_iter().fold(nothing, Gathering::and)
 }
 
-fn by_reference<const N: usize>(team: Team<'_>, elements: &Elements<N>) -> BTreeMap<i32, usize> {
+/// How many elements have each reference.
+pub fn by_reference<const N: usize>(team: Team<'_>, elements: &Elements<N>) -> BTreeMap<i32, usize> {
     let parts = team.chunks(GRAIN, elements.len(), |range| {
         let mut counts = BTreeMap::new();
         // Most have that of the one before.

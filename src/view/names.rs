@@ -24,7 +24,7 @@ pub struct Names {
 
 impl Names {
     /// Of MESH.names.json beside a mesh, or of its stem (wing.names.json beside wing.meshb); without a file no names:
-    /// `{"triangles": {"3": {"name": "wing", "color": "#aabbcc"}}, "tetrahedra": {…}}`.
+    /// `{"triangles": {"3": {"name": "wing", "colour": "#aabbcc"}}, "tetrahedra": {…}}`, as `bootstrap` writes them; `color` will do.
     ///
     /// # Errors
     /// When such a file is there and is not of that form.
@@ -45,7 +45,7 @@ impl Names {
 
     /// The names of a file's bytes; else the place and what is wrong there.
     fn from_json(bytes: &[u8]) -> Result<Self, (String, String)> {
-        let remedy = r##"write {"triangles": {"3": {"name": "wing", "color": "#aabbcc"}}, "tetrahedra": {}}"##;
+        let remedy = r##"write {"triangles": {"3": {"name": "wing", "colour": "#aabbcc"}}, "tetrahedra": {}}"##;
         let value: serde_json::Value = serde_json::from_slice(bytes)
             .map_err(|error| (format!("line {}", error.line()), format!("is not JSON ({error}); {remedy}")))?;
         let of = |kind: &str| -> Result<BTreeMap<i32, Named>, (String, String)> {
@@ -61,8 +61,8 @@ impl Names {
                     Some(value) => value.as_str().map(Some).ok_or_else(|| wrong(place())),
                 };
                 let name = text("name")?.map(String::from);
-                let colour =
-                    text("color")?.map(|text| colour::parse(text).ok_or_else(|| wrong(place()))).transpose()?;
+                let colour = text("colour")?.or(text("color")?);
+                let colour = colour.map(|text| colour::parse(text).ok_or_else(|| wrong(place()))).transpose()?;
                 found.insert(number, Named { name, colour });
             }
             Ok(found)

@@ -6,6 +6,7 @@ use super::values::{self, ScalarField};
 use crate::mesh::vector::{Vec3, add, distance, scale};
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::Sym3;
+use crate::metric::statistics::by_reference;
 use crate::tasks::{GRAIN, Team};
 use std::collections::BTreeMap;
 
@@ -140,15 +141,7 @@ fn references<const N: usize>(
     names: &BTreeMap<i32, Named>,
     usual: fn(usize) -> Rgb,
 ) -> Vec<Reference> {
-    let parts = team.chunks(GRAIN, elements.len(), |range| {
-        let mut counts = BTreeMap::new();
-        for same in elements.refs[range].chunk_by(|a, b| a == b) {
-            *counts.entry(same[0]).or_insert(0) += same.len();
-        }
-        counts
-    });
-    let mut counts = BTreeMap::new();
-    parts.into_iter().flatten().for_each(|(reference, count)| *counts.entry(reference).or_insert(0) += count);
+    let counts = by_reference(team, elements);
     let reference = |(index, (reference, count)): (usize, (i32, usize))| {
         let Named { name, colour } = names.get(&reference).cloned().unwrap_or_default();
         Reference { reference, count, name, colour: colour.unwrap_or_else(|| usual(index)) }

@@ -38,8 +38,9 @@ impl Pipeline<'_, '_> {
     /// Whether the mesh may still grow; once it may not, it may no more in this run.
     pub(super) fn may_grow(&mut self) -> bool {
         let allowed = ALWAYS_ALLOWED + 2.0 * self.input as f64;
-        if !self.overgrown && self.live() as f64 > allowed {
-            self.overgrown = self.live() as f64 > allowed + MOST_A_COMPLEXITY * self.complexity();
+        let live = self.live() as f64;
+        if !self.overgrown && live > allowed {
+            self.overgrown = live > allowed + MOST_A_COMPLEXITY * self.complexity();
         }
         !self.overgrown
     }

@@ -154,9 +154,10 @@ impl Report {
         if self.overgrown {
             table.row(
                 "stopped growing",
-                "far more vertices than the metric's complexity accounts for: it asks on a curved wall for cells",
+                "memory ran out, or there are far more vertices than the metric's complexity accounts for: then it asks on a curved wall \
+                 for cells much flatter than the wall bends within an edge; bound it by --aspect-ratio or --hmax, or with --field leave the \
+                 geometry in (no --no-geometry)",
             );
-            table.row("", "much flatter than the wall bends within an edge; bound it by --aspect-ratio or --hmax, or give --cad and --field");
         }
         table.line("");
         table.line(&format!("{:<14}{:>12}{:>12}{:>9}{:>10}", "operation", "attempts", "done", "sweeps", "seconds"));
