@@ -9,6 +9,7 @@ mod cursor;
 mod error;
 mod keyword;
 mod msh;
+pub mod number;
 mod points;
 mod read;
 mod sink;
