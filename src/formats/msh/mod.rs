@@ -189,10 +189,12 @@ fn names(raw: &Raw) -> Names {
         let mut last = None;
         for &reference in refs.iter().filter(|&&reference| last.replace(reference) != Some(reference)) {
             let Some(&group) = raw.of_entity.get(&(dimension, reference.into())) else { continue };
-            labels.entry(reference).or_insert_with(|| {
-                let name = raw.groups.get(&(dimension, group)).cloned().unwrap_or_else(|| format!("group {group}"));
-                Label { name: Some(name), colour: None }
-            });
+            let name = match raw.groups.get(&(dimension, group)) {
+                Some(name) => name.clone(),
+                None if group == i64::from(reference) => continue,
+                None => format!("group {group}"),
+            };
+            labels.entry(reference).or_insert(Label { name: Some(name), colour: None });
         }
         labels
     };

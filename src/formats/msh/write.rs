@@ -65,7 +65,15 @@ struct Part {
 }
 
 impl Part {
-    fn new(dimension: i32, kind: i64, refs: &[i32], labels: &BTreeMap<i32, Label>, notices: &mut Vec<String>) -> Self {
+    /// With `grouped` each entity gets a group, of no name where it has none: where there are some, gmsh writes only elements of groups,
+    /// and meshio wants all in one.
+    fn new(
+        (dimension, kind): (i32, i64),
+        refs: &[i32],
+        labels: &BTreeMap<i32, Label>,
+        grouped: bool,
+        notices: &mut Vec<String>,
+    ) -> Self {
         let found: BTreeSet<i32> = refs.iter().copied().collect();
         let mut entities: BTreeMap<i32, i32> = found.iter().filter(|&&r| r > 0).map(|&r| (r, r)).collect();
         let mut free = (1..).filter(|number| !found.contains(number));
@@ -81,6 +89,8 @@ impl Part {
                 let group = *of_name.entry(name).or_insert(entity);
                 groups.insert(*reference, group);
                 names.entry(group).or_insert_with(|| name.replace(['"', '\n', '\r'], "_"));
+            } else if grouped {
+                groups.insert(*reference, entity);
             }
         }
         Self { dimension, kind: kind as i32, entities, groups, names }
@@ -91,10 +101,11 @@ impl Part {
 pub(in super::super) fn write(path: &Path, data: &Dataset, is_new: bool, is_text: bool) -> Result<Vec<String>, Error> {
     let (mesh, names) = (&data.mesh, &data.names);
     let mut notices = Vec::new();
+    let grouped = !names.is_empty();
     let parts = [
-        Part::new(1, LINE, &mesh.edges.refs, &names.edges, &mut notices),
-        Part::new(2, TRIANGLE, &mesh.triangles.refs, &names.triangles, &mut notices),
-        Part::new(3, TETRAHEDRON, &mesh.tets.refs, &names.tetrahedra, &mut notices),
+        Part::new((1, LINE), &mesh.edges.refs, &names.edges, grouped, &mut notices),
+        Part::new((2, TRIANGLE), &mesh.triangles.refs, &names.triangles, grouped, &mut notices),
+        Part::new((3, TETRAHEDRON), &mesh.tets.refs, &names.tetrahedra, grouped, &mut notices),
     ];
     write_beside(path, |to| emit(&mut Out { text: Text::new(to), is_text }, data, &parts, is_new))?;
     Ok(notices)
