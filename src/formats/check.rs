@@ -24,7 +24,7 @@ pub(super) fn check(path: &Path, data: &Dataset) -> Result<(), Error> {
     elements(path, "triangle", &mesh.triangles, vertices)?;
     elements(path, "edge", &mesh.edges, vertices)?;
     for field in &data.fields {
-        let (place, width) = (format!("field {}", field.name), field.kind.values());
+        let (place, width) = (format!("field {}", error::short(&field.name)), field.kind.values());
         if field.values.len() != width * vertices {
             let (found, wanted) = (field.values.len(), width * vertices);
             let message = format!("{found} values; {wanted} are expected, {width} at each of {vertices} vertices");
@@ -48,7 +48,10 @@ pub(super) fn drop_endless(path: &Path, fields: &mut Vec<NamedField>, notices: &
         let at = field.values.iter().position(|x| !x.is_finite());
         if let Some(at) = at {
             let (vertex, value, path) = (at / field.kind.values() + 1, field.values[at], path.display());
-            notices.push(format!("{path}: field {} is {value} at vertex {vertex}: it is left out", field.name));
+            notices.push(format!(
+                "{path}: field {} is {value} at vertex {vertex}: it is left out",
+                error::short(&field.name)
+            ));
         }
         at.is_none()
     });

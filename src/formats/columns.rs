@@ -187,7 +187,8 @@ fn check_place(path: &Path, table: &Table, rows: &[u32], vertices: &[Vec3]) -> R
     for (vertex, (&row, &point)) in rows.iter().zip(vertices).enumerate() {
         let values = &table.values[row as usize * width..][..width];
         let there = [values[x], values[y], values[z]];
-        if !(distance(there, point) <= near) {
+        let far = distance(there, point);
+        if far > near || far.is_nan() {
             let message = format!(
                 "vertex {vertex} (from 0) is at {there:?} there and at {point:?} in the mesh; give the file of this mesh"
             );

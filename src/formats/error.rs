@@ -7,6 +7,11 @@ pub(super) fn at(path: &Path, place: impl Into<String>, message: impl Into<Strin
     Error::Content { path: path.to_owned(), place: place.into(), message: message.into() }
 }
 
+/// A name of a file as an error shows it: damaged ones can be very long, and of any characters.
+pub(super) fn short(name: &str) -> String {
+    name.chars().take(40).flat_map(char::escape_debug).collect()
+}
+
 /// The bytes of a file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Error> {
     std::fs::read(path).map_err(|source| Error::System { path: path.to_owned(), source })

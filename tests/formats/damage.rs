@@ -206,7 +206,7 @@ fn mesh(path: &Path, bytes: &[u8]) -> Option<Dataset> {
         Ok(read) => Some(read.content),
         Err(error) => {
             let text = error.to_string();
-            assert!(text.starts_with(&format!("{}: ", path.display())) && text.len() < 1000, "{text}");
+            assert!(text.starts_with(&format!("{}: ", path.display())) && text.len() < 600, "{text}");
             None
         }
     }

@@ -1,6 +1,7 @@
 //! Values at nodes and elements.
 use super::super::NamedField;
 use super::super::cells::to_vertices;
+use super::super::error;
 use super::source::Source;
 use super::tags::Tags;
 use crate::mesh::TetMesh;
@@ -64,7 +65,7 @@ impl View {
         fields: &mut Vec<NamedField>,
         notices: &mut Vec<String>,
     ) {
-        let name = self.name.escape_debug().to_string();
+        let name = error::short(&self.name);
         let of_tets = if self.at_nodes { None } else { Some(Tags::new(tets)) };
         let (places, items) = match &of_tets {
             None => (nodes, mesh.vertices.len()),

@@ -117,7 +117,7 @@ impl<'a> Source<'a> {
         let end = [b"$End", section].concat();
         let rest = &self.bytes[self.scan.at..];
         let Some(at) = rest.windows(end.len()).position(|part| part == end) else {
-            let section = String::from_utf8_lossy(section).escape_debug().to_string();
+            let section = error::short(&String::from_utf8_lossy(section));
             return Err(self.fail(format!("$End{section} is missing: the file was cut off")));
         };
         self.scan.at += at + end.len();

@@ -34,7 +34,7 @@ pub(super) fn entities(source: &mut Source, raw: &mut Raw) -> Result<(), Error> 
 /// Blocks of nodes: entity, whether parameters follow, then all tags and all coordinates.
 pub(super) fn nodes(source: &mut Source, raw: &mut Raw) -> Result<(), Error> {
     let (blocks, total) = (source.size()?, source.size()?);
-    (source.size()?, source.size()?);
+    let _least_and_most = [source.size()?, source.size()?];
     let room = source.room(total, 3);
     raw.mesh.vertices.reserve_exact(room);
     let mut tags = Vec::with_capacity(room);
@@ -82,7 +82,7 @@ fn place(source: &mut Source, raw: &mut Raw, entity: (i64, i64, bool), vertex: u
 /// Blocks of elements: entity and type, then tag and nodes of each.
 pub(super) fn elements(source: &mut Source, raw: &mut Raw) -> Result<(), Error> {
     let blocks = source.size()?;
-    (source.size()?, source.size()?, source.size()?);
+    let _total_least_and_most = [source.size()?, source.size()?, source.size()?];
     for _ in 0..blocks {
         let (_, entity, kind) = (source.int()?, source.int()?, source.int()?);
         let count = source.size()?;

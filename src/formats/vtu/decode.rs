@@ -47,7 +47,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
 
     /// An error at an array.
     pub fn fail(&self, array: &Array, message: impl Into<String>) -> Error {
-        error::at(self.path, format!("array {}", array.name.escape_debug()), message)
+        error::at(self.path, format!("array {}", error::short(&array.name)), message)
     }
 
     /// Whole numbers; as many as `items` of the array's width.

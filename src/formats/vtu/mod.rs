@@ -121,7 +121,7 @@ impl<'a> Reader<'_, 'a> {
 
     /// Tells once that an array is not read.
     fn skip(&mut self, array: &Array) {
-        let notice = format!("the array {} is not of real numbers and is left out", array.name.escape_debug());
+        let notice = format!("the array {} is not of real numbers and is left out", error::short(&array.name));
         if !array.name.starts_with("vtk") && !self.notices.contains(&notice) && self.notices.len() < MOST {
             self.notices.push(notice);
         }
@@ -257,7 +257,7 @@ impl<'a> Reader<'_, 'a> {
             };
             let items = if is_cells { self.mesh.tets.len() } else { self.mesh.vertices.len() };
             if joined.values.len() != items * joined.width || joined.pieces > pieces {
-                self.notices.push(format!("the array {} is not in all pieces and is left out", name.escape_debug()));
+                self.notices.push(format!("the array {} is not in all pieces and is left out", error::short(&name)));
                 continue;
             }
             let Joined { width, mut values, .. } = joined;
@@ -265,7 +265,7 @@ impl<'a> Reader<'_, 'a> {
                 values = to_vertices(&self.mesh, width, &values);
                 self.notices.push(format!(
                     "{} was given at cells: their mean about each vertex, by volume, is taken",
-                    name.escape_debug()
+                    error::short(&name)
                 ));
             }
             split(name, width, values, &mut fields, &mut self.notices);
@@ -289,7 +289,7 @@ fn split(name: String, width: usize, values: Vec<f64>, fields: &mut Vec<NamedFie
             return;
         }
         _ => {
-            notices.push(format!("the array {} has {width} values an item and is left out", name.escape_debug()));
+            notices.push(format!("the array {} has {width} values an item and is left out", error::short(&name)));
             return;
         }
     };

@@ -139,7 +139,9 @@ impl<'a> Walk<'_, 'a> {
         let mut reader = Reader::from_str(self.head);
         loop {
             self.at = reader.buffer_position() as usize;
-            let event = reader.read_event().map_err(|error| self.fail(format!("no XML as VTK writes it ({error})")))?;
+            let event = reader
+                .read_event()
+                .map_err(|error| self.fail(format!("no XML as VTK writes it ({})", brief(&error))))?;
             match event {
                 Event::Start(tag) if tag.name().as_ref() == "DataArray" => {
                     let attributes = self.attributes(&tag)?;
@@ -151,11 +153,7 @@ impl<'a> Walk<'_, 'a> {
                     self.array(&attributes, "")?;
                 }
                 Event::Start(tag) => self.open(&tag)?,
-                Event::End(tag) => {
-                    if part_of(tag.name().as_ref()).is_some() {
-                        self.part = Part::Nothing;
-                    }
-                }
+                Event::End(tag) if part_of(tag.name().as_ref()).is_some() => self.part = Part::Nothing,
                 Event::Eof => return Ok(()),
                 _ => {}
             }
@@ -165,7 +163,7 @@ impl<'a> Walk<'_, 'a> {
     fn attributes(&self, tag: &BytesStart) -> Result<Attributes, Error> {
         let mut all = Vec::new();
         for attribute in tag.attributes().with_checks(false) {
-            let wrong = |error: &dyn std::fmt::Display| self.fail(format!("an attribute is wrong ({error})"));
+            let wrong = |error: &dyn std::fmt::Display| self.fail(format!("an attribute is wrong ({})", brief(error)));
             let attribute = attribute.map_err(|error| wrong(&error))?;
             let value = attribute.normalized_value(XmlVersion::Implicit1_0).map_err(|error| wrong(&error))?;
             all.push((attribute.key.as_ref().to_owned(), value.into_owned()));
@@ -175,7 +173,7 @@ impl<'a> Walk<'_, 'a> {
 
     fn count(&self, attributes: &Attributes, name: &str) -> Result<usize, Error> {
         let text = attributes.get(name).ok_or_else(|| self.fail(format!("{name} is missing")))?;
-        text.parse().map_err(|_| self.fail(format!("{name}=\"{text}\" is no count")))
+        text.parse().map_err(|_| self.fail(format!("{name}=\"{}\" is no count", error::short(text))))
     }
 
     fn open(&mut self, tag: &BytesStart) -> Result<(), Error> {
@@ -188,7 +186,7 @@ impl<'a> Walk<'_, 'a> {
                     other => {
                         let message = format!(
                             "a file of type {}; an UnstructuredGrid (.vtu) is expected",
-                            other.unwrap_or("none")
+                            error::short(other.unwrap_or("none"))
                         );
                         return Err(self.fail(message));
                     }
@@ -199,7 +197,10 @@ impl<'a> Walk<'_, 'a> {
                     None => false,
                     Some("vtkZLibDataCompressor") => true,
                     Some(other) => {
-                        return Err(self.fail(format!("compressed by {other}; write it with ZLib, or not compressed")));
+                        return Err(self.fail(format!(
+                            "compressed by {}; write it with ZLib, or not compressed",
+                            error::short(other)
+                        )));
                     }
                 };
             }
@@ -217,7 +218,9 @@ impl<'a> Walk<'_, 'a> {
     fn text(&self, reader: &mut Reader<&'a [u8]>) -> Result<&'a str, Error> {
         let (mut depth, mut found) = (0_usize, "");
         loop {
-            let event = reader.read_event().map_err(|error| self.fail(format!("no XML as VTK writes it ({error})")))?;
+            let event = reader
+                .read_event()
+                .map_err(|error| self.fail(format!("no XML as VTK writes it ({})", brief(&error))))?;
             match event {
                 Event::Start(_) => depth += 1,
                 Event::End(_) if depth == 0 => return Ok(found),
@@ -259,7 +262,10 @@ impl<'a> Walk<'_, 'a> {
             Some("binary") => Place::Base64(text),
             Some("ascii") | None => Place::Text(text),
             Some(other) => {
-                return Err(self.fail(format!("format=\"{other}\" of an array: ascii, binary or appended are read")));
+                return Err(self.fail(format!(
+                    "format=\"{}\" of an array: ascii, binary or appended are read",
+                    error::short(other)
+                )));
             }
         };
         let width = match attributes.get("NumberOfComponents") {
@@ -279,6 +285,11 @@ impl<'a> Walk<'_, 'a> {
         list.into_iter().for_each(|list| list.push(array.clone()));
         Ok(())
     }
+}
+
+/// What is wrong with the XML; elements of damaged files can have very long names.
+fn brief(error: &dyn std::fmt::Display) -> String {
+    error.to_string().chars().take(120).flat_map(char::escape_debug).collect()
 }
 
 fn part_of(name: &str) -> Option<Part> {
