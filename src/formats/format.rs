@@ -54,6 +54,10 @@ impl Format {
             "sol" | "solb" => Self::Solution,
             "csv" => Self::Table,
             "dat" => Self::Restart,
+            "cgns" => {
+                let message = "CGNS is not read; write .vtu by ParaView, or .su2 by SU2";
+                return Err(error::at(path, "extension", message));
+            }
             _ => return Err(error::at(path, "extension", format!("the format is not known; these are: {KNOWN}"))),
         })
     }

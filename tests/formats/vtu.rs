@@ -184,9 +184,7 @@ fn what_is_wrong_is_named() {
         with(" 11\n 13\n 14\n", " 11\n 13\n 99999999999\n")
             .starts_with("array connectivity: 14 values; 1 at each of 99999999999")
     );
-    assert!(
-        with("NumberOfPoints='5'", "NumberOfPoints='6'").starts_with("array Points: 15 values; 3 at each of 6") || true
-    );
+    assert!(with("NumberOfPoints='5'", "NumberOfPoints='6'").starts_with("array Points: 15 values; 3 at each of 6"));
     assert!(with("NumberOfPoints='5'", "").contains("NumberOfPoints is missing"));
     assert!(with("NumberOfPoints='5'", "NumberOfPoints='x'").contains("NumberOfPoints=\"x\" is no count"));
     assert!(with("type=\"UnstructuredGrid\"", "type=\"PolyData\"").contains("line 2: a file of type PolyData"));
@@ -208,9 +206,7 @@ fn what_is_wrong_is_named() {
     // 65535 blocks are said to be there.
     let mut lying = raw.clone();
     lying[start..start + 2].fill(255);
-    assert!(
-        refusal("a.vtu", &lying).contains("ends too early; the file was cut") || !refusal("a.vtu", &lying).is_empty()
-    );
+    assert!(refusal("a.vtu", &lying).starts_with("array w&ng: its compressed data ends too early; the file was cut"));
     for end in 0..raw.len() - 40 {
         refusal("a.vtu", &raw[..end]);
     }
