@@ -121,6 +121,7 @@ impl Grid {
         text += &grid.array("Int64", "ids", 1, &[9.0, 8.0, 7.0, 6.0, 5.0]);
         text += "</PointData>\n<CellData>\n";
         text += &grid.array("Float64", "q", 1, &[1.0, 4.0, 100.0, 100.0, 100.0]);
+        text += &grid.array("Float64", "p", 1, &[7.0; 5]);
         text += &grid.array("Int32", "medit:ref", 1, &[1.0, 2.0, -7.0, 9.0, 0.0]);
         text += "</CellData>\n<Points>\n";
         let points = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -2.0];
@@ -210,4 +211,41 @@ fn what_is_wrong_is_named() {
     for end in 0..raw.len() - 40 {
         refusal("a.vtu", &raw[..end]);
     }
+}
+
+/// As ParaView writes what several processes had, with an empty piece and data that one of them has not.
+#[test]
+fn pieces_are_joined() {
+    let array = |kind: &str, name: &str, width: usize, values: &str| {
+        format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{width}\">{values}</DataArray>")
+    };
+    let piece = |at: f64, more: &str| {
+        let points = format!("{at} 0 0 {} 0 0 {at} 1 0 {at} 0 1", at + 1.0);
+        format!(
+            "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData>{}{more}</PointData><CellData/><Points>{}</Points><Cells>{}{}{}</Cells></Piece>",
+            array("Float32", "p", 1, &format!("{at} 2 3 4")),
+            array("Float32", "", 3, &points),
+            array("Int32", "connectivity", 1, "0 1 2 3"),
+            array("Int32", "offsets", 1, "4"),
+            array("UInt8", "types", 1, "10"),
+        )
+    };
+    let only = array("Float32", "only", 1, "1 2 3 4");
+    let empty =
+        "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"><PointData></PointData><Points/><Cells></Cells></Piece>";
+    let [first, second] = [piece(0.0, &only), piece(5.0, "")];
+    let text = format!(
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>{first}{empty}{second}</UnstructuredGrid></VTKFile>"
+    );
+    let place = Place::new();
+    let found = geo_adapt::formats::read(&place.text("a.vtu", text)).unwrap();
+    assert_eq!(found.content.mesh.tets.nodes, [[0, 1, 2, 3], [4, 5, 6, 7]]);
+    assert_eq!(found.content.mesh.vertices[4], [5.0, 0.0, 0.0]);
+    assert_eq!(found.content.fields.len(), 1);
+    assert_eq!(found.content.fields[0].values, [0.0, 2.0, 3.0, 4.0, 5.0, 2.0, 3.0, 4.0]);
+    assert!(
+        found.notices.iter().any(|notice| notice.contains("the array only is not in all pieces")),
+        "{:?}",
+        found.notices
+    );
 }

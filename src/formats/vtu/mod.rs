@@ -31,8 +31,6 @@ const SYMMETRIC: [usize; 6] = [0, 3, 1, 5, 4, 2];
 struct Joined {
     width: usize,
     values: Vec<f64>,
-    /// Pieces that have it.
-    pieces: usize,
 }
 
 struct Reader<'d, 'a> {
@@ -71,7 +69,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
         reader.piece(piece)?;
     }
     let names = reader.names(&document.field_data)?;
-    let fields = reader.fields(document.pieces.len());
+    let fields = reader.fields();
     let Reader { mesh, notices, .. } = reader;
     Ok(Read { content: Dataset { mesh, names, fields }, notices })
 }
@@ -134,14 +132,12 @@ impl<'a> Reader<'_, 'a> {
 
     /// Appends the values of a piece.
     fn join(&mut self, array: &Array, values: Vec<f64>, at_points: bool) {
-        let of = if at_points { &mut self.at_points } else { &mut self.at_tets };
-        if !of.contains_key(&array.name) {
+        if !self.at_points.contains_key(&array.name) && !self.at_tets.contains_key(&array.name) {
             self.order.push(array.name.clone());
         }
-        let joined =
-            of.entry(array.name.clone()).or_insert(Joined { width: array.width, values: Vec::new(), pieces: 0 });
+        let of = if at_points { &mut self.at_points } else { &mut self.at_tets };
+        let joined = of.entry(array.name.clone()).or_insert(Joined { width: array.width, values: Vec::new() });
         if joined.width == array.width {
-            joined.pieces += 1;
             if joined.values.is_empty() {
                 joined.values = values;
             } else {
@@ -243,7 +239,7 @@ impl<'a> Reader<'_, 'a> {
     }
 
     /// The fields: those at points, and those at tetrahedra where there is none of the name.
-    fn fields(&mut self, pieces: usize) -> Vec<NamedField> {
+    fn fields(&mut self) -> Vec<NamedField> {
         let mut fields = Vec::new();
         let order = std::mem::take(&mut self.order);
         let with_tets = !self.mesh.tets.is_empty();
@@ -256,11 +252,11 @@ impl<'a> Reader<'_, 'a> {
                 },
             };
             let items = if is_cells { self.mesh.tets.len() } else { self.mesh.vertices.len() };
-            if joined.values.len() != items * joined.width || joined.pieces > pieces {
+            if joined.values.len() != items * joined.width {
                 self.notices.push(format!("the array {} is not in all pieces and is left out", error::short(&name)));
                 continue;
             }
-            let Joined { width, mut values, .. } = joined;
+            let Joined { width, mut values } = joined;
             if is_cells {
                 values = to_vertices(&self.mesh, width, &values);
                 self.notices.push(format!(
