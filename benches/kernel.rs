@@ -13,7 +13,7 @@
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use geo_adapt::adapt::bench_support::{Domain, Snapshot, Sweep, Workbench, domain};
-use geo_adapt::adapt::{Adapted, Options, Refusal, Silent, adapt};
+use geo_adapt::adapt::{Adapted, Counts, Options, Refusal, Silent, adapt};
 use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::samples::cube;
 use geo_adapt::mesh::vector::{Vec3, norm};

@@ -95,7 +95,7 @@ impl<'a> Ladder<'a> {
     /// # Errors
     /// When none is left, with what the last ones said; when there is no mesher, with what to install; when the user ended it.
     pub fn climb(&mut self) -> Result<Meshed, String> {
-        while let Some(rung) = self.rungs.next() {
+        for rung in self.rungs.by_ref() {
             let program = rung.program();
             if self.gone.contains(&program) || !rung.is_light() && self.slow.contains(&program) {
                 continue;
