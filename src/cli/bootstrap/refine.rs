@@ -15,7 +15,7 @@ use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::vector::Vec3;
+use crate::mesh::vector::{Vec3, distance};
 use crate::metric::multiscale::{Bounds, Measure, bounded};
 use crate::metric::{Background, Limits, Source, Sym3, field, grade};
 use crate::sizing;
@@ -26,6 +26,9 @@ use std::time::{Duration, Instant};
 
 /// The mesher's mesh is coarse: what the geometry asks for between its vertices shows on the mesh that comes of it.
 const CYCLES: usize = 2;
+
+/// Most cycles, where a mesh was too coarse for what is asked of it.
+const MOST_CYCLES: usize = 6;
 
 /// The mesher's mesh and what came of it.
 pub struct Refined {
@@ -54,9 +57,10 @@ pub fn run(
     let Meshed { mesh: first, place, by, mut notices } = meshed;
     let first = Arc::new(first);
     let (mut mesh, mut place) = (Arc::clone(&first), place);
-    for cycle in 1..=CYCLES {
-        let (logs, notice) = sizes(arguments, team, &mesh, &place, model).map_err(named)?;
-        notices.extend(notice.filter(|_| cycle == CYCLES));
+    for cycle in 1..=MOST_CYCLES {
+        let (mut logs, notice) = sizes(arguments, team, &mesh, &place, model).map_err(named)?;
+        let is_last = limit(&mesh, &mut logs) == 0 && cycle >= CYCLES || cycle == MOST_CYCLES;
+        notices.extend(notice.filter(|_| is_last));
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let source = Source::Background(Background::on(team, Arc::clone(&mesh), faces, logs));
         stage("geometry");
@@ -65,7 +69,7 @@ pub fn run(
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
         let interrupted = progress.interrupted();
-        if cycle < CYCLES && !interrupted {
+        if !is_last && !interrupted {
             (mesh, place) = (Arc::new(adapted.extracted.mesh), adapted.extracted.classification);
             continue;
         }
@@ -153,6 +157,34 @@ fn sizes(
     );
     Ok((logs, Some(notice)))
 }
+
+/// No size below an eighth of the longest edge at a vertex: sizes are interpolated between the vertices of this mesh, and one much smaller
+/// than the edges would reach far along them. Returns how many were made larger.
+fn limit(mesh: &TetMesh, logs: &mut [Sym3]) -> usize {
+    let mut longest = vec![0.0f64; logs.len()];
+    for nodes in mesh.tets.nodes.iter().map(|nodes| nodes.map(|v| v as usize)) {
+        for (i, a) in nodes.into_iter().enumerate() {
+            for &b in &nodes[i + 1..] {
+                let length = distance(mesh.vertices[a], mesh.vertices[b]);
+                longest[a] = longest[a].max(length);
+                longest[b] = longest[b].max(length);
+            }
+        }
+    }
+    let mut limited = 0;
+    for (log, longest) in logs.iter_mut().zip(longest) {
+        let least = longest / STEP;
+        // λ ≤ 1/least²
+        if log.eigen().values[2] > -2.0 * least.ln() {
+            *log = Limits { hmin: Some(least), ..Limits::default() }.apply_to_log(log);
+            limited += 1;
+        }
+    }
+    limited
+}
+
+/// How many times smaller than an edge a size may be at its end.
+const STEP: f64 = 8.0;
 
 /// In a far field the default of the greatest size is none for the body: there it is that of the body alone.
 fn resolve_body(mesh: &TetMesh, place: &Classification, model: &Model, logs: &mut [Sym3]) {
