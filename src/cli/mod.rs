@@ -6,6 +6,7 @@ use std::process::ExitCode;
 mod adapt;
 mod bootstrap;
 mod classify;
+mod convert;
 mod image_mesh;
 mod inspect;
 mod load;
@@ -32,6 +33,8 @@ enum Command {
     Bootstrap(bootstrap::Arguments),
     /// Put a mesh's boundary on the entities of a CAD model
     Classify(classify::Arguments),
+    /// Bring a mesh with its names and fields into the format of another program
+    Convert(convert::Arguments),
     /// Mesh the regions of a 3D image
     ImageMesh(image_mesh::Arguments),
     /// Check a mesh and measure it in a metric
@@ -62,6 +65,7 @@ pub fn main() -> ExitCode {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Metric(arguments) => metric::run(&arguments),

@@ -73,7 +73,7 @@ pub fn check_output(output: &Path, endings: &[&str], inputs: &[&Path]) -> Result
     check_place(output, inputs)
 }
 
-/// As [`check_output`], whatever the ending.
+/// Refuses an output that cannot be written or that is an input.
 pub fn check_place(output: &Path, inputs: &[&Path]) -> Result<(), String> {
     let name = output.display();
     let folder = output.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -85,7 +85,7 @@ pub fn check_place(output: &Path, inputs: &[&Path]) -> Result<(), String> {
     }
     let same = |input: &&Path| matches!((output.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b);
     if inputs.iter().any(same) {
-        return Err(format!("{name}: is an input and would be overwritten; give another -o"));
+        return Err(format!("{name}: is an input and would be overwritten; give another output"));
     }
     Ok(())
 }
