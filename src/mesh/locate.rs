@@ -1,7 +1,7 @@
 //! Point location in a tetrahedral mesh: a walk from a hint, and trees of boxes for where the walk cannot go: a small one of the faces on
 //! the boundary for points outside, and one of all tetrahedra.
 use super::adjacency::{FACES, MatchedFaces, NONE};
-use super::box_tree::{BoxTree, Bounds};
+use super::box_tree::{Bounds, BoxTree};
 use super::starts::Starts;
 use super::vector::{Vec3, add, cross, distance, dot, norm, scale, sub, volume6};
 use super::{Elements, TetMesh};

@@ -27,10 +27,12 @@ pub fn balance(
 ) -> f64 {
     let Of { width, component } = of;
     let at = |v: usize| v * width + component;
-    let mass = |values: &[f64]| sums(team, weights.len(), 2, |v, row| {
-        let term = weights[v] * values[at(v)];
-        (row[0], row[1]) = (term, term.abs());
-    });
+    let mass = |values: &[f64]| {
+        sums(team, weights.len(), 2, |v, row| {
+            let term = weights[v] * values[at(v)];
+            (row[0], row[1]) = (term, term.abs());
+        })
+    };
     let first = mass(values);
     let mut now = first.clone();
     for round in 0..ROUNDS {

@@ -35,35 +35,59 @@ impl Planes {
         Some(Self { gradients: [g0, g1, g2, g3], on: [x[1], x[0], x[0], x[0]] })
     }
 
-    /// Barycentric coordinates of a point; what may be rounding alone is 0.
+    /// A point; of its coordinates what may be rounding alone is 0.
     #[inline(always)]
-    fn coordinates(&self, p: Vec3) -> Lambda {
-        std::array::from_fn(|k| {
-            let (g, d) = (self.gradients[k], sub(p, self.on[k]));
-            let terms = [g[0] * d[0], g[1] * d[1], g[2] * d[2]];
-            let value = terms[0] + terms[1] + terms[2];
-            let size = terms[0].abs() + terms[1].abs() + terms[2].abs();
-            if value.abs() <= ROUNDING * size { 0.0 } else { value }
-        })
+    fn point(&self, p: Vec3) -> Point {
+        let mut at = [0.0; 4];
+        for k in 0..4 {
+            let (g, on) = (&self.gradients[k], &self.on[k]);
+            let [x, y, z] = [g[0] * (p[0] - on[0]), g[1] * (p[1] - on[1]), g[2] * (p[2] - on[2])];
+            let (value, size) = (x + y + z, x.abs() + y.abs() + z.abs());
+            at[k] = if value.abs() <= ROUNDING * size { 0.0 } else { value };
+        }
+        Point::new(at)
     }
 
     /// The part of a tetrahedron that lies in this one.
     #[inline]
     pub fn clip(&self, x: &[Vec3; 4]) -> Piece {
-        let corners = x.map(|p| self.coordinates(p));
-        let mut cutting = 0;
-        for k in 0..4 {
-            let at = corners.map(|corner| corner[k]);
-            if at.iter().all(|&value| value <= 0.0) {
-                return Piece::default();
-            }
-            cutting |= u8::from(at.iter().any(|&value| value < 0.0)) << k;
-        }
+        let [a, b, c, d] = [self.point(x[0]), self.point(x[1]), self.point(x[2]), self.point(x[3])];
         let mut piece = Piece::default();
-        cut(corners, 1.0, cutting, &mut piece);
-        piece.beyond &= cutting;
+        // Not above a plane with any corner: what touches it only.
+        if (a.out | a.on) & (b.out | b.on) & (c.out | c.on) & (d.out | d.on) == 0 {
+            cut([&a, &b, &c, &d], 1.0, &mut piece);
+            piece.beyond &= a.out | b.out | c.out | d.out;
+        }
         piece
     }
+}
+
+/// A point with what is often asked.
+#[derive(Clone, Copy)]
+struct Point {
+    at: Lambda,
+    /// Bit k: λ_k < 0.
+    out: u8,
+    /// Bit k: λ_k = 0.
+    on: u8,
+}
+
+impl Point {
+    #[inline(always)]
+    fn new(at: Lambda) -> Self {
+        let (mut out, mut on) = (0, 0);
+        for k in 0..4 {
+            out |= u8::from(at[k] < 0.0) << k;
+            on |= u8::from(at[k] == 0.0) << k;
+        }
+        Self { at, out, on }
+    }
+}
+
+/// The bits that at least three of four have.
+#[inline(always)]
+fn three(a: u8, b: u8, c: u8, d: u8) -> u8 {
+    a & b & (c | d) | c & d & (a | b)
 }
 
 /// A part of a tetrahedron.
@@ -85,15 +109,14 @@ impl Piece {
         moments.map(|moment| moment / sum)
     }
 
-    fn add(&mut self, corners: &[Lambda; 4], share: f64) {
-        let [a, b, c, d] = corners;
+    #[inline(always)]
+    fn add(&mut self, [a, b, c, d]: [&Point; 4], share: f64) {
         self.share += share;
         for k in 0..4 {
-            self.moments[k] += share * ((a[k] + b[k]) + (c[k] + d[k]));
+            self.moments[k] += share * ((a.at[k] + b.at[k]) + (c.at[k] + d.at[k]));
         }
         // Three corners on a plane: a piece of that face.
-        let [a, b, c, d] = corners.map(|corner| (0..4).fold(0u8, |on, k| on | u8::from(corner[k] == 0.0) << k));
-        self.beyond |= a & b & (c | d) | c & d & (a | b);
+        self.beyond |= three(a.on, b.on, c.on, d.on);
     }
 }
 
@@ -121,78 +144,88 @@ const fn order() -> [[u8; 4]; 16] {
     all
 }
 
-/// Adds the part of a tetrahedron that lies inside these planes, which is so much of the whole.
-fn cut(corners: [Lambda; 4], share: f64, planes: u8, piece: &mut Piece) {
-    // Most are cut away or not cut at all by most planes: on to the first that cuts.
-    let mut planes = planes;
-    loop {
-        if planes == 0 {
-            return piece.add(&corners, share);
-        }
-        let k = planes.trailing_zeros() as usize;
-        planes &= planes - 1;
-        let outside = (0..4).fold(0, |mask, i| mask | usize::from(corners[i][k] < 0.0) << i);
-        match outside.count_ones() {
-            0 => {}
-            4 => return,
-            count => {
-                let [a, b, c, d] = ORDER[outside].map(|i| corners[i as usize]);
-                return match count {
-                    1 => without_one([a, b, c], d, k, share, planes, piece),
-                    2 => halved([a, b], [c, d], k, share, planes, piece),
-                    _ => only_one(a, [b, c, d], k, share, planes, piece),
-                };
-            }
-        }
+/// Adds the part of a tetrahedron, which is so much of the whole, that lies inside all planes.
+fn cut(corners: [&Point; 4], share: f64, piece: &mut Piece) {
+    let [a, b, c, d] = corners.map(|corner| corner.out);
+    if a & b & c & d != 0 {
+        return;
+    }
+    let some = a | b | c | d;
+    if some == 0 {
+        return piece.add(corners, share);
+    }
+    // First the plane that leaves least: fewer parts come of it.
+    let most = three(a, b, c, d);
+    let two = (a & b) | (c & d) | (a | b) & (c | d);
+    let first = if most != 0 {
+        most
+    } else if two != 0 {
+        two
+    } else {
+        some
+    };
+    let k = first.trailing_zeros() as usize & 3;
+    let bit = |out: u8| out >> k & 1;
+    let outside = bit(a) | bit(b) << 1 | bit(c) << 2 | bit(d) << 3;
+    let [a, b, c, d] = ORDER[outside as usize].map(|i| corners[i as usize & 3]);
+    match outside.count_ones() {
+        1 => without_one([a, b, c], d, k, share, piece),
+        2 => halved([a, b], [c, d], k, share, piece),
+        _ => only_one(a, [b, c, d], k, share, piece),
     }
 }
 
 /// Where the plane λ_k = 0 cuts the edge from an inner to an outer corner: the shares of the edge inside and outside, and the point.
 #[inline(always)]
-fn crossing(inner: &Lambda, outer: &Lambda, k: usize) -> (f64, f64, Lambda) {
-    let length = inner[k] - outer[k];
-    let (inside, outside) = (inner[k] / length, -outer[k] / length);
-    let mut point: Lambda = std::array::from_fn(|i| outside * inner[i] + inside * outer[i]);
-    point[k] = 0.0;
-    (inside, outside, point)
+fn crossing(inner: &Point, outer: &Point, k: usize) -> (f64, f64, Point) {
+    let per_length = 1.0 / (inner.at[k] - outer.at[k]);
+    let (inside, outside) = (inner.at[k] * per_length, -outer.at[k] * per_length);
+    let mut at = [0.0; 4];
+    for i in 0..4 {
+        at[i] = outside * inner.at[i] + inside * outer.at[i];
+    }
+    at[k] = 0.0;
+    (inside, outside, Point::new(at))
 }
 
 /// Goes on with a part that has a volume.
 #[inline(always)]
-fn go_on(corners: [Lambda; 4], share: f64, planes: u8, piece: &mut Piece) {
+fn go_on(corners: [&Point; 4], share: f64, piece: &mut Piece) {
     if share > 0.0 {
-        cut(corners, share, planes, piece);
+        cut(corners, share, piece);
     }
 }
 
 /// One corner is inside.
 #[inline]
-fn only_one(a: Lambda, out: [Lambda; 3], k: usize, share: f64, planes: u8, piece: &mut Piece) {
-    let [(b, _, at_b), (c, _, at_c), (d, _, at_d)] = out.map(|outer| crossing(&a, &outer, k));
-    go_on([a, at_b, at_c, at_d], share * (b * c * d), planes, piece);
+fn only_one(a: &Point, [b, c, d]: [&Point; 3], k: usize, share: f64, piece: &mut Piece) {
+    let (ab, _, at_b) = crossing(a, b, k);
+    let (ac, _, at_c) = crossing(a, c, k);
+    let (ad, _, at_d) = crossing(a, d, k);
+    go_on([a, &at_b, &at_c, &at_d], share * (ab * ac * ad), piece);
 }
 
 /// Two corners are inside: a wedge, in three parts.
 #[inline]
-fn halved([a, b]: [Lambda; 2], [c, d]: [Lambda; 2], k: usize, share: f64, planes: u8, piece: &mut Piece) {
-    let (ac, not_ac, at_ac) = crossing(&a, &c, k);
-    let (ad, not_ad, at_ad) = crossing(&a, &d, k);
-    let (bc, _, at_bc) = crossing(&b, &c, k);
-    let (bd, _, at_bd) = crossing(&b, &d, k);
-    go_on([a, at_ac, at_ad, b], share * (ac * ad), planes, piece);
-    go_on([at_ac, at_ad, b, at_bc], share * (ad * bc * not_ac), planes, piece);
-    go_on([at_ad, b, at_bc, at_bd], share * (bc * bd * not_ad), planes, piece);
+fn halved([a, b]: [&Point; 2], [c, d]: [&Point; 2], k: usize, share: f64, piece: &mut Piece) {
+    let (ac, not_ac, at_ac) = crossing(a, c, k);
+    let (ad, not_ad, at_ad) = crossing(a, d, k);
+    let (bc, _, at_bc) = crossing(b, c, k);
+    let (bd, _, at_bd) = crossing(b, d, k);
+    go_on([a, &at_ac, &at_ad, b], share * (ac * ad), piece);
+    go_on([&at_ac, &at_ad, b, &at_bc], share * (ad * bc * not_ac), piece);
+    go_on([&at_ad, b, &at_bc, &at_bd], share * (bc * bd * not_ad), piece);
 }
 
 /// One corner is outside: a frustum, in three parts.
 #[inline]
-fn without_one([a, b, c]: [Lambda; 3], d: Lambda, k: usize, share: f64, planes: u8, piece: &mut Piece) {
-    let (ad, _, at_a) = crossing(&a, &d, k);
-    let (bd, not_bd, at_b) = crossing(&b, &d, k);
-    let (cd, not_cd, at_c) = crossing(&c, &d, k);
-    go_on([a, b, c, at_c], share * cd, planes, piece);
-    go_on([a, b, at_c, at_b], share * (not_cd * bd), planes, piece);
-    go_on([a, at_b, at_c, at_a], share * (not_cd * not_bd * ad), planes, piece);
+fn without_one([a, b, c]: [&Point; 3], d: &Point, k: usize, share: f64, piece: &mut Piece) {
+    let (ad, _, at_a) = crossing(a, d, k);
+    let (bd, not_bd, at_b) = crossing(b, d, k);
+    let (cd, not_cd, at_c) = crossing(c, d, k);
+    go_on([a, b, c, &at_c], share * cd, piece);
+    go_on([a, b, &at_c, &at_b], share * (not_cd * bd), piece);
+    go_on([a, &at_b, &at_c, &at_a], share * (not_cd * not_bd * ad), piece);
 }
 
 #[cfg(test)]
@@ -326,7 +359,8 @@ mod tests {
             assert_eq!((piece.share, piece.beyond, piece.centroid()), (1.0, 0, [0.25; 4]));
         }
         // Also at an odd place, where barycentric coordinates are rounded.
-        let odd = UNIT.map(|p| [0.3 + p[0] / 7.0 + p[1] / 30.0, 1.0 / 3.0 + p[1] / 11.0 - p[0] / 40.0, 17.1 + p[2] / 1300.0]);
+        let odd =
+            UNIT.map(|p| [0.3 + p[0] / 7.0 + p[1] / 30.0, 1.0 / 3.0 + p[1] / 11.0 - p[0] / 40.0, 17.1 + p[2] / 1300.0]);
         let piece = Planes::of(odd).unwrap().clip(&odd);
         assert!((piece.share - 1.0).abs() < 1e-15 && piece.beyond == 0, "{piece:?}");
     }
@@ -349,7 +383,10 @@ mod tests {
     fn a_half_goes_on_beyond_the_face() {
         let planes = Planes::of(UNIT).unwrap();
         // Half of a box's part across x = 0: symmetric about that plane.
-        let x = turned([[-1.0, 0.1, 0.1], [1.0, 0.1, 0.1], [0.0, 0.3, 0.1], [0.0, 0.1, 0.3]].map(|p: Vec3| [0.2 * p[0], p[1], p[2]]));
+        let x = turned(
+            [[-1.0, 0.1, 0.1], [1.0, 0.1, 0.1], [0.0, 0.3, 0.1], [0.0, 0.1, 0.3]]
+                .map(|p: Vec3| [0.2 * p[0], p[1], p[2]]),
+        );
         let piece = planes.clip(&x);
         assert!((piece.share - 0.5).abs() < 1e-14, "{piece:?}");
         assert_eq!(piece.beyond, 0b10);

@@ -123,7 +123,14 @@ struct Part {
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 impl Part {
-    fn of(locator: &Locator, new: &TetMesh, nearest: &[f64], width: usize, values: &[f64], range: Range<usize>) -> Self {
+    fn of(
+        locator: &Locator,
+        new: &TetMesh,
+        nearest: &[f64],
+        width: usize,
+        values: &[f64],
+        range: Range<usize>,
+    ) -> Self {
         let mut vertices: Vec<u32> = new.tets.nodes[range.clone()].as_flattened().to_vec();
         vertices.sort_unstable();
         vertices.dedup();

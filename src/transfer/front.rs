@@ -150,7 +150,8 @@ mod tests {
         // The second has a slit, so that a tetrahedron may meet two parts of it.
         let mut slit = cube(6);
         let middle = |nodes: &[u32; 4]| nodes.iter().map(|&v| slit.vertices[v as usize][0]).sum::<f64>() / 4.0;
-        slit.tets.nodes = slit.tets.nodes.iter().copied().filter(|nodes| !(0.5..0.66).contains(&middle(nodes))).collect();
+        slit.tets.nodes =
+            slit.tets.nodes.iter().copied().filter(|nodes| !(0.5..0.66).contains(&middle(nodes))).collect();
         let mut partly = 0;
         for mesh in [cube(5), slit] {
             let locator = Locator::new(mesh.vertices, mesh.tets.nodes);

@@ -17,8 +17,7 @@ impl Sum {
     #[inline]
     pub fn add(&mut self, term: f64) {
         let sum = self.sum + term;
-        self.lost +=
-            if self.sum.abs() >= term.abs() { (self.sum - sum) + term } else { (term - sum) + self.sum };
+        self.lost += if self.sum.abs() >= term.abs() { (self.sum - sum) + term } else { (term - sum) + self.sum };
         self.sum = sum;
     }
 
@@ -114,8 +113,7 @@ pub fn measure(team: Team<'_>, mesh: &TetMesh, width: usize, values: &[f64]) -> 
         bounds
     });
     let component = |(c, mass): (usize, f64)| {
-        let [least, greatest] =
-            parts.iter().fold(NOTHING, |b, part| [b[0].min(part[c][0]), b[1].max(part[c][1])]);
+        let [least, greatest] = parts.iter().fold(NOTHING, |b, part| [b[0].min(part[c][0]), b[1].max(part[c][1])]);
         Component { mass, least, greatest }
     };
     (volume, masses.into_iter().enumerate().map(component).collect())

@@ -15,7 +15,8 @@ fn moved(n: u32, thin: i32) -> TetMesh {
         let q = *p;
         for i in 0..3 {
             if q[i] > 0.0 && q[i] < 1.0 {
-                p[i] += 0.24 / f64::from(thin) * step * (97.0 * q[(i + 1) % 3] + 31.0 * q[(i + 2) % 3] + 7.0 * q[i]).sin();
+                p[i] +=
+                    0.24 / f64::from(thin) * step * (97.0 * q[(i + 1) % 3] + 31.0 * q[(i + 2) % 3] + 7.0 * q[i]).sin();
             }
         }
         p[2] = p[2].powi(thin);
