@@ -82,8 +82,8 @@ fn a_mesh_goes_in_again_with_its_place() {
         for (region, volume) in volumes(&next.mesh) {
             assert!((volume - 0.5).abs() < 1e-12, "{region} {volume}");
         }
-        // The same eight corners, and the references of the sides.
-        assert_eq!(next.place.entities.iter().filter(|entity| matches!(entity, Entity::Vertex(_))).count(), 8);
+        // The corners of the cube and those of the face between the regions; and the references of the sides.
+        assert_eq!(next.place.entities.iter().filter(|entity| matches!(entity, Entity::Vertex(_))).count(), 8 + 4);
         let refs: std::collections::BTreeSet<i32> = next.mesh.triangles.refs.iter().copied().collect();
         assert_eq!(refs, (1..=7).collect());
         adapted = next;

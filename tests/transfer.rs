@@ -174,7 +174,7 @@ fn between_meshes_of_a_curved_body_too() {
     for round in 0..5 {
         let (there, report) = pair.transfer(THERE, &["--conservative"]);
         let [v, w] = [0, 1].map(|i| report["volumes"][i].as_f64().unwrap());
-        assert!(w < 0.99 * v && report["overlap"]["partly_outside"].as_u64() == Some(0));
+        assert!(w < 0.99 * v && report["overlap"]["partly_outside"].as_u64() > Some(0));
         for (before, after) in masses(&report, "before").iter().zip(masses(&report, "after")) {
             assert!((after / w - before / v).abs() < 1e-12 * (before / v).abs().max(1.0), "{before} {after}");
         }
@@ -231,7 +231,7 @@ fn what_lies_outside_is_counted() {
     pair.field(FieldKind::Scalar, |p| vec![p[0]]);
     for options in [&[][..], &["--conservative"]] {
         let (found, report) = pair.transfer(THERE, options);
-        assert_eq!(report["outside"], 2 * 25 - 25);
+        assert_eq!(report["outside"], 2 * 25);
         assert!((report["farthest"].as_f64().unwrap() - 0.5).abs() < 1e-14);
         assert!(bounds(&found.fields[0].values)[1] <= 1.0);
     }
@@ -267,7 +267,7 @@ fn bad_input_is_told() {
     says(message, &["inverted.meshb", "tetrahedron 5", "inverted", "inspect"]);
     // It is no harm where only vertices are asked for.
     pair.transfer(["old.meshb", "old.solb", "inverted.meshb", "new.solb"], &[]);
-    let empty = Solution { vertices: pair.meshes[0].vertices.len(), fields: Vec::new() };
-    io::write_solution(&pair.work.path("empty.solb"), &empty).unwrap();
-    says(pair.refusal(["old.meshb", "empty.solb", "new.meshb"], &[]), &["empty.solb"]);
+    std::fs::write(pair.work.path("empty.sol"), "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n343\n0\nEnd\n")
+        .unwrap();
+    says(pair.refusal(["old.meshb", "empty.sol", "new.meshb"], &[]), &["empty.sol"]);
 }
