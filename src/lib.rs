@@ -7,6 +7,7 @@
 //! Imports go one way: `cli → { adapt, image } → sizing → { metric, geometry } → mesh → tasks`; `view` stands on metric and below.
 pub mod adapt;
 pub mod cli;
+pub mod cycle;
 pub mod formats;
 pub mod geometry;
 pub mod image;

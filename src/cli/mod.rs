@@ -6,6 +6,8 @@ use std::process::ExitCode;
 mod adapt;
 mod bootstrap;
 mod classify;
+mod cycle;
+mod field;
 mod image_mesh;
 mod inspect;
 mod load;
@@ -32,6 +34,10 @@ enum Command {
     Bootstrap(bootstrap::Arguments),
     /// Put a mesh's boundary on the entities of a CAD model
     Classify(classify::Arguments),
+    /// Adapt and solve in turn, until it is fine enough
+    Cycle(cycle::Arguments),
+    /// Make and pick fields at vertices
+    Field(field::Arguments),
     /// Mesh the regions of a 3D image
     ImageMesh(image_mesh::Arguments),
     /// Check a mesh and measure it in a metric
@@ -62,6 +68,8 @@ pub fn main() -> ExitCode {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
+        Command::Cycle(arguments) => cycle::run(&arguments),
+        Command::Field(arguments) => field::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Metric(arguments) => metric::run(&arguments),
