@@ -1,8 +1,11 @@
 //! Starting configurations, with comments.
 
 /// Kinds of solvers with a configuration to begin with.
-pub const ALL: [(&str, &str); 2] =
-    [("analytic", include_str!("examples/analytic.toml")), ("command", include_str!("examples/command.toml"))];
+pub const ALL: [(&str, &str); 3] = [
+    ("analytic", include_str!("examples/analytic.toml")),
+    ("command", include_str!("examples/command.toml")),
+    ("su2", include_str!("examples/su2.toml")),
+];
 
 /// The configuration of a kind.
 pub fn of(kind: &str) -> Option<&'static str> {

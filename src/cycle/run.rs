@@ -60,10 +60,12 @@ struct State {
 /// # Errors
 /// [`Error::Interrupted`] when the user ended it, [`Error::Failed`] with place and remedy. In both cases it goes on with the same call.
 pub fn run(loaded: &Loaded, options: &Options, observer: &dyn Observer, stop: &Stop) -> Result<Ended, Error> {
-    let layout = Layout::new(loaded.output());
     loaded.config.solver.solver().check(&loaded.base).map_err(|error| format!("{}: {error}", loaded.path.display()))?;
-    let named = |error: std::io::Error| Error::Failed(format!("{}: {error}", layout.root().display()));
-    fs::create_dir_all(layout.root()).map_err(named)?;
+    let folder = loaded.output();
+    let named = |error: std::io::Error| Error::Failed(format!("{}: {error}", folder.display()));
+    fs::create_dir_all(&folder).map_err(named)?;
+    // Without `..`: its files are named in commands.
+    let layout = Layout::new(folder.canonicalize().map_err(named)?);
     let lock = File::create(layout.lock()).map_err(named)?;
     if matches!(lock.try_lock(), Err(TryLockError::WouldBlock)) {
         return Err(Error::Failed(format!(

@@ -19,6 +19,7 @@ mod surface;
 mod values;
 
 pub use names::Names;
+pub(crate) use pack::base64;
 pub use page::write_page;
 pub use scene::{Given, Quality, Scene};
 pub use values::ScalarField;

@@ -62,9 +62,12 @@ impl Loaded {
         Ok(loaded)
     }
 
-    /// A path of the file, absolute.
+    /// A path of the file, absolute, without `..` where it is there.
     pub fn at(&self, path: &Path) -> PathBuf {
-        self.base.join(path)
+        let joined = self.base.join(path);
+        let whole = |path: &Path| path.canonicalize().ok();
+        let beside = || Some(whole(joined.parent()?)?.join(joined.file_name()?));
+        whole(&joined).or_else(beside).unwrap_or(joined)
     }
 
     /// The folder of the loop, absolute.

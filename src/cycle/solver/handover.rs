@@ -1,7 +1,7 @@
 //! Meshes and fields in the format that a solver wants, by the ending of the file.
 use super::Job;
 use crate::formats::{Dataset, NamedField};
-use crate::mesh::io;
+use crate::mesh::{Association, TetMesh, io};
 use std::path::Path;
 
 fn ending(path: &Path) -> &str {
@@ -24,9 +24,10 @@ pub fn check_field_format(path: &Path) -> Result<(), String> {
     }
 }
 
-/// Writes the mesh for the solver.
+/// Writes the mesh for the solver, without its association with a model: other readers stumble over that, meshio among them.
 pub fn write_mesh(path: &Path, data: &Dataset) -> Result<(), String> {
-    io::write_mesh(path, &data.mesh).map_err(|error| error.to_string())
+    let mesh = TetMesh { association: Association::default(), ..data.mesh.clone() };
+    io::write_mesh(path, &mesh).map_err(|error| error.to_string())
 }
 
 /// Writes the fields of the last solution.

@@ -2,6 +2,7 @@
 pub mod analytic;
 pub mod command;
 mod handover;
+pub mod su2;
 
 use crate::formats::{Dataset, NamedField};
 use crate::mesh::io::{FieldKind, read_mesh, read_solution};
@@ -17,6 +18,8 @@ pub enum Choice {
     Analytic(analytic::Config),
     /// Any program.
     Command(command::Config),
+    /// SU2.
+    Su2(su2::Config),
 }
 
 impl Choice {
@@ -25,6 +28,7 @@ impl Choice {
         match self {
             Self::Analytic(solver) => solver,
             Self::Command(solver) => solver,
+            Self::Su2(solver) => solver,
         }
     }
 }
