@@ -1,4 +1,4 @@
-//! Imports go one way: cli → cycle → { adapt, image } → sizing → { metric, geometry } → mesh → tasks; and cli → view → metric.
+//! Imports go one way: cli → cycle → { adapt, image } → sizing → { metric, geometry } → mesh → tasks.
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("adapt", &["sizing", "metric", "geometry", "tasks", "mesh"]),
     ("sizing", &["metric", "geometry", "tasks", "mesh"]),
     ("image", &["tasks", "mesh"]),
-    ("view", &["metric", "tasks", "mesh"]),
+    ("view", &["metric", "geometry", "tasks", "mesh"]),
     ("metric", &["mesh", "tasks"]),
     ("geometry", &["mesh", "tasks"]),
     ("tasks", &[]),

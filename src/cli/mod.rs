@@ -6,6 +6,7 @@ use std::process::ExitCode;
 mod adapt;
 mod bootstrap;
 mod classify;
+mod convert;
 mod cycle;
 mod field;
 mod image_mesh;
@@ -34,6 +35,8 @@ enum Command {
     Bootstrap(bootstrap::Arguments),
     /// Put a mesh's boundary on the entities of a CAD model
     Classify(classify::Arguments),
+    /// Bring a mesh with its names and fields into the format of another program
+    Convert(convert::Arguments),
     /// Adapt and solve in turn, until it is fine enough
     Cycle(cycle::Arguments),
     /// Make and pick fields at vertices
@@ -68,6 +71,7 @@ pub fn main() -> ExitCode {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
         Command::Cycle(arguments) => cycle::run(&arguments),
         Command::Field(arguments) => field::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
