@@ -16,6 +16,7 @@ mod metric;
 mod model;
 mod names;
 mod table;
+mod transfer;
 mod tune;
 mod view;
 
@@ -49,6 +50,8 @@ enum Command {
     Metric(metric::Arguments),
     /// List the entities of a CAD model
     Model(model::Arguments),
+    /// Bring fields from one mesh to another
+    Transfer(transfer::Arguments),
     /// Measure which back-end, strategy and grain are the fastest on a case
     Tune(tune::Arguments),
     /// Show a mesh: a page for the browser, or a picture
@@ -78,6 +81,7 @@ pub fn main() -> ExitCode {
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
+        Command::Transfer(arguments) => transfer::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::View(arguments) => view::run(&arguments),
     };
