@@ -352,3 +352,101 @@ fn examples_are_printed_and_the_analytic_one_runs() {
     let place = Place::new(&short.replace("folder = \"analytic\"", "folder = \"out\""));
     place.run(&[]);
 }
+
+/// Stands for SU2_CFD: reads its configuration and mesh, writes restart and history as SU2 documents them. The density is 1 + x / 10, of
+/// which a transferred one must be found again; CL is the number of points, CD how far that is off.
+#[cfg(unix)]
+const SU2: &str = r#"#!/bin/sh
+value() { sed -n "s/^$1= *//p" "$2" | tail -1; }
+mesh=$(value MESH_FILENAME "$1")
+for tag in $(value MARKER_EULER "$1" | tr -d '(),') $(value MARKER_FAR "$1" | tr -d '(),'); do
+    grep -q "MARKER_TAG= *$tag" "$mesh" || { echo "no marker $tag in $mesh"; exit 1; }
+done
+[ "$(value MACH_NUMBER "$1")" = 0.5 ] || exit 1
+points="$(value RESTART_FILENAME "$1").csv"
+awk -v out="$points" '/^NPOIN=/ { n = $2; print "\"PointID\",\"x\",\"y\",\"z\",\"Density\",\"Momentum_x\",\"Momentum_y\",\"Momentum_z\",\"Energy\",\"Mach\"" > out
+    for (i = 0; i < n; i++) { getline; printf "%d, %.15e, %.15e, %.15e, %.15e, %e, %e, %e, %e, %.15e\n", i, $1, $2, $3, 1 + $1 / 10, $1, $2, $3, 2.5, $1 * $1 + $2 * $2 > out } }' "$mesh"
+off=9
+if [ "$(value RESTART_SOL "$1")" = YES ]; then
+    off=$(awk -F, 'NR > 1 { d = $5 - 1 - $2 / 10; if (d < 0) d = -d; if (d > m) m = d } END { printf "%e", m }' "$(value SOLUTION_FILENAME "$1").csv")
+fi
+printf '"Time_Iter","Inner_Iter",     "rms[Rho]"    ,       "CL"       ,       "CD"       \n0, 0, -1.0, 0.0, 0.0\n0, 1, -8.0, %d, %s\n' \
+    "$(($(wc -l < "$points") - 1))" "$off" > "$(value CONV_FILENAME "$1").csv"
+"#;
+
+#[cfg(unix)]
+#[test]
+fn su2_restarts_from_the_transferred_solution() {
+    use std::os::unix::fs::PermissionsExt;
+    let config = r#"
+[mesh]
+file = "cube.meshb"
+[solver.su2]
+program = "./SU2_CFD"
+flow = { mach = 0.5, walls = ["wall"], farfield = ["inlet", "far"] }
+[metric]
+fields = ["Mach"]
+[schedule]
+complexity = 60
+factor = 1.0
+cycles = 2
+[output]
+folder = "out"
+"#;
+    let place = Place::new(config);
+    place.write("SU2_CFD", SU2);
+    std::fs::set_permissions(place.path("SU2_CFD"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    geo_adapt::mesh::io::write_mesh(&place.path("cube.meshb"), &common::adapting::cube(3, |_| 1)).unwrap();
+    let label = |name: &str| serde_json::json!({ "name": name });
+    let names = serde_json::json!({ "triangles": { "1": label("wall"), "2": label("inlet"), "3": label("far"), "4": label("far"), "5": label("far"), "6": label("far") } });
+    place.write("cube.names.json", &names.to_string());
+    place.run(&[]);
+    let report = place.report();
+    let cycles = report["cycles"].as_array().unwrap();
+    let told = |cycle: usize, name: &str| cycles[cycle]["functionals"][name].as_f64().unwrap();
+    assert_eq!((told(0, "CD"), told(0, "CL")), (9.0, 64.0), "the first solve has nothing to go on from");
+    assert_eq!(told(2, "CL"), cycles[2]["vertices"].as_f64().unwrap());
+    assert!(told(1, "CD") < 1e-12 && told(2, "CD") < 1e-12, "{report}");
+    let written = std::fs::read_to_string(place.path("out/cycle-02/solve/su2.cfg")).unwrap();
+    assert!(written.contains("RESTART_SOL= YES") && written.contains("MARKER_FAR= ( inlet, far )"), "{written}");
+
+    let place = Place::new(&config.replace("./SU2_CFD", "./none"));
+    place.write("cube.meshb", "");
+    assert!(place.refusal(&[]).contains("./none is not there: install SU2"));
+}
+
+#[test]
+fn vtu_goes_to_the_program_and_comes_back() {
+    // The program hands the file back: its fields are those of the last solve, and in the first cycle it takes those of a file that it has.
+    let config = r#"
+[mesh]
+file = "cube.vtu"
+[solver.command]
+run = 'if [ {solution_in} = none ]; then cp {config}/cube.vtu {solution_out}; else cp {mesh} {solution_out}; fi'
+mesh = "mesh.vtu"
+solution_in = "before.csv"
+solution_out = "solution.vtu"
+[metric]
+fields = ["U:norm"]
+[schedule]
+complexity = 50
+cycles = 1
+[output]
+folder = "out"
+pictures = false
+"#;
+    let place = Place::new(config);
+    let mesh = common::adapting::cube(3, |_| 1);
+    let values = mesh.vertices.iter().flat_map(|p| [p[0] * p[0], p[1], 1.0]).collect();
+    let field =
+        geo_adapt::formats::NamedField { name: "U".into(), kind: geo_adapt::mesh::io::FieldKind::Vector, values };
+    let data = geo_adapt::formats::Dataset { mesh, fields: vec![field], ..Default::default() };
+    geo_adapt::formats::write(&place.path("cube.vtu"), &data).unwrap();
+    place.run(&[]);
+    let last = geo_adapt::mesh::io::read_solution(&place.path("out/cycle-02/solve/solution.solb")).unwrap().content;
+    let mesh = geo_adapt::mesh::io::read_mesh(&place.path("out/cycle-01/adapt/mesh.meshb")).unwrap().content;
+    assert_eq!(last.fields[0].kind, geo_adapt::mesh::io::FieldKind::Vector);
+    for (p, u) in mesh.vertices.iter().zip(last.fields[0].values.chunks(3)) {
+        assert!((u[1] - p[1]).abs() < 1e-6 && (u[2] - 1.0).abs() < 1e-6, "{p:?} {u:?}");
+    }
+}

@@ -1,6 +1,6 @@
 """Advection and diffusion about a cylinder with suction, by scikit-fem: linear tetrahedra, streamline stabilisation.
 
-    python solve.py MESH SOLUTION.sol          # any mesh that meshio reads; writes result.json beside the solution
+    python solve.py MESH SOLUTION          # files of meshio, such as .vtu; result.json with the functionals goes beside the solution
 
 On the unit cube without the cylinder of radius R about the z axis, the flow b = -e_r / r goes into the cylinder (div b = 0) and
 -ε Δu + b·∇u = 0 with u = 1 there. The exact solution (r/R)^(-1/ε) is a layer of thickness ε R on the curved wall; on the other
@@ -78,25 +78,16 @@ def solve(mesh):
         sys.exit(f"the linear system was not solved (bicgstab: {failed})")
     fine = Basis(mesh, ElementTetP1(), intorder=DEGREE)
     error = np.sqrt(Functional(lambda w: (w.u - exact(w.x)) ** 2).assemble(fine, u=fine.interpolate(u)))
-
-    return u, {"error": float(error), "content": float(Functional(lambda w: w.u).assemble(fine, u=fine.interpolate(u)))}
-
-
-def read(path):
-    """A mesh with its vertices in the order of the file."""
-    found = meshio.read(path)
-    mesh = MeshTet(np.ascontiguousarray(found.points.T), np.ascontiguousarray(found.cells_dict["tetra"].T.astype(np.int64)))
-    if mesh.p.shape[1] != len(found.points):
-        sys.exit(f"{path}: vertices without a tetrahedron")
-    return mesh
+    content = Functional(lambda w: w.u).assemble(fine, u=fine.interpolate(u))
+    return u, {"error": float(error), "content": float(content)}
 
 
 def main():
-    mesh = read(sys.argv[1])
-    u, functionals = solve(mesh)
-    rows = "\n".join(f"{value:.17g}" for value in u)
-    Path(sys.argv[2]).write_text(f"MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n{len(u)}\n1 1\n{rows}\nEnd\n")
-    Path(sys.argv[2]).with_name("result.json").write_text(json.dumps(functionals))
+    found, target = meshio.read(sys.argv[1]), Path(sys.argv[2])
+    tets = np.concatenate([block.data for block in found.cells if block.type == "tetra"])
+    u, functionals = solve(MeshTet(np.ascontiguousarray(found.points.T), np.ascontiguousarray(tets.T.astype(np.int64))))
+    meshio.Mesh(found.points, [("tetra", tets)], point_data={"u": u}).write(target)
+    target.with_name("result.json").write_text(json.dumps(functionals))
     print(f"{len(u)} vertices, error {functionals['error']:.4g}, content {functionals['content']:.6f} (exact {CONTENT:.6f})")
 
 

@@ -1,10 +1,10 @@
 //! The steps of a cycle, each by the commands that make it.
 use super::config::{Loaded, TransferMethod};
 use super::layout::Layout;
-use super::solver::{Before, FieldName, Job, Solver, kind_of, names_beside};
+use super::solver::{Before, FieldName, Job, Solver, kind_of};
 use super::step::{Done, Steps, text};
 use super::{Error, Options};
-use crate::geometry::called;
+use crate::geometry::{Names, called, names};
 use crate::mesh::io::{Solution, SolutionField, read_mesh, write_mesh, write_solution};
 use crate::mesh::samples::cube;
 use serde::{Deserialize, Serialize};
@@ -84,12 +84,9 @@ impl<'a> Pipeline<'a> {
             let file = self.loaded.at(file);
             if file.extension().is_some_and(|ending| ending == "meshb") {
                 copy(&file, &target)?;
-                let names = file.with_extension("names.json");
-                if names.is_file() {
-                    copy(&names, &target.with_extension("names.json"))?;
-                }
+                names::write(&target, &names::read(&file)?, &[])?;
             } else {
-                running.geo_adapt(vec!["convert".into(), text(&file), "-o".into(), text(&target)])?;
+                running.geo_adapt(vec!["convert".into(), text(&file), text(&target)])?;
             }
             Ok(Begun { cad: mesh.cad.as_deref().map(|cad| self.loaded.at(cad)) })
         })
@@ -111,11 +108,13 @@ impl<'a> Pipeline<'a> {
             let solved = self.solver().collect(&job)?;
             let counted = read_mesh(&mesh)?.content;
             solved.check(counted.vertices.len())?;
-            let fields = solved.fields.iter().map(FieldName::of).collect();
+            let fields: Vec<FieldName> = solved.fields.iter().map(FieldName::of).collect();
+            let called: Vec<String> = fields.iter().map(|field| field.name.clone()).collect();
             let content =
                 solved.fields.into_iter().map(|field| SolutionField { kind: field.kind, values: field.values });
             let solution = Solution { vertices: counted.vertices.len(), fields: content.collect() };
             write_solution(&layout.solution(cycle), &solution)?;
+            names::write(&layout.solution(cycle), &Names::default(), &called)?;
             let (vertices, tets) = (counted.vertices.len(), counted.tets.len());
             Ok(SolveResult { vertices, tets, fields, functionals: solved.functionals })
         })
@@ -151,7 +150,7 @@ impl<'a> Pipeline<'a> {
             option(&mut common, "--at", output.at.map(|[x, y, z]| format!("{x},{y},{z}")).as_ref());
             let mut surface = common.clone();
             let mut hidden = output.hide.clone();
-            hidden.extend(called(&names_beside(&mesh)?.triangles, "farfield"));
+            hidden.extend(called(&names::read(&mesh)?.triangles, "farfield"));
             if !hidden.is_empty() {
                 surface.extend(["--hide".into(), hidden.iter().map(i32::to_string).collect::<Vec<_>>().join(",")]);
             }

@@ -9,7 +9,6 @@ use super::{Error, report};
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Who is told what happens.
@@ -128,7 +127,7 @@ fn begin(loaded: &Loaded, options: &Options, steps: Steps<'_>) -> Result<(), Err
 fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<Ended, Error> {
     let (layout, config) = (pipeline.steps.layout, &pipeline.loaded.config);
     let cad = pipeline.start()?.result.cad;
-    let transfers = config.transfer.method != TransferMethod::None && can_transfer(observer);
+    let transfers = config.transfer.method != TransferMethod::None;
     let mut functional = Vec::new();
     let mut before: Option<SolveResult> = None;
     let mut cycle = 1;
@@ -173,14 +172,4 @@ fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<E
         cycle += 1;
     };
     Ok(Ended { reason, history, page: layout.page(), mesh: layout.mesh(cycle), solution: layout.solution(cycle) })
-}
-
-/// Whether this program has the subcommand that brings solutions to other meshes.
-fn can_transfer(observer: &dyn Observer) -> bool {
-    let help = std::env::current_exe().and_then(|program| Command::new(program).args(["transfer", "--help"]).output());
-    let can = help.is_ok_and(|output| output.status.success());
-    if !can {
-        observer.note("this geo-adapt has no subcommand transfer: each solve begins anew");
-    }
-    can
 }

@@ -104,9 +104,10 @@ impl Solver for Config {
         self.replace(|name| PLACES.contains(&name).then(String::new))?;
         self.patterns()?;
         handover::check_mesh_format(&self.mesh).map_err(|error| format!("[solver.command] mesh: {error}"))?;
-        for (key, path) in [("solution_in", &self.solution_in), ("solution_out", &self.solution_out)] {
-            handover::check_field_format(path).map_err(|error| format!("[solver.command] {key}: {error}"))?;
-        }
+        handover::check_field_format(&self.solution_in)
+            .map_err(|error| format!("[solver.command] solution_in: {error}"))?;
+        handover::check_solution_format(&self.solution_out)
+            .map_err(|error| format!("[solver.command] solution_out: {error}"))?;
         Ok(())
     }
 

@@ -1,60 +1,71 @@
 //! Meshes and fields in the format that a solver wants, by the ending of the file.
 use super::Job;
-use crate::formats::{Dataset, NamedField};
-use crate::mesh::{Association, TetMesh, io};
+use crate::formats::{self, Dataset, Format, NamedField};
+use crate::mesh::{Association, TetMesh};
 use std::path::Path;
-
-fn ending(path: &Path) -> &str {
-    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default()
-}
 
 /// Refuses an ending that no mesh is written with.
 pub fn check_mesh_format(path: &Path) -> Result<(), String> {
-    match ending(path) {
-        "mesh" | "meshb" => Ok(()),
-        _ => Err(format!("{}: meshes are written as .mesh or .meshb", path.display())),
+    match Format::of(path) {
+        Ok(format) if !format.is_fields() => Ok(()),
+        Ok(_) => Err(format!("{}: this is a format of fields alone; give one of meshes, such as .vtu", path.display())),
+        Err(error) => Err(error.to_string()),
     }
 }
 
-/// Refuses an ending that no fields are read and written with.
+/// Refuses an ending that no fields are written with.
 pub fn check_field_format(path: &Path) -> Result<(), String> {
-    match ending(path) {
-        "sol" | "solb" => Ok(()),
-        _ => Err(format!("{}: fields go as .sol or .solb", path.display())),
+    match Format::of(path) {
+        Ok(format) if format.is_fields() => Ok(()),
+        Ok(_) => Err(format!("{}: give a format of fields alone: .sol, .solb, .csv or .dat", path.display())),
+        Err(error) => Err(error.to_string()),
     }
 }
 
-/// Writes the mesh for the solver, without its association with a model: other readers stumble over that, meshio among them.
+/// Refuses an ending that no fields are read from: those of fields alone, and meshes that carry fields.
+pub fn check_solution_format(path: &Path) -> Result<(), String> {
+    Format::of(path).map(drop).map_err(|error| error.to_string())
+}
+
+/// Writes the mesh for the solver; the fields of the last solution go along where one file carries both. Its association with a model does
+/// not: other readers stumble over that, meshio among them.
 pub fn write_mesh(path: &Path, data: &Dataset) -> Result<(), String> {
+    let carries = matches!(Format::of(path), Ok(Format::Vtu));
     let mesh = TetMesh { association: Association::default(), ..data.mesh.clone() };
-    io::write_mesh(path, &mesh).map_err(|error| error.to_string())
+    let fields = if carries { data.fields.clone() } else { Vec::new() };
+    let told = formats::write(path, &Dataset { mesh, names: data.names.clone(), fields });
+    told.map(drop).map_err(|error| error.to_string())
 }
 
 /// Writes the fields of the last solution.
 pub fn write_fields(path: &Path, data: &Dataset) -> Result<(), String> {
-    io::write_solution(path, &data.solution()).map_err(|error| error.to_string())
+    formats::write(path, data).map(drop).map_err(|error| error.to_string())
 }
 
 /// Reads what the solver wrote on the mesh of the job; `names` are those of the fields where the format has none.
 pub fn read_fields(path: &Path, job: &Job<'_>, names: &[String]) -> Result<Vec<NamedField>, String> {
-    let solution = io::read_solution(path).map_err(|error| error.to_string())?.content;
-    let vertices = io::read_mesh(job.mesh).map_err(|error| error.to_string())?.content.vertices.len();
-    if solution.vertices != vertices {
-        let found = solution.vertices;
-        return Err(format!("{}: values at {found} vertices, but the mesh has {vertices}", path.display()));
+    let mut data = Dataset { mesh: job.mesh()?, ..Dataset::default() };
+    let format = Format::of(path).map_err(|error| error.to_string())?;
+    if format.is_fields() {
+        formats::read_fields(path, &mut data).map_err(|error| error.to_string())?;
+    } else {
+        let read = formats::read(path).map_err(|error| error.to_string())?.content;
+        if read.mesh.vertices.len() != data.mesh.vertices.len() {
+            let (found, wanted) = (read.mesh.vertices.len(), data.mesh.vertices.len());
+            return Err(format!("{}: {found} vertices, but the mesh that was solved on has {wanted}", path.display()));
+        }
+        data.fields = read.fields;
     }
-    named(path, names, solution.fields.into_iter().map(|field| (field.kind, field.values)).collect())
-}
-
-/// Fields with the names that the configuration gives them, else u1, u2, …
-fn named(path: &Path, names: &[String], fields: Vec<(io::FieldKind, Vec<f64>)>) -> Result<Vec<NamedField>, String> {
-    if !names.is_empty() && names.len() != fields.len() {
-        let (found, given) = (fields.len(), names.len());
-        return Err(format!(
-            "{}: {found} fields, but [solver] fields names {given}: name each, in their order",
-            path.display()
-        ));
+    let unnamed = matches!(format, Format::Solution | Format::Libmeshb);
+    if unnamed && !names.is_empty() {
+        if names.len() != data.fields.len() {
+            let (found, given) = (data.fields.len(), names.len());
+            return Err(format!(
+                "{}: {found} fields, but [solver] fields names {given}: name each, in their order",
+                path.display()
+            ));
+        }
+        data.fields.iter_mut().zip(names).for_each(|(field, name)| field.name.clone_from(name));
     }
-    let name = |at: usize| names.get(at).cloned().unwrap_or_else(|| format!("u{}", at + 1));
-    Ok(fields.into_iter().enumerate().map(|(at, (kind, values))| NamedField { name: name(at), kind, values }).collect())
+    Ok(data.fields)
 }

@@ -5,6 +5,8 @@ mod handover;
 pub mod su2;
 
 use crate::formats::{Dataset, NamedField};
+use crate::geometry::names;
+use crate::mesh::TetMesh;
 use crate::mesh::io::{FieldKind, read_mesh, read_solution};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -110,13 +112,21 @@ pub struct Solved {
 }
 
 impl Job<'_> {
+    /// The mesh alone.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn mesh(&self) -> Result<TetMesh, String> {
+        read_mesh(self.mesh).map(|read| read.content).map_err(|error| error.to_string())
+    }
+
     /// The mesh, the names of its references, and the fields of the solution before.
     ///
     /// # Errors
     /// When a file cannot be read.
     pub fn dataset(&self) -> Result<Dataset, String> {
-        let mesh = read_mesh(self.mesh).map_err(|error| error.to_string())?.content;
-        let names = names_beside(self.mesh)?;
+        let mesh = self.mesh()?;
+        let names = names::read(self.mesh).map_err(|error| error.to_string())?;
         let mut fields = Vec::new();
         if let Some(Before { path, fields: named }) = &self.before {
             let read = read_solution(path).map_err(|error| error.to_string())?.content;
@@ -128,19 +138,6 @@ impl Job<'_> {
                 .collect();
         }
         Ok(Dataset { mesh, names, fields })
-    }
-}
-
-/// The names of a mesh's references, from the file beside it.
-///
-/// # Errors
-/// When that is there and cannot be read.
-pub fn names_beside(mesh: &Path) -> Result<crate::geometry::Names, String> {
-    let path = mesh.with_extension("names.json");
-    match std::fs::read(&path) {
-        Ok(bytes) => serde_json::from_slice(&bytes)
-            .map_err(|error| format!("{}: no names of references ({error})", path.display())),
-        Err(_) => Ok(crate::geometry::Names::default()),
     }
 }
 
