@@ -7,6 +7,7 @@ mod error;
 pub mod example;
 mod history;
 mod layout;
+mod picked;
 mod pipeline;
 mod process;
 mod report;
