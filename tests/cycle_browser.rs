@@ -44,6 +44,7 @@ fn a_report_shows_charts_histograms_and_pictures() {
         .map(part => part.outerHTML)";
     assert_eq!(browser.script(outside), serde_json::json!([]));
     let text = browser.script("return document.documentElement.outerHTML").as_str().unwrap().to_owned();
+    assert!(text.contains("[solver.analytic]"), "the configuration");
     assert!(!text.contains("NaN") && !text.contains("{{"), "a number that is none, or a place not filled");
     assert!(
         browser

@@ -9,6 +9,7 @@ mod history;
 mod layout;
 mod picked;
 mod pipeline;
+mod probe;
 mod process;
 mod report;
 mod run;

@@ -1,7 +1,8 @@
 //! The steps of a cycle, each by the commands that make it.
 use super::config::{Loaded, TransferMethod};
 use super::layout::Layout;
-use super::picked::picked;
+use super::picked::{as_words, picked};
+use super::probe;
 use super::solver::{Before, FieldName, Job, Solver};
 use super::step::{Done, Steps, text};
 use super::{Error, Options};
@@ -109,9 +110,10 @@ impl<'a> Pipeline<'a> {
             for call in self.solver().prepare(&job)? {
                 running.call(&call)?;
             }
-            let solved = self.solver().collect(&job)?;
+            let mut solved = self.solver().collect(&job)?;
             let counted = read_mesh(&mesh)?.content;
             solved.check(counted.vertices.len())?;
+            probe::add(&self.loaded.config.probes, &counted, &mut solved)?;
             let fields: Vec<FieldName> = solved.fields.iter().map(FieldName::of).collect();
             let called: Vec<String> = fields.iter().map(|field| field.name.clone()).collect();
             let content =
@@ -126,7 +128,7 @@ impl<'a> Pipeline<'a> {
 
     /// Which values of the solution the metric is made from, as `field pick --take` has them.
     fn sensors(&self, fields: &[FieldName]) -> Result<String, String> {
-        picked(&self.loaded.config.metric.fields, fields)
+        Ok(as_words(&picked(&self.loaded.config.metric.fields, fields)?))
     }
 
     /// Pictures of the mesh of a cycle: surface and cut.
