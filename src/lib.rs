@@ -4,11 +4,12 @@
 //! [`metric::Field`], adapted by [`adapt`], and comes out as a [`mesh::TetMesh`] again.
 //! [`sizing`] makes the metric that the model itself asks for, [`image`] makes a first mesh of a 3D image,
 //! [`transfer`] brings fields from one mesh to another, [`view`] shows one.
-//! [`Adapter`] is all of it in memory, for a solver.
-//! Imports go one way: `{ cli, api } → { adapt, image } → sizing → { metric, geometry } → transfer → mesh → tasks`; `view` stands on metric and below.
+//! [`Adapter`] is all of it in memory, for a solver; [`cycle`] is the loop with one that is a program.
+//! Imports go one way: `{ cli → cycle, api } → { adapt, image } → sizing → { metric, geometry } → transfer → mesh → tasks`; `view` stands on metric and below.
 pub mod adapt;
 pub mod api;
 pub mod cli;
+pub mod cycle;
 pub mod formats;
 pub mod geometry;
 pub mod image;

@@ -7,6 +7,8 @@ mod adapt;
 mod bootstrap;
 mod classify;
 mod convert;
+mod cycle;
+mod field;
 mod image_mesh;
 mod inspect;
 mod load;
@@ -36,6 +38,10 @@ enum Command {
     Classify(classify::Arguments),
     /// Bring a mesh with its names and fields into the format of another program
     Convert(convert::Arguments),
+    /// Adapt and solve in turn, until it is fine enough
+    Cycle(cycle::Arguments),
+    /// Make and pick fields at vertices
+    Field(field::Arguments),
     /// Mesh the regions of a 3D image
     ImageMesh(image_mesh::Arguments),
     /// Check a mesh and measure it in a metric
@@ -69,6 +75,8 @@ pub fn main() -> ExitCode {
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
+        Command::Cycle(arguments) => cycle::run(&arguments),
+        Command::Field(arguments) => field::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Metric(arguments) => metric::run(&arguments),
