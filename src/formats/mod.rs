@@ -1,4 +1,5 @@
 //! Meshes and fields in the files of other programs.
 mod dataset;
+pub mod foam;
 
 pub use dataset::{Dataset, NamedField};
