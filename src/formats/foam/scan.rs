@@ -142,6 +142,7 @@ impl<'a> Scanner<'a> {
     /// Passes over what belongs to an entry of a dictionary whose name was read: `{ … }`, or all up to `;`.
     pub fn skip_entry(&mut self) -> Result<(), Error> {
         let mut depth = 0usize;
+        let is_dictionary = self.peek() == Token::Mark(b'{');
         loop {
             match self.next() {
                 Token::Mark(b'{' | b'(' | b'[') => depth += 1,
@@ -149,7 +150,7 @@ impl<'a> Scanner<'a> {
                 Token::Mark(b';') | Token::Word(_) => {}
                 Token::Mark(mark) if depth > 0 => {
                     depth -= 1;
-                    if depth == 0 && mark == b'}' {
+                    if depth == 0 && mark == b'}' && is_dictionary {
                         return Ok(());
                     }
                 }
@@ -179,7 +180,7 @@ mod tests {
     #[test]
     fn entries_are_passed_over_whole() {
         let path = Path::new("f");
-        let mut scanner = Scanner::new(path, b"{ a (1 2); b { c 1; } } next 1 List<word> 1(x; y); last");
+        let mut scanner = Scanner::new(path, b"{ a (1 2); b { c 1; } } next 1 List<word> 1(x; y) 3{0}; last");
         scanner.skip_entry().unwrap();
         assert_eq!(scanner.word().unwrap(), b"next");
         scanner.skip_entry().unwrap();
