@@ -1,7 +1,9 @@
 //! `geo-adapt classify`.
-use super::{Outcome, load, names};
+use super::names::on_mesh;
+use super::{Outcome, load};
 use crate::geometry::classify::{Associated, Options, Report, associate, classify};
 use crate::geometry::discrete::complete_boundary;
+use crate::geometry::names;
 use crate::mesh::io;
 use crate::tasks::{Plan, Team};
 use std::fmt::Write;
@@ -43,8 +45,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let associated = associate(mesh, &classification);
     io::write_mesh(&arguments.output, mesh)?;
     let known = !given.is_empty() && !associated.references_replaced;
-    let names = if known { given } else { names::on_mesh(mesh, &classification, &model) };
-    names::write(&arguments.output, &names)?;
+    let names = if known { given } else { on_mesh(mesh, &classification, &model) };
+    names::write(&arguments.output, &names, &[])?;
     for notice in read.notices.iter().chain(&report.notices) {
         eprintln!("geo-adapt: note: {notice}");
     }

@@ -2,8 +2,7 @@
 //!
 //! OpenCASCADE can crash on a damaged file, and a crash cannot be caught. So the file is first read by a child process, this same
 //! program; if that one dies, the user gets an error like any other. It costs the reading twice, which is little beside an adaptation.
-use super::names;
-use crate::geometry::{Error, Model};
+use crate::geometry::{Error, Model, names};
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 
@@ -41,7 +40,8 @@ pub fn model(path: &Path) -> Result<Model, Error> {
     // BREP files have no names of their own.
     let is_brep = path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("brep"));
     if is_brep && model.names().is_empty() {
-        model.rename(names::read(path).map_err(|message| Error::Model { path: path.into(), message })?);
+        model
+            .rename(names::read(path).map_err(|error| Error::Model { path: path.into(), message: error.to_string() })?);
     }
     Ok(model)
 }

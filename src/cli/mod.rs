@@ -6,6 +6,9 @@ use std::process::ExitCode;
 mod adapt;
 mod bootstrap;
 mod classify;
+mod convert;
+mod cycle;
+mod field;
 mod image_mesh;
 mod inspect;
 mod load;
@@ -13,6 +16,7 @@ mod metric;
 mod model;
 mod names;
 mod table;
+mod transfer;
 mod tune;
 mod view;
 
@@ -32,6 +36,12 @@ enum Command {
     Bootstrap(bootstrap::Arguments),
     /// Put a mesh's boundary on the entities of a CAD model
     Classify(classify::Arguments),
+    /// Bring a mesh with its names and fields into the format of another program
+    Convert(convert::Arguments),
+    /// Adapt and solve in turn, until it is fine enough
+    Cycle(cycle::Arguments),
+    /// Make and pick fields at vertices
+    Field(field::Arguments),
     /// Mesh the regions of a 3D image
     ImageMesh(image_mesh::Arguments),
     /// Check a mesh and measure it in a metric
@@ -40,6 +50,8 @@ enum Command {
     Metric(metric::Arguments),
     /// List the entities of a CAD model
     Model(model::Arguments),
+    /// Bring fields from one mesh to another
+    Transfer(transfer::Arguments),
     /// Measure which back-end, strategy and grain are the fastest on a case
     Tune(tune::Arguments),
     /// Show a mesh: a page for the browser, or a picture
@@ -62,10 +74,14 @@ pub fn main() -> ExitCode {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
+        Command::Cycle(arguments) => cycle::run(&arguments),
+        Command::Field(arguments) => field::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
+        Command::Transfer(arguments) => transfer::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::View(arguments) => view::run(&arguments),
     };

@@ -1,47 +1,8 @@
-//! The names file beside a mesh or a BREP model: MESH.names.json for MESH.meshb.
-//!
-//! It says for triangles, edges and tetrahedra what each reference is called, and its colour:
-//! `{"triangles": {"3": {"name": "inlet", "colour": "#FF0000"}}, "edges": {}, "tetrahedra": {"1": {"name": "fluid"}}}`.
+//! A model's names on a mesh of it.
 use crate::geometry::classify::Classification;
 use crate::geometry::{Geometry, Model, Names};
-use crate::mesh::{TetMesh, io};
+use crate::mesh::TetMesh;
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
-
-/// The names file of a mesh or model.
-pub fn path(of: &Path) -> PathBuf {
-    of.with_extension("names.json")
-}
-
-/// Reads the names of a mesh or model; none where there is no such file.
-///
-/// # Errors
-/// When the file cannot be read, or holds something else.
-pub fn read(of: &Path) -> Result<Names, String> {
-    let path = path(of);
-    let name = path.display();
-    match std::fs::read(&path) {
-        Ok(bytes) => serde_json::from_slice(&bytes).map_err(|error| {
-            format!("{name}: no names of references ({error}); write it as geo-adapt bootstrap does, or move it away")
-        }),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Names::default()),
-        Err(error) => Err(format!("{name}: {error}")),
-    }
-}
-
-/// Writes the names of a mesh beside it. Where there are none nothing is written, and the file of an older mesh is made empty.
-///
-/// # Errors
-/// When the file cannot be written.
-pub fn write(of: &Path, names: &Names) -> Result<(), Box<dyn std::error::Error>> {
-    let path = path(of);
-    if names.is_empty() && !path.exists() {
-        return Ok(());
-    }
-    let text = serde_json::to_vec_pretty(names)?;
-    Ok(io::write_beside(&path, |file| file.write_all(&text).and_then(|()| file.write_all(b"\n")))?)
-}
 
 /// The model's names by the references of a mesh that lies on it.
 pub fn on_mesh(mesh: &TetMesh, place: &Classification, model: &Model) -> Names {

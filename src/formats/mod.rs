@@ -1,5 +1,129 @@
 //! Meshes and fields in the files of other programs.
+//!
+//! Reading goes bytes → a reader a format (`su2`, `vtu`, `msh`, `ugrid`; `libmeshb` hands over to [`crate::mesh::io`]) → [`Dataset`] →
+//! `check` (indices, numbers) → `turn` (tetrahedra numbered the other way). Writing goes the way back, and says what the format cannot carry.
+//! Columns of fields alone (`columns`: SU2's restarts) come onto a mesh that is there.
+mod cells;
+mod check;
+mod columns;
 mod dataset;
+mod error;
 pub mod foam;
+mod format;
+mod lacks;
+mod libmeshb;
+mod markers;
+mod scan;
+mod su2;
+mod text;
+mod turn;
+mod vtu;
 
+pub use cells::to_vertices;
 pub use dataset::{Dataset, NamedField};
+pub use format::Format;
+
+use crate::geometry::names;
+use crate::mesh::io::{Error, Read};
+use crate::tasks::Team;
+use std::path::{Path, PathBuf};
+
+/// How a file is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// As text where the format would be binary otherwise (.vtu, .msh).
+    pub text: bool,
+}
+
+/// Reads a mesh with its names and fields, by the extension, or by the content where there is none that is known. What lies beside
+/// belongs to it: the names and fields of .mesh and .meshb, the names of .ugrid. Elements that cannot stand in a [`crate::mesh::TetMesh`]
+/// (hexahedra, prisms, quadrilaterals, curved ones) are refused.
+///
+/// # Errors
+/// [`Error::System`] when a file cannot be read, [`Error::Content`] when what it says cannot be true, or is not for us.
+pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
+    let bytes = error::read(path)?;
+    let format = Format::of_input(path, &bytes)?;
+    let mut read = read_bytes(format, path, &bytes)?;
+    match format {
+        Format::Libmeshb => libmeshb::read_beside(path, &mut read)?,
+        _ => {}
+    }
+    Ok(read)
+}
+
+/// As [`read`], from bytes of such a format, and nothing beside; `path` is what errors say.
+///
+/// # Errors
+/// [`Error::Content`], as there.
+pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
+    let mut read = match format {
+        Format::Libmeshb => libmeshb::read(path, bytes)?,
+        Format::Su2 => su2::read(path, bytes)?,
+        Format::Vtu => vtu::read(path, bytes)?,
+        Format::Solution | Format::Table | Format::Restart => {
+            let message = "holds fields and no mesh: give the mesh, and this file by --fields";
+            return Err(error::at(path, "extension", message));
+        }
+    };
+    check::drop_endless(path, &mut read.content.fields, &mut read.notices);
+    check::check(path, &read.content)?;
+    read.notices.extend(turn::turn(&mut read.content.mesh).map(|notice| format!("{}: {notice}", path.display())));
+    Ok(read)
+}
+
+/// The files beside a mesh that belong to it in its format, whether they are there or not.
+///
+/// # Errors
+/// When the extension is none that is known.
+pub fn beside(path: &Path) -> Result<Vec<PathBuf>, Error> {
+    Ok(match Format::of(path)? {
+        Format::Libmeshb => vec![libmeshb::solution_path(path), names::beside(path)],
+        _ => Vec::new(),
+    })
+}
+
+/// Reads fields (.sol, .solb, .csv, .dat) onto a mesh, instead of those that it has. Returns notices.
+///
+/// # Errors
+/// As [`read`]; and where the file is of a mesh with other vertices.
+pub fn read_fields(path: &Path, data: &mut Dataset) -> Result<Vec<String>, Error> {
+    let bytes = error::read(path)?;
+    let mut read = match Format::of(path)? {
+        Format::Solution => libmeshb::read_solution(path, &bytes, data.mesh.vertices.len())?,
+        Format::Table | Format::Restart => columns::read(path, &bytes, &data.mesh.vertices)?,
+        _ => return Err(error::at(path, "extension", "no file of fields; give .sol, .solb, .csv or .dat")),
+    };
+    check::drop_endless(path, &mut read.content, &mut read.notices);
+    data.fields = read.content;
+    check::check(path, data)?;
+    Ok(read.notices)
+}
+
+/// Writes a mesh with its names and fields, by the extension: beside the target first, then renamed. To .sol, .solb, .csv and .dat go the
+/// fields alone. Returns notices: what the format cannot carry.
+///
+/// # Errors
+/// [`Error::Content`] for another extension, or what could not be read again, [`Error::System`] when a file cannot be written.
+pub fn write(path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
+    write_on(Team::alone(), path, data, Options::default())
+}
+
+/// As [`write`], on the threads of a team: the same file to the last byte.
+///
+/// # Errors
+/// As there.
+pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, options: Options) -> Result<Vec<String>, Error> {
+    let format = Format::of(path)?;
+    check::check(path, data)?;
+    let mut notices = lacks::notices(format, data);
+    notices.extend(match format {
+        Format::Libmeshb => libmeshb::write(team, path, data)?,
+        Format::Su2 => su2::write(path, data)?,
+        Format::Vtu => vtu::write(team, path, data, options.text)?,
+        Format::Solution => libmeshb::write_solution(team, path, data)?,
+        Format::Table => columns::write_text(path, data)?,
+        Format::Restart => columns::write_binary(path, data)?,
+    });
+    Ok(notices)
+}

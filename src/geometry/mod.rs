@@ -6,7 +6,7 @@ mod error;
 mod far_field;
 pub mod fidelity;
 mod model;
-mod names;
+pub mod names;
 #[cfg(feature = "occt")]
 mod occt;
 mod traits;

@@ -1,6 +1,13 @@
-//! Names and colours of the parts of a model, and of a mesh of it.
-use serde::{Deserialize, Serialize};
+//! Names and colours of the parts of a model, and of a mesh of it; and the names file beside a mesh or a BREP model.
+//!
+//! MESH.names.json (or MESH.meshb.names.json, which is looked for first) says for triangles, edges and tetrahedra what each reference is
+//! called, and its colour; `fields` are the names of the fields of the solution file beside:
+//! `{"triangles": {"3": {"name": "inlet", "colour": "#FF0000"}}, "tetrahedra": {"1": {"name": "fluid"}}, "fields": ["Mach"]}`.
+use crate::mesh::io::{Error, write_beside};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 
 /// What a CAD program calls a part, and how it paints it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -9,7 +16,7 @@ pub struct Label {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// The colour as #RRGGBB (sRGB).
-    #[serde(default, alias = "color", skip_serializing_if = "Option::is_none")]
+    #[serde(default, alias = "color", skip_serializing_if = "Option::is_none", deserialize_with = "colour")]
     pub colour: Option<String>,
 }
 
@@ -36,4 +43,157 @@ impl Names {
 pub fn called(labels: &BTreeMap<i32, Label>, name: &str) -> Vec<i32> {
     let same = |label: &Label| label.name.as_deref() == Some(name);
     labels.iter().filter(|(_, label)| same(label)).map(|(&reference, _)| reference).collect()
+}
+
+/// A colour as a file says it.
+fn colour<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
+    let is_one = |text: &str| {
+        text.strip_prefix('#').is_some_and(|rest| rest.len() == 6 && rest.bytes().all(|b| b.is_ascii_hexdigit()))
+    };
+    match Option::<String>::deserialize(from)? {
+        Some(text) if !is_one(&text) => {
+            Err(serde::de::Error::custom(format!("the colour '{text}' is not of the form #aabbcc")))
+        }
+        text => Ok(text),
+    }
+}
+
+/// The names file that is written for a mesh or model.
+pub fn beside(of: &Path) -> PathBuf {
+    of.with_extension("names.json")
+}
+
+/// The names of the fields in a names file.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Fields {
+    fields: Vec<String>,
+}
+
+/// What is written.
+#[derive(Serialize)]
+struct File<'a> {
+    #[serde(flatten)]
+    names: &'a Names,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    fields: &'a [String],
+}
+
+/// Reads the names of a mesh or model; none where there is no names file beside it.
+///
+/// # Errors
+/// [`Error::System`] when the file cannot be read, [`Error::Content`] when it holds something else.
+pub fn read(of: &Path) -> Result<Names, Error> {
+    let Some((path, bytes)) = bytes_beside(of)? else { return Ok(Names::default()) };
+    parse(&path, &bytes)
+}
+
+/// Reads a names file itself.
+///
+/// # Errors
+/// [`Error::System`] when the file cannot be read, [`Error::Content`] when it holds something else.
+pub fn read_file(path: &Path) -> Result<Names, Error> {
+    let bytes = std::fs::read(path).map_err(|source| Error::System { path: path.into(), source })?;
+    parse(path, &bytes)
+}
+
+/// Reads the names of the fields of a solution, from the names file beside it; none where there is no such file.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_fields(of: &Path) -> Result<Vec<String>, Error> {
+    let Some((path, bytes)) = bytes_beside(of)? else { return Ok(Vec::new()) };
+    parse::<Fields>(&path, &bytes).map(|found| found.fields)
+}
+
+/// Writes the names of a mesh, and of its fields, beside it. Where there are none nothing is written, and the file of an older mesh is
+/// made empty.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write(of: &Path, names: &Names, fields: &[String]) -> Result<(), Error> {
+    let path = beside(of);
+    if names.is_empty() && fields.is_empty() && !path.exists() {
+        return Ok(());
+    }
+    write_beside(&path, |file| {
+        serde_json::to_writer_pretty(&mut *file, &File { names, fields })?;
+        file.write_all(b"\n")
+    })
+}
+
+/// The names file beside a mesh, and its bytes.
+fn bytes_beside(of: &Path) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
+    let mut long = of.as_os_str().to_owned();
+    long.push(".names.json");
+    for path in [PathBuf::from(long), beside(of)] {
+        match std::fs::read(&path) {
+            Ok(bytes) => return Ok(Some((path, bytes))),
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(source) => return Err(Error::System { path, source }),
+        }
+    }
+    Ok(None)
+}
+
+fn parse<'b, T: Deserialize<'b>>(path: &Path, bytes: &'b [u8]) -> Result<T, Error> {
+    serde_json::from_slice(bytes).map_err(|error| Error::Content {
+        path: path.into(),
+        place: format!("line {}", error.line()),
+        message: format!(
+            "no names of references ({error}); write {{\"triangles\": {{\"3\": {{\"name\": \"wing\", \"colour\": \"#aabbcc\"}}}}}} \
+             as geo-adapt bootstrap does, or move the file away"
+        ),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read_text(text: &str) -> Result<Names, String> {
+        parse(Path::new("a.names.json"), text.as_bytes()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn names_and_colours() {
+        let names =
+            read_text(r##"{"triangles": {"3": {"name": "wing", "color": "#ff0000"}, "-1": {}}, "more": 1}"##).unwrap();
+        assert_eq!(names.triangles[&3], Label { name: Some("wing".into()), colour: Some("#ff0000".into()) });
+        assert_eq!(names.triangles[&-1], Label::default());
+        assert!(names.tetrahedra.is_empty());
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        for (text, part) in [
+            ("[1]", "line 1"),
+            ("{", "line 1"),
+            ("{\"triangles\":\n3}", "line 2"),
+            (r#"{"tetrahedra": {"a": {}}}"#, "line 1"),
+            (r#"{"triangles": {"3": {"color": "red"}}}"#, "the colour 'red' is not of the form #aabbcc"),
+            (r##"{"triangles": {"3": {"color": "#é12"}}}"##, "is not of the form"),
+        ] {
+            let message = read_text(text).unwrap_err();
+            assert!(message.contains(part) && message.contains("a.names.json: "), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn a_names_file_comes_back_and_an_old_one_is_made_empty() {
+        let folder = tempfile::tempdir().unwrap();
+        let mesh = folder.path().join("wing.meshb");
+        write(&mesh, &Names::default(), &[]).unwrap();
+        assert!(!beside(&mesh).exists());
+        let mut names = Names::default();
+        names.edges.insert(7, Label { name: Some("edge".into()), colour: None });
+        write(&mesh, &names, &["Mach".into(), "p".into()]).unwrap();
+        assert_eq!((read(&mesh).unwrap(), read_fields(&mesh).unwrap()), (names, vec!["Mach".into(), "p".into()]));
+        assert_eq!(read_file(&beside(&mesh)).unwrap().edges.len(), 1);
+        write(&mesh, &Names::default(), &[]).unwrap();
+        assert!(read(&mesh).unwrap().is_empty() && read_fields(&mesh).unwrap().is_empty());
+        // The longer name goes first.
+        std::fs::write(folder.path().join("wing.meshb.names.json"), "[]").unwrap();
+        assert!(read(&mesh).unwrap_err().to_string().contains("wing.meshb.names.json"));
+    }
 }

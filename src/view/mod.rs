@@ -8,7 +8,6 @@ pub mod colour;
 pub mod cut;
 mod font;
 mod image;
-mod names;
 mod pack;
 mod page;
 pub mod picture;
@@ -18,7 +17,7 @@ mod sheet;
 mod surface;
 mod values;
 
-pub use names::Names;
+pub(crate) use pack::base64;
 pub use page::write_page;
 pub use scene::{Given, Quality, Scene};
 pub use values::ScalarField;

@@ -1,8 +1,8 @@
 //! All there is to show of a mesh.
 use super::colour::{self, Rgb};
-use super::names::{Named, Names};
 use super::surface::{self, Surface};
 use super::values::{self, ScalarField};
+use crate::geometry::{Label, Names};
 use crate::mesh::vector::{Vec3, add, distance, scale};
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::Sym3;
@@ -138,13 +138,18 @@ fn bounds(team: Team<'_>, mesh: &TetMesh) -> [Vec3; 2] {
 fn references<const N: usize>(
     team: Team<'_>,
     elements: &Elements<N>,
-    names: &BTreeMap<i32, Named>,
+    names: &BTreeMap<i32, Label>,
     usual: fn(usize) -> Rgb,
 ) -> Vec<Reference> {
     let counts = by_reference(team, elements);
     let reference = |(index, (reference, count)): (usize, (i32, usize))| {
-        let Named { name, colour } = names.get(&reference).cloned().unwrap_or_default();
-        Reference { reference, count, name, colour: colour.unwrap_or_else(|| usual(index)) }
+        let Label { name, colour } = names.get(&reference).cloned().unwrap_or_default();
+        Reference {
+            reference,
+            count,
+            name,
+            colour: colour.as_deref().and_then(colour::parse).unwrap_or_else(|| usual(index)),
+        }
     };
     counts.into_iter().enumerate().map(reference).collect()
 }
@@ -158,7 +163,7 @@ mod tests {
     fn a_scene_of_a_cube() {
         let mesh = cube(3);
         let mut given = Given { logs: Some(vec![Sym3::ZERO; mesh.vertices.len()]), ..Given::default() };
-        given.names.triangles.insert(2, Named { name: Some("east".into()), colour: Some([1.0, 0.0, 0.0]) });
+        given.names.triangles.insert(2, Label { name: Some("east".into()), colour: Some("#ff0000".into()) });
         let scene = Scene::new(Team::alone(), &mesh, given);
         assert_eq!((scene.centre(), scene.bounds[1]), ([0.5; 3], [1.0; 3]));
         assert_eq!(scene.quality.histogram.iter().sum::<usize>(), mesh.tets.len());

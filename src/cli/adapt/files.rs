@@ -1,7 +1,7 @@
 //! The files of a run: checked before it, written after it.
 use super::Arguments;
 use super::report::{Asked, Report};
-use crate::cli::names;
+use crate::geometry::names;
 use crate::mesh::io;
 use crate::metric::Field;
 use std::path::Path;
@@ -49,7 +49,7 @@ pub fn write(
     times: [Duration; 3],
 ) -> Result<Report, Box<dyn std::error::Error>> {
     io::write_mesh(&asked.output, &report.mesh)?;
-    names::write(&asked.output, &report.names)?;
+    names::write(&asked.output, &report.names, &[])?;
     let field = Field { metrics: std::mem::take(&mut report.metrics) };
     field.write(&asked.metric_path())?;
     report.metrics = field.metrics;

@@ -1,5 +1,6 @@
 //! What a run begins with: the mesh, where it lies on its model, and the metric.
-use super::super::{load, names};
+use super::super::load;
+use super::super::names::on_mesh;
 use super::field::FieldArguments;
 use super::parts::{self, Local};
 use crate::adapt;
@@ -7,7 +8,7 @@ use crate::cli::metric::fields::{Made, MultiscaleArguments};
 use crate::cli::metric::geometry::GeometryArguments;
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
-use crate::geometry::{Discrete, Model, Names};
+use crate::geometry::{Discrete, Model, Names, names};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, io};
 use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
@@ -114,7 +115,7 @@ impl InputArguments {
         let (model, place) = self.place(team, &mesh, cad, notices)?;
         stage("classified");
         if names.is_empty() {
-            names = names::on_mesh(&mesh, &place, &model);
+            names = on_mesh(&mesh, &place, &model);
         }
         let (mut source, made) = self.source(team, (&mesh, faces), logs, (&place, &model, &names), notices)?;
         stage("metric ready");

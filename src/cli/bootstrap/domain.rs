@@ -1,6 +1,5 @@
 //! `--far-field`: the domain around a body, built by a child process, since OpenCASCADE can crash on a shape that it cannot cut.
-use crate::cli::names;
-use crate::geometry::{Evaluate, FaceEntity, FarField, Geometry, Model, SurfaceKind, Topology};
+use crate::geometry::{Evaluate, FaceEntity, FarField, Geometry, Model, SurfaceKind, Topology, names};
 use crate::mesh::vector::{Vec3, distance};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -128,7 +127,7 @@ fn write(body: &Path, file: &Path, spec: &str, axis: &str) -> Result<(), Box<dyn
     let beside = file.with_file_name(hidden);
     domain.write_brep(&beside)?;
     std::fs::rename(&beside, file)?;
-    names::write(file, domain.names())
+    Ok(names::write(file, domain.names(), &[])?)
 }
 
 /// The far field in numbers.

@@ -15,9 +15,9 @@ use super::adapt::progress::stop_on_interrupt;
 use super::adapt::report::Asked;
 use super::metric::common::check_output;
 use super::metric::geometry::GeometryArguments;
-use super::{Outcome, load, names};
+use super::{Outcome, load};
 use crate::geometry::classify::associate;
-use crate::geometry::{Geometry, Model, Topology};
+use crate::geometry::{Geometry, Model, Topology, names};
 use crate::mesh::io;
 use crate::mesh::vector::distance;
 use crate::tasks::{Plan, Pool, Team, stage};
@@ -174,7 +174,7 @@ impl Arguments {
         let mut mesh = meshed.mesh.clone();
         associate(&mut mesh, &meshed.place);
         io::write_mesh(&self.output, &mesh)?;
-        names::write(&self.output, model.names())?;
+        names::write(&self.output, model.names(), &[])?;
         if !self.quiet {
             let solids = model.topology().solids;
             super::print(&format!(

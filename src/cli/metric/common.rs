@@ -70,6 +70,12 @@ pub fn check_output(output: &Path, endings: &[&str], inputs: &[&Path]) -> Result
     if !endings.contains(&extension) {
         return Err(format!("{name}: the output must end in .{}", endings.join(" or .")));
     }
+    check_place(output, inputs)
+}
+
+/// Refuses an output that cannot be written or that is an input.
+pub fn check_place(output: &Path, inputs: &[&Path]) -> Result<(), String> {
+    let name = output.display();
     let folder = output.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return Err(format!("{name}: there is no folder {}; make it first", folder.display()));
@@ -79,7 +85,7 @@ pub fn check_output(output: &Path, endings: &[&str], inputs: &[&Path]) -> Result
     }
     let same = |input: &&Path| matches!((output.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b);
     if inputs.iter().any(same) {
-        return Err(format!("{name}: is an input and would be overwritten; give another -o"));
+        return Err(format!("{name}: is an input and would be overwritten; give another output"));
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ mod look;
 use super::load;
 use super::metric::common::{Failure, RunArguments, check_output};
 use super::table::figure;
-use crate::geometry::{Evaluate, Geometry, Model, classify, fidelity};
+use crate::geometry::{Evaluate, Geometry, Model, classify, fidelity, names};
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Read, read_mesh, read_solution};
 use crate::mesh::vector::Vec3;
@@ -12,7 +12,7 @@ use crate::metric::{Analytic, Field, Statistics, Sym3};
 use crate::tasks::{GRAIN, Plan, Team, stage};
 use crate::view::cut::Part;
 use crate::view::picture::{Colour, Options, write_picture};
-use crate::view::{Given, Names, ScalarField, Scene, write_page};
+use crate::view::{Given, ScalarField, Scene, write_page};
 use look::LookArguments;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -112,7 +112,7 @@ impl Arguments {
         }
         let file = self.mesh.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let title = self.look.title.clone().unwrap_or(file);
-        Ok(Given { title, logs, fields, names: Names::beside(&self.mesh)?, model_edges, figures })
+        Ok(Given { title, logs, fields, names: names::read(&self.mesh)?, model_edges, figures })
     }
 
     /// ln M at the vertices, when there is a metric.

@@ -1,6 +1,7 @@
 //! ASCII files: words, numbers and comments (# to the end of the line), separated by blanks.
 use super::cursor::Cursor;
 use super::keyword::Keyword;
+use super::number::{parse_int, parse_real, shown};
 use super::source::{Contents, Encoding, Section, Source, check_dimension, field_kinds};
 use super::{Error, FieldKind};
 use std::ops::Range;
@@ -62,39 +63,6 @@ impl Tokens<'_> {
 fn is_word(token: &[u8]) -> bool {
     let begins = |word: &[u8]| token.len() >= word.len() && token[..word.len()].eq_ignore_ascii_case(word);
     token[0].is_ascii_alphabetic() && !begins(b"nan") && !token.eq_ignore_ascii_case(b"inf") && !begins(b"infinity")
-}
-
-/// A token as an error shows it.
-fn shown(token: &[u8]) -> String {
-    let text = String::from_utf8_lossy(&token[..token.len().min(40)]);
-    format!("'{}'", text.escape_debug())
-}
-
-fn parse_int(token: &[u8]) -> Result<i64, String> {
-    let (negative, digits) = match token {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, token),
-    };
-    let mut value = Some(0_i64).filter(|_| !digits.is_empty());
-    for &byte in digits {
-        let digit = byte.wrapping_sub(b'0');
-        value = value.filter(|_| digit < 10).and_then(|v| v.checked_mul(10)?.checked_add(digit.into()));
-    }
-    match value {
-        Some(value) => Ok(if negative { -value } else { value }),
-        None => Err(format!("a whole number is expected, not {}", shown(token))),
-    }
-}
-
-fn parse_real(token: &[u8]) -> Result<f64, String> {
-    let parse = |text: &str| text.parse::<f64>().ok();
-    let text = std::str::from_utf8(token).unwrap_or("");
-    // Fortran writes 1.0D+00
-    match parse(text).or_else(|| parse(&text.replace(['d', 'D'], "e"))) {
-        Some(value) if value.is_finite() => Ok(value),
-        _ => Err(format!("a finite number is expected, not {}", shown(token))),
-    }
 }
 
 /// Finds the sections of a text: each goes to the next word.

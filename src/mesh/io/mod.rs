@@ -9,6 +9,7 @@ mod cursor;
 mod error;
 mod keyword;
 mod msh;
+pub mod number;
 mod points;
 mod read;
 mod sink;
@@ -42,6 +43,22 @@ pub struct Read<T> {
 pub fn read_mesh(path: &Path) -> Result<Read<TetMesh>, Error> {
     let bytes = std::fs::read(path).map_err(|e| Error::system(path, e))?;
     read::mesh_from(path, &bytes)
+}
+
+/// As [`read_mesh`], from the bytes of such a file; `path` is what errors say.
+///
+/// # Errors
+/// As there.
+pub fn mesh_of_bytes(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
+    read::mesh_from(path, bytes)
+}
+
+/// As [`read_solution`], from the bytes of such a file; `path` is what errors say.
+///
+/// # Errors
+/// As there.
+pub fn solution_of_bytes(path: &Path, bytes: &[u8]) -> Result<Read<Solution>, Error> {
+    read::solution_from(path, bytes)
 }
 
 /// Writes .mesh or .meshb by the extension: beside the target first, then renamed.

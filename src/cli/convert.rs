@@ -1,0 +1,102 @@
+//! `geo-adapt convert`.
+use super::Outcome;
+use super::metric::common::check_place;
+use super::table::Table;
+use crate::formats::{self, Dataset, Format, Options};
+use crate::geometry::{Label, names};
+use crate::mesh::io::FieldKind;
+use crate::tasks::{Plan, Team};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Names that are listed; of more only the number is given.
+const LISTED: usize = 16;
+
+/// Arguments of `geo-adapt convert`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Formats: .mesh, .meshb (with .solb and .names.json beside), .su2, .vtu, .msh (gmsh 4.1; reads 2.2 too), \
+                        .msh2 (gmsh 2.2), .ugrid, .b8.ugrid, .lb8.ugrid (with .mapbc beside); fields alone: .sol, .solb, .csv, .dat (SU2)"
+)]
+pub struct Arguments {
+    /// The mesh
+    input: PathBuf,
+    /// Where it goes, in the format that the extension tells
+    output: PathBuf,
+    /// Fields at the vertices of the mesh, instead of its own: .sol, .solb, or a restart of SU2 (.csv, .dat)
+    #[arg(long, value_name = "FILE")]
+    fields: Option<PathBuf>,
+    /// Names of the references, instead of the mesh's own: JSON, as bootstrap writes it
+    #[arg(long, value_name = "FILE")]
+    names: Option<PathBuf>,
+    /// Write text where the format would be binary (.vtu, .msh)
+    #[arg(long)]
+    text: bool,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let Arguments { input, output, fields, names, text } = arguments;
+    let given = [fields.as_deref(), names.as_deref()].into_iter().flatten();
+    let beside = formats::beside(input).unwrap_or_default();
+    let inputs: Vec<&Path> = given.chain([input.as_path()]).chain(beside.iter().map(PathBuf::as_path)).collect();
+    check_place(output, &inputs)?;
+    for file in formats::beside(output)? {
+        check_place(&file, &inputs)?;
+    }
+    let pool = super::pool()?;
+    let read = formats::read(input)?;
+    let (mut data, mut notices) = (read.content, read.notices);
+    if let Some(path) = fields {
+        notices.extend(formats::read_fields(path, &mut data)?);
+    }
+    if let Some(path) = names {
+        data.names = names::read_file(path)?;
+    }
+    let lost = formats::write_on(Team::new(&pool, Plan::default()), output, &data, Options { text: *text })?;
+    notices.iter().for_each(|notice| eprintln!("geo-adapt: note: {notice}"));
+    lost.iter().for_each(|notice| eprintln!("geo-adapt: note: {}: {notice}", output.display()));
+    super::print(describe(&data, Format::of(output)?).text());
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What was read.
+fn describe(data: &Dataset, to: Format) -> Table {
+    let mut table = Table::new();
+    let mesh = &data.mesh;
+    if !to.is_fields() {
+        table.row("vertices", mesh.vertices.len());
+        let rows = [
+            ("tetrahedra", mesh.tets.len(), &data.names.tetrahedra),
+            ("triangles", mesh.triangles.len(), &data.names.triangles),
+            ("edges", mesh.edges.len(), &data.names.edges),
+        ];
+        for (name, count, labels) in rows {
+            if count > 0 {
+                table.row(name, format_args!("{count}{}", listed(labels)));
+            }
+        }
+    }
+    for field in &data.fields {
+        let kind = match field.kind {
+            FieldKind::Scalar => "scalar",
+            FieldKind::Vector => "vector",
+            FieldKind::SymmetricTensor => "symmetric tensor",
+            FieldKind::Tensor => "tensor",
+        };
+        table.row("field", format_args!("{} ({kind})", field.name));
+    }
+    table
+}
+
+/// Names with their references, in parentheses.
+fn listed(labels: &BTreeMap<i32, Label>) -> String {
+    let named = labels.iter().filter_map(|(reference, label)| Some(format!("{reference}: {}", label.name.as_ref()?)));
+    let named: Vec<String> = named.collect();
+    match named.len() {
+        0 => String::new(),
+        count if count > LISTED => format!(" ({count} names)"),
+        _ => format!(" ({})", named.join(", ")),
+    }
+}

@@ -1,0 +1,63 @@
+//! What every reader's and every writer's data must fulfil.
+use super::{Dataset, NamedField, error};
+use crate::mesh::Elements;
+use crate::mesh::io::Error;
+use std::path::Path;
+
+/// Every index in range, every number finite, every field as long as the mesh; nothing but the shape of the data is asked.
+///
+/// # Errors
+/// [`Error::Content`], with the element, vertex or field and the remedy.
+pub(super) fn check(path: &Path, data: &Dataset) -> Result<(), Error> {
+    let mesh = &data.mesh;
+    let vertices = mesh.vertices.len();
+    if vertices == 0 {
+        return Err(error::at(path, "whole file", "there are no vertices; give a mesh"));
+    }
+    if vertices > u32::MAX as usize {
+        return Err(error::at(path, "vertices", format!("there are {vertices}; at most {} are supported", u32::MAX)));
+    }
+    if let Some(v) = mesh.vertices.iter().position(|x| !x.iter().all(|x| x.is_finite())) {
+        return Err(error::at(path, format!("vertex {}", v + 1), "a coordinate is not a finite number; correct it"));
+    }
+    elements(path, "tetrahedron", &mesh.tets, vertices)?;
+    elements(path, "triangle", &mesh.triangles, vertices)?;
+    elements(path, "edge", &mesh.edges, vertices)?;
+    for field in &data.fields {
+        let (place, width) = (format!("field {}", field.name), field.kind.values());
+        if field.values.len() != width * vertices {
+            let (found, wanted) = (field.values.len(), width * vertices);
+            let message = format!("{found} values; {wanted} are expected, {width} at each of {vertices} vertices");
+            return Err(error::at(path, place, message));
+        }
+        if let Some(at) = field.values.iter().position(|x| !x.is_finite()) {
+            let message = format!(
+                "vertex {}: {} is not a finite number; correct it, or leave the field out",
+                at / width + 1,
+                field.values[at]
+            );
+            return Err(error::at(path, place, message));
+        }
+    }
+    Ok(())
+}
+
+/// Takes fields out that have a value that is not finite, with a notice each: those of a solver that has failed, or of no meaning there.
+pub(super) fn drop_endless(path: &Path, fields: &mut Vec<NamedField>, notices: &mut Vec<String>) {
+    fields.retain(|field| {
+        let at = field.values.iter().position(|x| !x.is_finite());
+        if let Some(at) = at {
+            let (vertex, value, path) = (at / field.kind.values() + 1, field.values[at], path.display());
+            notices.push(format!("{path}: field {} is {value} at vertex {vertex}: it is left out", field.name));
+        }
+        at.is_none()
+    });
+}
+
+fn elements<const N: usize>(path: &Path, name: &str, elements: &Elements<N>, vertices: usize) -> Result<(), Error> {
+    let Some(k) = elements.nodes.iter().position(|nodes| nodes.iter().any(|&v| v as usize >= vertices)) else {
+        return Ok(());
+    };
+    let message = format!("it has a vertex that is not there: there are {vertices}");
+    Err(error::at(path, format!("{name} {} of {}", k + 1, elements.len()), message))
+}

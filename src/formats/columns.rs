@@ -1,0 +1,318 @@
+//! SU2's restarts: a row of numbers a point, as a text (.csv, and tables of older versions) or binary (.dat). Source: su2code.github.io,
+//! "Restart File", and what SU2 8 writes. A binary file has five integers (a magic number, fields, points, two more), the names in 33
+//! characters each, the rows, and perhaps numbers about the run.
+use super::scan::{Scan, real_or_nan};
+use super::text::Text;
+use super::{Dataset, NamedField, error};
+use crate::mesh::io::{Error, FieldKind, Read, write_beside};
+use crate::mesh::vector::{Vec3, distance};
+use std::path::Path;
+
+/// The number that begins a binary file.
+const MAGIC: i32 = 535_532;
+
+/// Characters of a name in a binary file, the last of them 0.
+const NAME: usize = 33;
+
+/// What a point's number and coordinates are called.
+const POINT: &str = "PointID";
+const PLACE: [&str; 3] = ["x", "y", "z"];
+
+/// How far the coordinates of a restart may be from the mesh's, of the diagonal of its box: texts have few digits.
+const NEAR: f64 = 1e-5;
+
+/// A table: names of the columns, and the rows one after the other.
+struct Table {
+    names: Vec<String>,
+    values: Vec<f64>,
+}
+
+/// Reads fields onto these vertices; columns x, y and z must be theirs.
+pub(super) fn read(path: &Path, bytes: &[u8], vertices: &[Vec3]) -> Result<Read<Vec<NamedField>>, Error> {
+    let mut notices = Vec::new();
+    let table = match Endian::of(bytes) {
+        Some(endian) => binary(path, bytes, endian, vertices.len(), &mut notices)?,
+        None => text(path, bytes, vertices.len())?,
+    };
+    let rows = order(path, &table, vertices.len())?;
+    check_place(path, &table, &rows, vertices)?;
+    Ok(Read { content: fields(&table, &rows), notices })
+}
+
+/// The order of a binary file's bytes.
+#[derive(Clone, Copy)]
+enum Endian {
+    Little,
+    Big,
+}
+
+impl Endian {
+    fn of(bytes: &[u8]) -> Option<Self> {
+        let first = *bytes.first_chunk::<4>()?;
+        match MAGIC {
+            magic if magic == i32::from_le_bytes(first) => Some(Self::Little),
+            magic if magic == i32::from_be_bytes(first) => Some(Self::Big),
+            _ => None,
+        }
+    }
+
+    fn int(self, bytes: [u8; 4]) -> i32 {
+        match self {
+            Self::Little => i32::from_le_bytes(bytes),
+            Self::Big => i32::from_be_bytes(bytes),
+        }
+    }
+
+    fn real(self, bytes: [u8; 8]) -> f64 {
+        match self {
+            Self::Little => f64::from_le_bytes(bytes),
+            Self::Big => f64::from_be_bytes(bytes),
+        }
+    }
+}
+
+fn binary(path: &Path, bytes: &[u8], endian: Endian, points: usize, notices: &mut Vec<String>) -> Result<Table, Error> {
+    let header =
+        bytes.get(..20).ok_or_else(|| error::at(path, "byte 4", "the header is cut off; write the file again"))?;
+    let [_, columns, rows, ..] = header.as_chunks::<4>().0 else { unreachable!("twenty bytes are five integers") };
+    let [columns, rows] = [endian.int(*columns), endian.int(*rows)];
+    let wrong = |message: String| error::at(path, "header", message);
+    let (Ok(columns), Ok(rows)) = (usize::try_from(columns), usize::try_from(rows)) else {
+        return Err(wrong(format!("{columns} fields at {rows} points cannot be; write the file again")));
+    };
+    if rows != points {
+        return Err(wrong(of_other(rows, points)));
+    }
+    let start = 20 + NAME * columns;
+    let size = columns.saturating_mul(rows).saturating_mul(8);
+    let Some(body) = bytes.get(start..).filter(|body| body.len() >= size && columns > 0) else {
+        let message =
+            format!("{columns} fields at {rows} points do not fit into {} bytes; the file was cut", bytes.len());
+        return Err(wrong(message));
+    };
+    // Number of the iteration, angles and residuals: SU2 6 and 7 write them at the end.
+    if body.len() > size + 128 {
+        notices.push(format!("{}: {} bytes follow the fields and are not read", path.display(), body.len() - size));
+    }
+    let names = bytes[20..start].chunks(NAME).map(|name| {
+        let name = name.split(|&byte| byte == 0).next().unwrap_or_default();
+        String::from_utf8_lossy(name).trim().to_owned()
+    });
+    let values = body[..size].as_chunks::<8>().0.iter().map(|&value| endian.real(value));
+    Ok(Table { names: names.collect(), values: values.collect() })
+}
+
+/// Names in quotes, separated by commas (or tabs in tables of older versions), then a line a point.
+fn text(path: &Path, bytes: &[u8], points: usize) -> Result<Table, Error> {
+    let mut scan = Scan::new(path, bytes);
+    let is_separator = |byte: &u8| matches!(byte, b',' | b'\t' | b';');
+    let head = scan.line().unwrap_or_default();
+    let names: Vec<String> = head
+        .split(is_separator)
+        .map(|name| String::from_utf8_lossy(name).trim_matches(|c: char| c.is_whitespace() || c == '"').to_owned())
+        .collect();
+    if !names.iter().any(|name| name.starts_with(|c: char| c.is_alphabetic())) {
+        return Err(scan.fail(
+            "names of fields are expected, separated by commas, as SU2 writes them: \"PointID\",\"x\",\"y\",\"z\",…",
+        ));
+    }
+    let mut values = Vec::with_capacity(scan.room(points.saturating_mul(names.len()), 2));
+    let mut rows = 0;
+    while let Some(line) = scan.line() {
+        if line.is_empty() {
+            continue;
+        }
+        let before = values.len();
+        for word in line.split(is_separator) {
+            let word = word.trim_ascii();
+            values.push(real_or_nan(word).map_err(|message| scan.fail(message))?);
+        }
+        if values.len() - before != names.len() {
+            let message = format!(
+                "{} values; {} are expected, one for each name of the first line",
+                values.len() - before,
+                names.len()
+            );
+            return Err(scan.fail(message));
+        }
+        rows += 1;
+        if rows > points {
+            return Err(
+                scan.fail(format!("more rows than the mesh has vertices ({points}); give the file of this mesh"))
+            );
+        }
+    }
+    if rows != points {
+        return Err(error::at(path, "whole file", of_other(rows, points)));
+    }
+    Ok(Table { names, values })
+}
+
+fn of_other(rows: usize, points: usize) -> String {
+    format!("values at {rows} points, and the mesh has {points} vertices; give the file of this mesh")
+}
+
+/// The row of each vertex: that with its number, where the table has such a column.
+fn order(path: &Path, table: &Table, vertices: usize) -> Result<Vec<u32>, Error> {
+    let Some(column) = table.names.iter().position(|name| name.eq_ignore_ascii_case(POINT) || name == "Point_ID")
+    else {
+        return Ok((0..vertices as u32).collect());
+    };
+    let mut rows = vec![u32::MAX; vertices];
+    for (row, values) in table.values.chunks_exact(table.names.len()).enumerate() {
+        let id = values[column];
+        let place = || format!("row {} of {vertices}", row + 1);
+        let is_vertex = id >= 0.0 && id < vertices as f64 && id.fract() == 0.0;
+        if !is_vertex || rows[id as usize] != u32::MAX {
+            let message = format!("{POINT} {id} is no vertex, or comes twice; the vertices count from 0");
+            return Err(error::at(path, place(), message));
+        }
+        rows[id as usize] = row as u32;
+    }
+    Ok(rows)
+}
+
+/// Refuses the file of another mesh.
+fn check_place(path: &Path, table: &Table, rows: &[u32], vertices: &[Vec3]) -> Result<(), Error> {
+    let width = table.names.len();
+    let columns = PLACE.map(|name| table.names.iter().position(|other| other.eq_ignore_ascii_case(name)));
+    let [Some(x), Some(y), Some(z)] = columns else { return Ok(()) };
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for point in vertices {
+        for i in 0..3 {
+            (low[i], high[i]) = (low[i].min(point[i]), high[i].max(point[i]));
+        }
+    }
+    let near = NEAR * distance(low, high);
+    for (vertex, (&row, &point)) in rows.iter().zip(vertices).enumerate() {
+        let values = &table.values[row as usize * width..][..width];
+        let there = [values[x], values[y], values[z]];
+        if !(distance(there, point) <= near) {
+            let message = format!(
+                "vertex {vertex} (from 0) is at {there:?} there and at {point:?} in the mesh; give the file of this mesh"
+            );
+            return Err(error::at(path, format!("row {}", row + 1), message));
+        }
+    }
+    Ok(())
+}
+
+/// How the columns of a field of a kind end.
+pub(super) fn endings(kind: FieldKind) -> &'static [&'static str] {
+    match kind {
+        FieldKind::Scalar => &[""],
+        FieldKind::Vector => &["_x", "_y", "_z"],
+        FieldKind::SymmetricTensor => &["_xx", "_xy", "_yy", "_xz", "_yz", "_zz"],
+        FieldKind::Tensor => &["_xx", "_xy", "_xz", "_yx", "_yy", "_yz", "_zx", "_zy", "_zz"],
+    }
+}
+
+/// The columns as fields; neighbours that end as the components of a tensor or vector do are one.
+fn fields(table: &Table, rows: &[u32]) -> Vec<NamedField> {
+    let width = table.names.len();
+    let others = [POINT, "Point_ID"].into_iter().chain(PLACE);
+    let is_place = |name: &str| others.clone().any(|other| name.eq_ignore_ascii_case(other));
+    let mut fields = Vec::new();
+    let mut column = 0;
+    while column < width {
+        if is_place(&table.names[column]) {
+            column += 1;
+            continue;
+        }
+        let kinds = [FieldKind::Tensor, FieldKind::SymmetricTensor, FieldKind::Vector, FieldKind::Scalar];
+        let found = kinds.into_iter().find_map(|kind| {
+            let ends = endings(kind);
+            let names = table.names.get(column..column + ends.len())?;
+            let stem = names[0].strip_suffix(ends[0])?;
+            let fits = names.iter().zip(ends).all(|(name, end)| name.strip_suffix(end) == Some(stem));
+            fits.then(|| (kind, stem.to_owned()))
+        });
+        let (kind, name) = found.unwrap_or((FieldKind::Scalar, table.names[column].clone()));
+        let values = rows.iter().flat_map(|&row| &table.values[row as usize * width + column..][..kind.values()]);
+        fields.push(NamedField { name, kind, values: values.copied().collect() });
+        column += kind.values();
+    }
+    fields
+}
+
+/// What the columns are called.
+fn names(data: &Dataset) -> Vec<String> {
+    let of = |field: &NamedField| {
+        endings(field.kind).iter().map(move |end| format!("{}{end}", field.name)).collect::<Vec<_>>()
+    };
+    PLACE.map(String::from).into_iter().chain(data.fields.iter().flat_map(of)).collect()
+}
+
+/// The values of a row.
+fn row(data: &Dataset, vertex: usize) -> impl Iterator<Item = f64> + '_ {
+    let of = move |field: &'_ NamedField| {
+        let width = field.kind.values();
+        vertex * width..(vertex + 1) * width
+    };
+    let fields = data.fields.iter().flat_map(move |field| field.values[of(field)].iter().copied());
+    data.mesh.vertices[vertex].into_iter().chain(fields)
+}
+
+/// Refuses a dataset without fields.
+fn check_fields(path: &Path, data: &Dataset) -> Result<(), Error> {
+    if data.fields.is_empty() {
+        return Err(error::at(path, "fields", "there is no field to write; give some by --fields"));
+    }
+    Ok(())
+}
+
+/// Writes a text.
+pub(super) fn write_text(path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
+    check_fields(path, data)?;
+    write_beside(path, |to| {
+        let mut text = Text::new(to);
+        text.put(format_args!("\"{POINT}\""));
+        names(data)
+            .iter()
+            .for_each(|name| text.put(format_args!(",\"{}\"", name.replace(['"', ',', '\t', ';', '\n'], "_"))));
+        text.end_line()?;
+        for vertex in 0..data.mesh.vertices.len() {
+            text.put(format_args!("{vertex}"));
+            row(data, vertex).for_each(|value| text.put(format_args!(",{value:?}")));
+            text.end_line()?;
+        }
+        text.end()
+    })?;
+    Ok(Vec::new())
+}
+
+/// Writes a binary file.
+pub(super) fn write_binary(path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
+    check_fields(path, data)?;
+    let names = names(data);
+    if let Some(long) = names.iter().find(|name| name.len() >= NAME) {
+        let message = format!(
+            "the name has {} bytes, and there is room for {}; write .csv, or name it shorter",
+            long.len(),
+            NAME - 1
+        );
+        return Err(error::at(path, format!("field {long}"), message));
+    }
+    let (columns, rows) = (names.len(), data.mesh.vertices.len());
+    let Ok(rows) = i32::try_from(rows) else {
+        return Err(error::at(path, "header", format!("{rows} points do not fit 32 bits; write .csv")));
+    };
+    write_beside(path, |to| {
+        let mut bytes = Vec::with_capacity(1 << 17);
+        [MAGIC, columns as i32, rows, 0, 0].iter().for_each(|int| bytes.extend(int.to_le_bytes()));
+        for name in &names {
+            let end = bytes.len() + NAME;
+            bytes.extend(name.as_bytes());
+            bytes.resize(end, 0);
+        }
+        for vertex in 0..data.mesh.vertices.len() {
+            row(data, vertex).for_each(|value| bytes.extend(value.to_le_bytes()));
+            if bytes.len() > 1 << 16 {
+                to.write_all(&bytes)?;
+                bytes.clear();
+            }
+        }
+        to.write_all(&bytes)
+    })?;
+    Ok(Vec::new())
+}

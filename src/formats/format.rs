@@ -1,0 +1,98 @@
+//! Which format a file has.
+use super::error;
+use crate::mesh::io::Error;
+use std::path::Path;
+
+/// A format of files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// libMeshb's meshes: .mesh, .meshb.
+    Libmeshb,
+    /// SU2's meshes: .su2.
+    Su2,
+    /// VTK's unstructured grids: .vtu.
+    Vtu,
+    /// libMeshb's solutions: .sol, .solb.
+    Solution,
+    /// SU2's restarts as text: .csv.
+    Table,
+    /// SU2's binary restarts: .dat.
+    Restart,
+}
+
+/// What can be read and written.
+const KNOWN: &str =
+    ".mesh, .meshb, .su2, .vtu, .msh, .msh2, .ugrid, .b8.ugrid, .lb8.ugrid; fields alone .sol, .solb, .csv, .dat";
+
+impl Format {
+    /// By the extension.
+    ///
+    /// # Errors
+    /// When it is none that is known.
+    pub fn of(path: &Path) -> Result<Self, Error> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+        Ok(match extension.as_str() {
+            "mesh" | "meshb" => Self::Libmeshb,
+            "su2" => Self::Su2,
+            "vtu" => Self::Vtu,
+            "sol" | "solb" => Self::Solution,
+            "csv" => Self::Table,
+            "dat" => Self::Restart,
+            _ => return Err(error::at(path, "extension", format!("the format is not known; these are: {KNOWN}"))),
+        })
+    }
+
+    /// By the extension; where that is none that is known, by the first bytes.
+    ///
+    /// # Errors
+    /// When neither tells.
+    pub fn of_input(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        Self::of(path).or_else(|error| {
+            let head = &bytes[..bytes.len().min(1 << 12)];
+            let holds = |word: &[u8]| head.windows(word.len()).any(|part| part == word);
+            match () {
+                () if holds(b"MeshVersionFormatted") || head.starts_with(&[1, 0, 0, 0]) => Ok(Self::Libmeshb),
+                () if holds(b"<VTKFile") => Ok(Self::Vtu),
+                () if holds(b"NDIME=") => Ok(Self::Su2),
+                () => Err(error),
+            }
+        })
+    }
+
+    /// Whether files of the format hold fields and no mesh.
+    pub fn is_fields(self) -> bool {
+        matches!(self, Self::Solution | Self::Table | Self::Restart)
+    }
+}
+
+/// Numbers of elements, as VTK and SU2 have them.
+pub(super) mod vtk {
+    /// A point.
+    pub const VERTEX: i64 = 1;
+    /// An edge.
+    pub const LINE: i64 = 3;
+    /// A triangle.
+    pub const TRIANGLE: i64 = 5;
+    /// A tetrahedron.
+    pub const TETRAHEDRON: i64 = 10;
+
+    /// What VTK (and SU2) call an element of a number, in parentheses.
+    pub fn name(number: i64) -> &'static str {
+        match number {
+            1 => " (vertex)",
+            3 => " (line)",
+            4 => " (lines)",
+            5 => " (triangle)",
+            9 => " (quadrilateral)",
+            10 => " (tetrahedron)",
+            11 => " (voxel)",
+            12 => " (hexahedron)",
+            13 => " (prism)",
+            14 => " (pyramid)",
+            21..=37 => " (of second order)",
+            42 => " (polyhedron)",
+            68..=79 => " (of higher order)",
+            _ => "",
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Walking through a text.
+use super::error;
+use crate::mesh::io::Error;
+use crate::mesh::io::number::{parse_int, parse_real};
+use std::path::Path;
+
+/// A place in a text. Blanks are all bytes up to 32.
+pub(super) struct Scan<'a> {
+    path: &'a Path,
+    bytes: &'a [u8],
+    /// Where the next byte is.
+    pub at: usize,
+    /// Where the last line or word began: what errors name.
+    last: usize,
+}
+
+impl<'a> Scan<'a> {
+    /// At the beginning.
+    pub fn new(path: &'a Path, bytes: &'a [u8]) -> Self {
+        Self { path, bytes, at: 0, last: 0 }
+    }
+
+    /// Bytes that are left.
+    pub fn left(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+
+    /// The rest of this line, blanks at both ends cut off; none at the end.
+    pub fn line(&mut self) -> Option<&'a [u8]> {
+        let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
+        let length = rest.iter().position(|&b| b == b'\n');
+        self.last = self.at;
+        self.at += length.map_or(rest.len(), |length| length + 1);
+        Some(rest[..length.unwrap_or(rest.len())].trim_ascii())
+    }
+
+    /// The next word of this line; none where the line ends.
+    #[inline]
+    pub fn word_here(&mut self) -> Option<&'a [u8]> {
+        while let Some(&byte) = self.bytes.get(self.at) {
+            match byte {
+                b'\n' => return None,
+                0..=b' ' => self.at += 1,
+                _ => return Some(self.take()),
+            }
+        }
+        None
+    }
+
+    /// The next word, on whatever line.
+    #[inline]
+    pub fn word(&mut self) -> Result<&'a [u8], Error> {
+        while self.bytes.get(self.at).is_some_and(|&byte| byte <= b' ') {
+            self.at += 1;
+        }
+        if self.left() == 0 {
+            self.last = self.at;
+            return Err(self.fail("the file ends here; it was cut, or a count is too large"));
+        }
+        Ok(self.take())
+    }
+
+    #[inline]
+    fn take(&mut self) -> &'a [u8] {
+        self.last = self.at;
+        while self.bytes.get(self.at).is_some_and(|&byte| byte > b' ') {
+            self.at += 1;
+        }
+        &self.bytes[self.last..self.at]
+    }
+
+    /// The next word, a whole number.
+    #[inline]
+    pub fn int(&mut self) -> Result<i64, Error> {
+        let word = self.word()?;
+        parse_int(word).map_err(|message| self.fail(message))
+    }
+
+    /// The next word, a finite number.
+    #[inline]
+    pub fn real(&mut self) -> Result<f64, Error> {
+        let word = self.word()?;
+        parse_real(word).map_err(|message| self.fail(message))
+    }
+
+    /// The next words, finite numbers.
+    pub fn reals<const N: usize>(&mut self) -> Result<[f64; N], Error> {
+        let mut values = [0.0; N];
+        for value in &mut values {
+            *value = self.real()?;
+        }
+        Ok(values)
+    }
+
+    /// The next word, the index of a vertex, from 0 after `base` is taken off.
+    #[inline]
+    pub fn vertex(&mut self, base: i64) -> Result<u32, Error> {
+        let value = self.int()?;
+        u32::try_from(value.wrapping_sub(base))
+            .map_err(|_| self.fail(format!("{value} is no number of a vertex; they count from {base}")))
+    }
+
+    /// The next words, indices of vertices.
+    #[inline]
+    pub fn vertices<const N: usize>(&mut self, base: i64) -> Result<[u32; N], Error> {
+        let mut nodes = [0; N];
+        for node in &mut nodes {
+            *node = self.vertex(base)?;
+        }
+        Ok(nodes)
+    }
+
+    /// How many there are, by the first word of a text.
+    pub fn count(&self, text: &[u8]) -> Result<usize, Error> {
+        let word = text.split(|byte| *byte <= b' ').find(|word| !word.is_empty()).unwrap_or_default();
+        let count = parse_int(word).map_err(|message| self.fail(message))?;
+        usize::try_from(count).map_err(|_| self.fail(format!("the count says {count}; 0 or more is expected")))
+    }
+
+    /// Items to make room for: what a count says, but no more than the bytes that are left can hold of `bytes` at least each.
+    pub fn room(&self, count: usize, bytes: usize) -> usize {
+        count.min(self.left() / bytes + 1)
+    }
+
+    /// An error at the last word or line.
+    pub fn fail(&self, message: impl Into<String>) -> Error {
+        let line = 1 + self.bytes[..self.last.min(self.bytes.len())].iter().filter(|&&b| b == b'\n').count();
+        error::at(self.path, format!("line {line}"), message)
+    }
+}
+
+/// A number; not a number where a solver that failed wrote nan or inf, so that the field alone is lost.
+pub(super) fn real_or_nan(word: &[u8]) -> Result<f64, String> {
+    parse_real(word).or_else(|message| {
+        let digits = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(word);
+        let is_endless = [&b"nan"[..], b"inf", b"infinity"].iter().any(|other| digits.eq_ignore_ascii_case(other));
+        if is_endless { Ok(f64::NAN) } else { Err(message) }
+    })
+}

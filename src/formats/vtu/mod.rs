@@ -1,0 +1,302 @@
+//! VTK's unstructured grids (.vtu): of ParaView, PyVista, meshio, SU2. References are the cell array `reference` (or what other
+//! programs call so); names are arrays of FieldData, as meshio keeps gmsh's: name → reference and dimension, one pair after the other.
+mod decode;
+mod write;
+mod xml;
+
+pub(super) use write::write;
+
+use super::cells::to_vertices;
+use super::format::vtk::{self, LINE, TETRAHEDRON, TRIANGLE, VERTEX};
+use super::{Dataset, NamedField, error};
+use crate::geometry::{Label, Names};
+use crate::mesh::TetMesh;
+use crate::mesh::io::{Error, FieldKind, Read};
+use decode::Decoder;
+use std::collections::BTreeMap;
+use std::path::Path;
+use xml::{Array, Kind, Piece};
+
+/// What the references of cells are called: by us, by meshio for libMeshb's, gmsh's and SU2's files, by VMTK.
+const REFERENCES: [&str; 6] =
+    ["reference", "medit:ref", "gmsh:physical", "gmsh:geometrical", "su2:tag", "CellEntityIds"];
+
+/// Most values an item of an array that become fields, one each.
+const MOST: usize = 16;
+
+/// VTK's places of our components of a symmetric tensor: it has XX YY ZZ XY YZ XZ, we 11 12 22 13 23 33.
+const SYMMETRIC: [usize; 6] = [0, 3, 1, 5, 4, 2];
+
+/// An array of all pieces: its values at the points, or at the tetrahedra.
+struct Joined {
+    width: usize,
+    values: Vec<f64>,
+    /// Pieces that have it.
+    pieces: usize,
+}
+
+struct Reader<'d, 'a> {
+    path: &'d Path,
+    decoder: Decoder<'d, 'a>,
+    reference: Option<String>,
+    mesh: TetMesh,
+    at_points: BTreeMap<String, Joined>,
+    at_tets: BTreeMap<String, Joined>,
+    /// Names of the arrays in the order of the file, points before cells.
+    order: Vec<String>,
+    notices: Vec<String>,
+}
+
+/// Reads a grid.
+pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
+    let document = xml::document(path, bytes)?;
+    let has = |name: &str| {
+        document
+            .pieces
+            .iter()
+            .filter(|piece| piece.cells > 0)
+            .all(|piece| piece.cell_data.iter().any(|array| array.name == name))
+    };
+    let mut reader = Reader {
+        path,
+        decoder: Decoder::new(path, &document),
+        reference: REFERENCES.into_iter().find(|name| has(name)).map(String::from),
+        mesh: TetMesh::default(),
+        at_points: BTreeMap::new(),
+        at_tets: BTreeMap::new(),
+        order: Vec::new(),
+        notices: Vec::new(),
+    };
+    for piece in &document.pieces {
+        reader.piece(piece)?;
+    }
+    let names = reader.names(&document.field_data)?;
+    let fields = reader.fields(document.pieces.len());
+    let Reader { mesh, notices, .. } = reader;
+    Ok(Read { content: Dataset { mesh, names, fields }, notices })
+}
+
+impl<'a> Reader<'_, 'a> {
+    fn piece(&mut self, piece: &Piece<'a>) -> Result<(), Error> {
+        let base = self.mesh.vertices.len();
+        if piece.points > 0 {
+            let [coordinates] = &piece.coordinates[..] else {
+                return Err(error::at(self.path, "Points", "one array is expected in it"));
+            };
+            if coordinates.width != 3 {
+                return Err(self.decoder.fail(coordinates, "three coordinates a point are expected"));
+            }
+            let points = self.decoder.reals(coordinates, piece.points)?;
+            self.mesh.vertices.extend_from_slice(points.as_chunks::<3>().0);
+        }
+        if self.mesh.vertices.len() > u32::MAX as usize {
+            return Err(error::at(self.path, "Points", "there are too many; at most 2^32 - 1 are supported"));
+        }
+        self.mesh.vertex_refs.resize(self.mesh.vertices.len(), 0);
+        for array in &piece.point_data {
+            self.point_array(array, base, piece.points)?;
+        }
+        if piece.cells > 0 {
+            self.cells(piece, base)?;
+        }
+        Ok(())
+    }
+
+    fn point_array(&mut self, array: &Array<'a>, base: usize, points: usize) -> Result<(), Error> {
+        match array.kind {
+            Kind::Real(_) => {
+                let values = self.decoder.reals(array, points)?;
+                self.join(array, values, true);
+            }
+            Kind::Int(_) | Kind::Unsigned(_) if array.name == REFERENCES[0] && array.width == 1 => {
+                let values = self.decoder.ints(array, points)?;
+                for (vertex, value) in values.into_iter().enumerate() {
+                    self.mesh.vertex_refs[base + vertex] = self.reference(array, value)?;
+                }
+            }
+            _ => self.skip(array),
+        }
+        Ok(())
+    }
+
+    /// Tells once that an array is not read.
+    fn skip(&mut self, array: &Array) {
+        let notice = format!("the array {} is not of real numbers and is left out", array.name.escape_debug());
+        if !array.name.starts_with("vtk") && !self.notices.contains(&notice) && self.notices.len() < MOST {
+            self.notices.push(notice);
+        }
+    }
+
+    fn reference(&self, array: &Array, value: i64) -> Result<i32, Error> {
+        i32::try_from(value)
+            .map_err(|_| self.decoder.fail(array, format!("reference {value} does not fit 32 bits; renumber them")))
+    }
+
+    /// Appends the values of a piece.
+    fn join(&mut self, array: &Array, values: Vec<f64>, at_points: bool) {
+        let of = if at_points { &mut self.at_points } else { &mut self.at_tets };
+        if !of.contains_key(&array.name) {
+            self.order.push(array.name.clone());
+        }
+        let joined =
+            of.entry(array.name.clone()).or_insert(Joined { width: array.width, values: Vec::new(), pieces: 0 });
+        if joined.width == array.width {
+            joined.pieces += 1;
+            if joined.values.is_empty() {
+                joined.values = values;
+            } else {
+                joined.values.extend(values);
+            }
+        }
+    }
+
+    fn cells(&mut self, piece: &Piece<'a>, base: usize) -> Result<(), Error> {
+        let array = |name: &str| {
+            let found = piece.topology.iter().find(|array| array.name == name);
+            found.ok_or_else(|| error::at(self.path, "Cells", format!("the array {name} is missing")))
+        };
+        let (nodes, offsets, types) = (array("connectivity")?, array("offsets")?, array("types")?);
+        let types = self.decoder.ints(types, piece.cells)?;
+        let ends = self.decoder.ints(offsets, piece.cells)?;
+        let total = ends.last().and_then(|&end| usize::try_from(end).ok()).unwrap_or(usize::MAX);
+        let all = self.decoder.ints(nodes, total)?;
+        let references = match &self.reference {
+            Some(name) => piece.cell_data.iter().find(|array| array.name == *name),
+            None => None,
+        };
+        let of_cells = references.map(|array| Ok((array, self.decoder.ints(array, piece.cells)?))).transpose()?;
+        let mut start = 0;
+        for (cell, (&kind, &end)) in types.iter().zip(&ends).enumerate() {
+            let wrong =
+                |message: String| error::at(self.path, format!("cell {} of {}", cell + 1, piece.cells), message);
+            let end = usize::try_from(end).ok().filter(|&end| start <= end && end <= all.len());
+            let end = end.ok_or_else(|| wrong("the offsets do not ascend; write the file again".into()))?;
+            let cell_nodes = &all[start..end];
+            start = end;
+            let reference = match &of_cells {
+                Some((array, values)) => self.reference(array, values[cell])?,
+                None => 1,
+            };
+            let vertex = |node: i64| match usize::try_from(node) {
+                Ok(node) if node < piece.points => Ok((base + node) as u32),
+                _ => Err(wrong(format!("it has the point {node}, and there are {}, counted from 0", piece.points))),
+            };
+            match (kind, cell_nodes) {
+                (TETRAHEDRON, &[a, b, c, d]) => {
+                    self.mesh.tets.push([vertex(a)?, vertex(b)?, vertex(c)?, vertex(d)?], reference)
+                }
+                (TRIANGLE, &[a, b, c]) => self.mesh.triangles.push([vertex(a)?, vertex(b)?, vertex(c)?], reference),
+                (LINE, &[a, b]) => self.mesh.edges.push([vertex(a)?, vertex(b)?], reference),
+                (VERTEX, _) => {}
+                (TETRAHEDRON | TRIANGLE | LINE, nodes) => {
+                    return Err(wrong(format!("a cell of type {kind} with {} points", nodes.len())));
+                }
+                _ => {
+                    let name = vtk::name(kind);
+                    return Err(wrong(format!(
+                        "a cell of type {kind}{name}: tetrahedra, triangles and lines are read; split the others"
+                    )));
+                }
+            }
+        }
+        self.cell_arrays(piece, &types)
+    }
+
+    /// The values of the tetrahedra.
+    fn cell_arrays(&mut self, piece: &Piece<'a>, types: &[i64]) -> Result<(), Error> {
+        for array in &piece.cell_data {
+            match array.kind {
+                Kind::Real(_) => {
+                    let values = self.decoder.reals(array, piece.cells)?;
+                    let rows = values.chunks_exact(array.width).zip(types).filter(|(_, kind)| **kind == TETRAHEDRON);
+                    let of_tets = rows.flat_map(|(row, _)| row).copied().collect();
+                    self.join(array, of_tets, false);
+                }
+                _ if REFERENCES.contains(&array.name.as_str()) => {}
+                _ => self.skip(array),
+            }
+        }
+        Ok(())
+    }
+
+    /// The names that FieldData holds.
+    fn names(&mut self, arrays: &[Array<'a>]) -> Result<Names, Error> {
+        let mut names = Names::default();
+        for array in arrays.iter().filter(|array| matches!(array.kind, Kind::Int(_)) && !array.name.is_empty()) {
+            let pairs = self.decoder.all_ints(array)?;
+            if pairs.len() % 2 != 0 || (array.width != 2 && pairs.len() != 2) {
+                continue;
+            }
+            for &[reference, dimension] in pairs.as_chunks::<2>().0 {
+                let of = match dimension {
+                    1 => &mut names.edges,
+                    2 => &mut names.triangles,
+                    3 => &mut names.tetrahedra,
+                    _ => continue,
+                };
+                if let Ok(reference) = i32::try_from(reference) {
+                    of.insert(reference, Label { name: Some(array.name.clone()), colour: None });
+                }
+            }
+        }
+        Ok(names)
+    }
+
+    /// The fields: those at points, and those at tetrahedra where there is none of the name.
+    fn fields(&mut self, pieces: usize) -> Vec<NamedField> {
+        let mut fields = Vec::new();
+        let order = std::mem::take(&mut self.order);
+        let with_tets = !self.mesh.tets.is_empty();
+        for name in order {
+            let (joined, is_cells) = match self.at_points.remove(&name) {
+                Some(joined) => (joined, false),
+                None => match self.at_tets.remove(&name) {
+                    Some(joined) if with_tets => (joined, true),
+                    _ => continue,
+                },
+            };
+            let items = if is_cells { self.mesh.tets.len() } else { self.mesh.vertices.len() };
+            if joined.values.len() != items * joined.width || joined.pieces > pieces {
+                self.notices.push(format!("the array {} is not in all pieces and is left out", name.escape_debug()));
+                continue;
+            }
+            let Joined { width, mut values, .. } = joined;
+            if is_cells {
+                values = to_vertices(&self.mesh, width, &values);
+                self.notices.push(format!(
+                    "{} was given at cells: their mean about each vertex, by volume, is taken",
+                    name.escape_debug()
+                ));
+            }
+            split(name, width, values, &mut fields, &mut self.notices);
+        }
+        fields
+    }
+}
+
+/// Fields of an array, by its values an item.
+fn split(name: String, width: usize, values: Vec<f64>, fields: &mut Vec<NamedField>, notices: &mut Vec<String>) {
+    let kind = match width {
+        1 => FieldKind::Scalar,
+        2 | 3 => FieldKind::Vector,
+        6 => FieldKind::SymmetricTensor,
+        9 => FieldKind::Tensor,
+        _ if width <= MOST => {
+            for component in 0..width {
+                let values = values.iter().skip(component).step_by(width).copied().collect();
+                fields.push(NamedField { name: format!("{name} {}", component + 1), kind: FieldKind::Scalar, values });
+            }
+            return;
+        }
+        _ => {
+            notices.push(format!("the array {} has {width} values an item and is left out", name.escape_debug()));
+            return;
+        }
+    };
+    let values = match width {
+        2 => values.as_chunks::<2>().0.iter().flat_map(|&[x, y]| [x, y, 0.0]).collect(),
+        6 => values.as_chunks::<6>().0.iter().flat_map(|tensor| SYMMETRIC.map(|i| tensor[i])).collect(),
+        _ => values,
+    };
+    fields.push(NamedField { name, kind, values });
+}

@@ -1,0 +1,250 @@
+//! Writing a .vtu: appended raw data in blocks of zlib, or words.
+use super::super::format::vtk::{LINE, TETRAHEDRON, TRIANGLE};
+use super::super::text::Text;
+use super::super::{Dataset, NamedField};
+use super::{REFERENCES, SYMMETRIC};
+use crate::geometry::Names;
+use crate::mesh::TetMesh;
+use crate::mesh::io::{Error, FieldKind, write_beside};
+use crate::tasks::Team;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use quick_xml::escape::escape;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Bytes of a block before compression.
+const BLOCK: usize = 1 << 18;
+
+/// The values of an array.
+enum Values<'a> {
+    Real(Cow<'a, [f64]>),
+    Int(Cow<'a, [i32]>),
+    Long(Vec<i64>),
+    Byte(Vec<u8>),
+}
+
+impl Values<'_> {
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Real(_) => "Float64",
+            Self::Int(_) => "Int32",
+            Self::Long(_) => "Int64",
+            Self::Byte(_) => "UInt8",
+        }
+    }
+
+    fn bytes(&self) -> &[u8] {
+        match self {
+            Self::Real(values) => bytemuck::cast_slice(values),
+            Self::Int(values) => bytemuck::cast_slice(values),
+            Self::Long(values) => bytemuck::cast_slice(values),
+            Self::Byte(values) => values,
+        }
+    }
+}
+
+/// An array.
+struct Array<'a> {
+    name: Cow<'a, str>,
+    width: usize,
+    values: Values<'a>,
+}
+
+/// What encloses arrays.
+struct Section<'a> {
+    tag: &'static str,
+    arrays: Vec<Array<'a>>,
+}
+
+/// Writes a grid.
+pub(in super::super) fn write(
+    team: Team<'_>,
+    path: &Path,
+    data: &Dataset,
+    as_text: bool,
+) -> Result<Vec<String>, Error> {
+    let sections = sections(data);
+    if as_text {
+        write_beside(path, |to| text(to, data, &sections))?;
+    } else {
+        let stored: Vec<Vec<u8>> = sections
+            .iter()
+            .flat_map(|section| &section.arrays)
+            .map(|array| deflated(team, array.values.bytes()))
+            .collect();
+        write_beside(path, |to| appended(to, data, &sections, &stored))?;
+    }
+    Ok(Vec::new())
+}
+
+fn sections(data: &Dataset) -> Vec<Section<'_>> {
+    let mesh = &data.mesh;
+    let named = |name: &'static str, width, values| Array { name: name.into(), width, values };
+    let mut at_points: Vec<Array> = data.fields.iter().map(field).collect();
+    if mesh.vertex_refs.iter().any(|&reference| reference != 0) {
+        at_points.push(named(REFERENCES[0], 1, Values::Int((&mesh.vertex_refs).into())));
+    }
+    let references = [&mesh.tets.refs, &mesh.triangles.refs, &mesh.edges.refs].into_iter().flatten();
+    let cells = vec![named(REFERENCES[0], 1, Values::Int(references.copied().collect()))];
+    let points = vec![named("Points", 3, Values::Real(mesh.vertices.as_flattened().into()))];
+    vec![
+        Section { tag: "PointData", arrays: at_points },
+        Section { tag: "CellData", arrays: cells },
+        Section { tag: "Points", arrays: points },
+        Section { tag: "Cells", arrays: topology(mesh) },
+    ]
+}
+
+fn field(field: &NamedField) -> Array<'_> {
+    let values = match field.kind {
+        FieldKind::SymmetricTensor => {
+            let mut values = vec![0.0; field.values.len()];
+            for (to, from) in values.as_chunks_mut::<6>().0.iter_mut().zip(field.values.as_chunks::<6>().0) {
+                for (ours, &vtks) in SYMMETRIC.iter().enumerate() {
+                    to[vtks] = from[ours];
+                }
+            }
+            values.into()
+        }
+        _ => (&field.values).into(),
+    };
+    Array { name: field.name.as_str().into(), width: field.kind.values(), values: Values::Real(values) }
+}
+
+/// Nodes of the cells, their ends among these, their types.
+fn topology(mesh: &TetMesh) -> Vec<Array<'_>> {
+    let nodes = || {
+        let tets = mesh.tets.nodes.as_flattened().iter();
+        tets.chain(mesh.triangles.nodes.as_flattened()).chain(mesh.edges.nodes.as_flattened()).copied()
+    };
+    let counts = [(mesh.tets.len(), 4, TETRAHEDRON), (mesh.triangles.len(), 3, TRIANGLE), (mesh.edges.len(), 2, LINE)];
+    let ends = || {
+        let widths = counts.into_iter().flat_map(|(count, width, _)| std::iter::repeat_n(width, count));
+        widths.scan(0, |end, width| {
+            *end += width;
+            Some(*end)
+        })
+    };
+    let total: usize = counts.iter().map(|(count, width, _)| count * *width as usize).sum();
+    // Half as long where it does.
+    let (nodes, ends) = if total.max(mesh.vertices.len()) <= i32::MAX as usize {
+        (Values::Int(nodes().map(|v| v as i32).collect()), Values::Int(ends().map(|end: i64| end as i32).collect()))
+    } else {
+        (Values::Long(nodes().map(i64::from).collect()), Values::Long(ends().collect()))
+    };
+    let types = counts.into_iter().flat_map(|(count, _, kind)| std::iter::repeat_n(kind as u8, count)).collect();
+    let array = |name: &'static str, values| Array { name: name.into(), width: 1, values };
+    vec![array("connectivity", nodes), array("offsets", ends), array("types", Values::Byte(types))]
+}
+
+/// Blocks of zlib behind their header.
+fn deflated(team: Team<'_>, bytes: &[u8]) -> Vec<u8> {
+    let blocks = team.chunks(BLOCK, bytes.len(), |range| {
+        let mut encoder = ZlibEncoder::new(Vec::with_capacity(range.len() / 2), Compression::fast());
+        encoder.write_all(&bytes[range]).and_then(|()| encoder.finish()).expect("writing to memory")
+    });
+    let last = bytes.len() % BLOCK;
+    let header = [blocks.len(), BLOCK, last].into_iter().chain(blocks.iter().map(Vec::len));
+    let mut stored: Vec<u8> = header.flat_map(|number| (number as u64).to_ne_bytes()).collect();
+    blocks.iter().for_each(|block| stored.extend_from_slice(block));
+    stored
+}
+
+/// What precedes the piece.
+fn head(data: &Dataset, compressor: &str) -> String {
+    let order = if cfg!(target_endian = "big") { "BigEndian" } else { "LittleEndian" };
+    let (points, cells) =
+        (data.mesh.vertices.len(), data.mesh.tets.len() + data.mesh.triangles.len() + data.mesh.edges.len());
+    format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{order}\" header_type=\"UInt64\"{compressor}>\n\
+         <UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n",
+        names(&data.names)
+    )
+}
+
+/// The names of references.
+fn names(names: &Names) -> String {
+    let mut pairs: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (labels, dimension) in [(&names.edges, 1), (&names.triangles, 2), (&names.tetrahedra, 3)] {
+        for (reference, label) in labels {
+            if let Some(name) = label.name.as_deref().filter(|name| !name.is_empty()) {
+                pairs.entry(name).or_default().push(format!("{reference} {dimension}"));
+            }
+        }
+    }
+    if pairs.is_empty() {
+        return String::new();
+    }
+    let array = |(name, pairs): (&str, &Vec<String>)| {
+        let (name, count, pairs) = (attribute(name), pairs.len(), pairs.join(" "));
+        format!(
+            "<DataArray type=\"Int32\" Name=\"{name}\" NumberOfComponents=\"2\" NumberOfTuples=\"{count}\" format=\"ascii\">{pairs}</DataArray>\n"
+        )
+    };
+    let arrays: String = pairs.iter().map(|(name, pairs)| array((name, pairs))).collect();
+    format!("<FieldData>\n{arrays}</FieldData>\n")
+}
+
+/// A text as an attribute has it; control characters cannot stand in XML.
+fn attribute(text: &str) -> String {
+    escape(text.replace(|c: char| c.is_control(), "_")).into_owned()
+}
+
+/// An array's element up to `format=`.
+fn opening(array: &Array) -> String {
+    let (kind, name, width) = (array.values.kind(), attribute(&array.name), array.width);
+    format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{width}\" format=")
+}
+
+fn appended(to: &mut dyn Write, data: &Dataset, sections: &[Section], stored: &[Vec<u8>]) -> io::Result<()> {
+    to.write_all(head(data, " compressor=\"vtkZLibDataCompressor\"").as_bytes())?;
+    let (mut offset, mut sizes) = (0, stored.iter().map(Vec::len));
+    for section in sections {
+        writeln!(to, "<{}>", section.tag)?;
+        for array in &section.arrays {
+            writeln!(to, "{}\"appended\" offset=\"{offset}\"/>", opening(array))?;
+            offset += sizes.next().unwrap_or(0);
+        }
+        writeln!(to, "</{}>", section.tag)?;
+    }
+    to.write_all(b"</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_")?;
+    stored.iter().try_for_each(|bytes| to.write_all(bytes))?;
+    to.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+}
+
+fn text(to: &mut dyn Write, data: &Dataset, sections: &[Section]) -> io::Result<()> {
+    let mut text = Text::new(to);
+    text.put(format_args!("{}", head(data, "")));
+    for section in sections {
+        text.put(format_args!("<{}>\n", section.tag));
+        for array in &section.arrays {
+            text.put(format_args!("{}\"ascii\">\n", opening(array)));
+            let width = if array.width > 1 { array.width } else { 12 };
+            let mut left = width;
+            let mut row = |text: &mut Text, value: &dyn Fn(&mut Text)| {
+                value(text);
+                left -= 1;
+                if left == 0 {
+                    left = width;
+                    return text.end_line();
+                }
+                Ok(())
+            };
+            match &array.values {
+                Values::Real(values) => {
+                    values.iter().try_for_each(|&value| row(&mut text, &|text| text.real(value)))?
+                }
+                Values::Int(values) => values.iter().try_for_each(|&value| row(&mut text, &|text| text.int(value)))?,
+                Values::Long(values) => values.iter().try_for_each(|&value| row(&mut text, &|text| text.int(value)))?,
+                Values::Byte(values) => values.iter().try_for_each(|&value| row(&mut text, &|text| text.int(value)))?,
+            }
+            text.put(format_args!("\n</DataArray>\n"));
+        }
+        text.put(format_args!("</{}>\n", section.tag));
+    }
+    text.put(format_args!("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"));
+    text.end()
+}

@@ -1,0 +1,118 @@
+//! What is written comes back, through every pair of formats.
+use crate::sample::{Place, dataset, read, sorted, surface};
+use geo_adapt::formats::{self, Dataset};
+
+/// Files that carry meshes, whether as text, and what of a dataset comes back.
+const MESHES: &[(&str, bool)] =
+    &[("a.meshb", false), ("a.mesh", false), ("a.su2", false), ("a.vtu", false), ("a.vtu", true)];
+
+/// What a format keeps of a dataset.
+fn kept(name: &str, mut data: Dataset) -> Dataset {
+    if name.ends_with("su2") {
+        data.mesh.edges = Default::default();
+        data.mesh.tets.refs.fill(1);
+        data.names.edges.clear();
+        data.names.tetrahedra.clear();
+        data.fields.clear();
+    }
+    data.mesh = sorted(data.mesh);
+    data
+}
+
+fn back(name: &str, text: bool, data: &Dataset) -> Dataset {
+    let place = Place::new();
+    let (path, _) = place.write(name, data, text);
+    let mut read = read(&path);
+    read.mesh = sorted(read.mesh);
+    read
+}
+
+#[test]
+fn every_format_brings_back_what_it_carries() {
+    for data in [dataset(), surface()] {
+        for &(name, text) in MESHES {
+            assert_eq!(back(name, text, &data), kept(name, data.clone()), "{name}, text {text}");
+        }
+    }
+}
+
+#[test]
+fn every_pair_of_formats_brings_back_what_both_carry() {
+    let data = dataset();
+    for &(first, first_text) in MESHES {
+        let once = back(first, first_text, &data);
+        for &(second, second_text) in MESHES {
+            let twice = back(second, second_text, &once);
+            assert_eq!(twice, kept(second, kept(first, data.clone())), "{first} {first_text}, {second} {second_text}");
+        }
+    }
+}
+
+#[test]
+fn fields_alone_come_back() {
+    let data = dataset();
+    let place = Place::new();
+    for name in ["f.csv", "f.dat", "f.sol", "f.solb"] {
+        let (path, notices) = place.write(name, &data, false);
+        assert!(notices[0].contains("fields alone"), "{notices:?}");
+        let mut bare = Dataset { fields: Vec::new(), ..data.clone() };
+        assert!(formats::read_fields(&path, &mut bare).unwrap().is_empty());
+        assert_eq!(bare, data, "{name}");
+        bare.mesh.vertices.pop();
+        assert!(formats::read_fields(&path, &mut bare).is_err());
+    }
+    let empty = Dataset { fields: Vec::new(), ..data.clone() };
+    for name in ["g.csv", "g.dat", "g.sol"] {
+        assert!(formats::write(&place.path(name), &empty).is_err() && !place.path(name).exists());
+    }
+    let mut long = data;
+    long.fields[0].name = "a".repeat(40);
+    assert!(formats::write(&place.path("g.dat"), &long).unwrap_err().to_string().contains("the name has 40 bytes"));
+}
+
+#[test]
+fn what_could_not_be_read_again_is_not_written() {
+    let place = Place::new();
+    for name in ["a.su2", "a.vtu", "a.csv", "a.meshb"] {
+        let refused = |change: fn(&mut Dataset)| {
+            let mut data = dataset();
+            change(&mut data);
+            let message = formats::write(&place.path(name), &data).unwrap_err().to_string();
+            assert!(message.contains(name) && !place.path(name).exists(), "{message}");
+        };
+        refused(|data| data.mesh.vertices[3][1] = f64::NAN);
+        refused(|data| data.mesh.tets.nodes[7][2] = 1000);
+        refused(|data| data.fields[1].values[4] = f64::INFINITY);
+        refused(|data| data.fields[1].values.truncate(5));
+        refused(|data| *data = Dataset::default());
+    }
+    let message = formats::write(&place.path("a.xyz"), &dataset()).unwrap_err().to_string();
+    assert!(message.contains("a.xyz: extension: the format is not known; these are: .mesh"), "{message}");
+}
+
+#[test]
+fn a_mesh_numbered_the_other_way_is_turned() {
+    let place = Place::new();
+    let data = dataset();
+    let mut turned = data.clone();
+    turned.mesh.tets.nodes.iter_mut().for_each(|nodes| nodes.swap(0, 1));
+    for name in ["a.vtu", "a.su2", "a.meshb"] {
+        let (path, _) = place.write(name, &turned, false);
+        let found = formats::read(&path).unwrap();
+        assert_eq!(found.content.mesh.tets.nodes, data.mesh.tets.nodes, "{name}");
+        assert!(found.notices.iter().any(|notice| notice.contains("all were turned")), "{:?}", found.notices);
+    }
+}
+
+#[test]
+fn a_file_without_a_known_extension_is_known_by_its_content() {
+    let place = Place::new();
+    let data = Dataset { fields: Vec::new(), names: Default::default(), ..dataset() };
+    for name in ["a.meshb", "a.mesh", "a.su2", "a.vtu"] {
+        let (path, _) = place.write(name, &data, false);
+        let other = place.path("out.1");
+        std::fs::rename(path, &other).unwrap();
+        assert_eq!(read(&other).mesh.vertices, data.mesh.vertices, "{name}");
+    }
+    assert!(formats::read(&place.text("out.2", "hello")).is_err());
+}
