@@ -2,13 +2,12 @@
 use super::dictionaries::{Scheme, Stage, write_stage};
 use super::flow::Flow;
 use super::forces::{Coefficients, Walls};
+use super::programs::solve;
 use crate::formats::foam;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::volume6;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 /// The file of the plan in the folder of the case.
 pub const PLAN: &str = "plan.json";
@@ -22,14 +21,13 @@ const HALVINGS: i32 = 5;
 /// Blocks without trouble after which a halved Courant number is doubled again.
 const CALM: usize = 3;
 
-/// Lines of a log that an error tells.
-const LAST_LINES: usize = 12;
-
 /// What is to be done with a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// The program, rhoCentralFoam.
     pub program: String,
+    /// Processes of it; above 1 by mpirun.
+    pub processes: u32,
     /// The flow.
     pub flow: Flow,
     /// References of the walls.
@@ -146,7 +144,9 @@ impl<'a> Run<'a> {
                     ));
                     return Ok(self.change < self.plan.still);
                 }
-                Err(error) if self.halvings >= HALVINGS => return Err(error),
+                Err(error) if self.halvings >= HALVINGS => {
+                    return Err(format!("however small the time steps, {error}"));
+                }
                 Err(_) => {
                     (self.halvings, self.calm, self.repeated) = (self.halvings + 1, 0, self.repeated + 1);
                     tell(&format!("step {next:>6}  blew up at Courant {courant}: half of that from step {}", self.at));
@@ -158,26 +158,10 @@ impl<'a> Run<'a> {
 
     /// Starts the solver for the steps up to `next`.
     fn start(&self, next: usize) -> Result<(), String> {
-        let path = self.case.join(format!("log.{next}"));
-        let log = File::create(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let copy = log.try_clone().map_err(|error| format!("{}: {error}", path.display()))?;
-        let program = &self.plan.program;
-        let mut command = Command::new(program);
-        command.current_dir(self.case).stdin(Stdio::null()).stdout(log).stderr(copy).env("FOAM_SIGFPE", "true");
-        if let Some(folder) = super::installation() {
-            command.env("WM_PROJECT_DIR", folder);
-        }
-        let status =
-            command.status().map_err(|error| format!("{program} could not be started ({error}): is it installed?"))?;
-        if status.success() {
-            let _ = std::fs::remove_file(&path); // of no use any more
-            return Ok(());
-        }
-        Err(format!(
-            "{program} failed, however small the time steps ({status}); the end of {}:\n{}",
-            path.display(),
-            last_lines(&path)
-        ))
+        let log = self.case.join(format!("log.{next}"));
+        solve(self.case, self.plan, &log)?;
+        let _ = std::fs::remove_file(&log); // of no use any more
+        Ok(())
     }
 
     /// Takes over a block that ended well, and drops the one before.
@@ -229,10 +213,4 @@ fn state(time: &Path, cells: usize) -> Result<State, String> {
 /// The folder of the last step.
 pub fn last_time(case: &Path) -> Result<PathBuf, String> {
     foam::newest_time(case).ok_or_else(|| format!("{}: there is no time folder", case.display()))
-}
-
-fn last_lines(path: &Path) -> String {
-    let text = String::from_utf8_lossy(&std::fs::read(path).unwrap_or_default()).into_owned();
-    let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
-    lines[lines.len().saturating_sub(LAST_LINES)..].join("\n")
 }

@@ -1,11 +1,12 @@
 //! OpenFOAM's rhoCentralFoam: a case is made of a few flow conditions, run with local time steps until it stands still, and read.
 //!
-//! `flow` says what holds where, `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`), and `forces`
-//! sums up what acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
+//! `flow` says what holds where, `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
+//! `programs`, and `forces` sums up what acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
 mod dictionaries;
 pub mod drive;
 mod flow;
 mod forces;
+mod programs;
 
 pub use dictionaries::{Scheme, Stage};
 pub use flow::{Flow, Kind};
@@ -19,7 +20,7 @@ use crate::tasks::Team;
 use drive::{Outcome, PLAN, Plan, RESULT};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// `[solver.openfoam]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +29,9 @@ pub struct Config {
     /// The program, on the PATH or with its folder.
     #[serde(default = "program")]
     pub program: String,
+    /// Processes: above 1 the mesh is cut into as many parts, and mpirun starts them.
+    #[serde(default = "single")]
+    pub processes: u32,
     /// The flow.
     pub flow: Flow,
     /// Steps of a solve at most.
@@ -57,6 +61,10 @@ fn program() -> String {
     "rhoCentralFoam".into()
 }
 
+fn single() -> u32 {
+    1
+}
+
 fn thousand() -> usize {
     1000
 }
@@ -79,12 +87,6 @@ fn courant() -> f64 {
 
 /// The folder of the case in that of a step.
 const CASE: &str = "case";
-
-/// Where OpenFOAM's own settings lie: its variable, or where Debian has them.
-pub fn installation() -> Option<PathBuf> {
-    let debian = || Some(PathBuf::from("/usr/share/openfoam")).filter(|folder| folder.is_dir());
-    std::env::var_os("WM_PROJECT_DIR").map(PathBuf::from).or_else(debian)
-}
 
 impl Config {
     /// What holds at each surface of a mesh.
@@ -147,6 +149,7 @@ impl Config {
         let walls = kinds.iter().filter(|(_, kind)| **kind == Kind::Wall).map(|(&reference, _)| reference);
         Plan {
             program: self.program.clone(),
+            processes: self.processes,
             flow: self.flow.clone(),
             walls: walls.collect(),
             stage: Stage { scheme: self.scheme, courant: self.courant, smoothing: self.smoothing },
@@ -161,8 +164,11 @@ impl Config {
 impl Solver for Config {
     fn check(&self, base: &Path) -> Result<(), String> {
         self.flow.check()?;
-        if self.block == 0 || self.steps == 0 {
-            return Err("[solver.openfoam] steps and block: give 1 or more".into());
+        if self.block == 0 || self.steps == 0 || self.processes == 0 {
+            return Err("[solver.openfoam] steps, block and processes: give 1 or more".into());
+        }
+        if self.processes > 1 && find_program("mpirun", base).is_none() {
+            return Err("[solver.openfoam] processes is above 1, but there is no mpirun on the PATH".into());
         }
         if !(self.courant > 0.0 && self.courant < 1.0 && self.smoothing > 0.0 && self.smoothing.is_finite()) {
             return Err(
