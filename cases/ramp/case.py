@@ -51,6 +51,7 @@ def judged(mesh, solution, exact):
 
 def uniform(program, text, vertices, folder, exact):
     """Figures on a mesh of one size everywhere with as many vertices, within some percent."""
+    folder.mkdir(parents=True, exist_ok=True)
     mesh, size = folder / "uniform.meshb", (1.31 * 0.05 / vertices) ** (1 / 3)
     for _ in range(3):
         mesh.unlink(missing_ok=True)
