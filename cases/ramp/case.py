@@ -63,7 +63,7 @@ def uniform(program, text, vertices, folder, exact):
         if abs(found / vertices - 1) < 0.05:
             break
     # One solve; what is adapted after it is small, and of no interest.
-    changed = {"steps": "6000", "complexity": "100", "max_complexity": "100", "folder": f'"{folder}/uniform"'}
+    changed = {"steps": "3000", "complexity": "100", "max_complexity": "100", "folder": f'"{folder}/uniform"'}
     text = re.sub(r'(?m)^bootstrap = .*\noptions = .*$', f'file = "{mesh}"\ncad = "{MODEL}"', loops.replaced(text, changed))
     config = folder / "uniform.toml"
     config.write_text(text)
