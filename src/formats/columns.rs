@@ -276,7 +276,7 @@ pub(super) fn write_text(path: &Path, data: &Dataset) -> Result<Vec<String>, Err
             row(data, vertex).for_each(|value| text.put(format_args!(",{value:?}")));
             text.end_line()?;
         }
-        text.end()
+        text.finish()
     })?;
     Ok(Vec::new())
 }

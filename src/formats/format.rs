@@ -1,5 +1,6 @@
 //! Which format a file has.
 use super::error;
+use super::ugrid::Encoding;
 use crate::mesh::io::Error;
 use std::path::Path;
 
@@ -12,6 +13,13 @@ pub enum Format {
     Su2,
     /// VTK's unstructured grids: .vtu.
     Vtu,
+    /// gmsh's meshes: .msh, .msh2, .msh4; written as version 4.1, or 2.2.
+    Msh {
+        /// Whether version 4.1 is written.
+        is_new: bool,
+    },
+    /// UGRID: .ugrid, .b8.ugrid, .lb8.ugrid.
+    Ugrid(Encoding),
     /// libMeshb's solutions: .sol, .solb.
     Solution,
     /// SU2's restarts as text: .csv.
@@ -35,6 +43,14 @@ impl Format {
             "mesh" | "meshb" => Self::Libmeshb,
             "su2" => Self::Su2,
             "vtu" => Self::Vtu,
+            "msh" | "msh4" => Self::Msh { is_new: true },
+            "msh2" => Self::Msh { is_new: false },
+            "ugrid" => {
+                let stem = path.file_stem().map(Path::new).and_then(Path::extension).and_then(|word| word.to_str());
+                let word = stem.unwrap_or("").to_ascii_lowercase();
+                let message = "the unformatted UGRID of Fortran is not read; write .b8.ugrid or .lb8.ugrid";
+                Self::Ugrid(Encoding::of(&word).ok_or_else(|| error::at(path, "extension", message))?)
+            }
             "sol" | "solb" => Self::Solution,
             "csv" => Self::Table,
             "dat" => Self::Restart,
@@ -52,6 +68,7 @@ impl Format {
             let holds = |word: &[u8]| head.windows(word.len()).any(|part| part == word);
             match () {
                 () if holds(b"MeshVersionFormatted") || head.starts_with(&[1, 0, 0, 0]) => Ok(Self::Libmeshb),
+                () if holds(b"$MeshFormat") => Ok(Self::Msh { is_new: true }),
                 () if holds(b"<VTKFile") => Ok(Self::Vtu),
                 () if holds(b"NDIME=") => Ok(Self::Su2),
                 () => Err(error),

@@ -12,7 +12,7 @@ pub(super) fn notices(format: Format, data: &Dataset) -> Vec<String> {
         return Vec::new();
     }
     let (edges, regions, fields, names) = match format {
-        Format::Su2 => (false, false, false, [true, false, false]),
+        Format::Su2 | Format::Ugrid(_) => (false, false, false, [true, false, false]),
         _ => (true, true, true, [true; 3]),
     };
     let mut lost: Vec<String> = Vec::new();

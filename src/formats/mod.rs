@@ -13,15 +13,18 @@ mod format;
 mod lacks;
 mod libmeshb;
 mod markers;
+mod msh;
 mod scan;
 mod su2;
 mod text;
 mod turn;
+pub mod ugrid;
 mod vtu;
 
 pub use cells::to_vertices;
 pub use dataset::{Dataset, NamedField};
 pub use format::Format;
+pub use msh::read_msh;
 
 use crate::geometry::names;
 use crate::mesh::io::{Error, Read};
@@ -47,6 +50,7 @@ pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
     let mut read = read_bytes(format, path, &bytes)?;
     match format {
         Format::Libmeshb => libmeshb::read_beside(path, &mut read)?,
+        Format::Ugrid(_) => ugrid::read_beside(path, &mut read.content.names)?,
         _ => {}
     }
     Ok(read)
@@ -61,6 +65,8 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
         Format::Libmeshb => libmeshb::read(path, bytes)?,
         Format::Su2 => su2::read(path, bytes)?,
         Format::Vtu => vtu::read(path, bytes)?,
+        Format::Msh { .. } => msh::read(path, bytes)?,
+        Format::Ugrid(encoding) => ugrid::read(path, bytes, encoding)?,
         Format::Solution | Format::Table | Format::Restart => {
             let message = "holds fields and no mesh: give the mesh, and this file by --fields";
             return Err(error::at(path, "extension", message));
@@ -79,6 +85,7 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
 pub fn beside(path: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(match Format::of(path)? {
         Format::Libmeshb => vec![libmeshb::solution_path(path), names::beside(path)],
+        Format::Ugrid(_) => vec![ugrid::names_path(path)],
         _ => Vec::new(),
     })
 }
@@ -121,6 +128,8 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, options: Options) -
         Format::Libmeshb => libmeshb::write(team, path, data)?,
         Format::Su2 => su2::write(path, data)?,
         Format::Vtu => vtu::write(team, path, data, options.text)?,
+        Format::Msh { is_new } => msh::write(path, data, is_new, options.text)?,
+        Format::Ugrid(encoding) => ugrid::write(path, data, encoding)?,
         Format::Solution => libmeshb::write_solution(team, path, data)?,
         Format::Table => columns::write_text(path, data)?,
         Format::Restart => columns::write_binary(path, data)?,

@@ -34,17 +34,16 @@ impl<'a> Scan<'a> {
         Some(rest[..length.unwrap_or(rest.len())].trim_ascii())
     }
 
-    /// The next word of this line; none where the line ends.
-    #[inline]
-    pub fn word_here(&mut self) -> Option<&'a [u8]> {
+    /// The next word of this line, a finite number; none where the line ends.
+    pub fn real_here(&mut self) -> Result<Option<f64>, Error> {
         while let Some(&byte) = self.bytes.get(self.at) {
             match byte {
-                b'\n' => return None,
+                b'\n' => return Ok(None),
                 0..=b' ' => self.at += 1,
-                _ => return Some(self.take()),
+                _ => return self.real().map(Some),
             }
         }
-        None
+        Ok(None)
     }
 
     /// The next word, on whatever line.

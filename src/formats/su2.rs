@@ -210,5 +210,5 @@ fn emit(to: &mut dyn Write, mesh: &TetMesh, tags: &BTreeMap<i32, String>) -> io:
             text.end_line()?;
         }
     }
-    text.end()
+    text.finish()
 }

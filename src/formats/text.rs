@@ -42,15 +42,25 @@ impl<'a> Text<'a> {
         } else {
             self.bytes.push(b'\n');
         }
-        if self.bytes.len() > FULL {
-            self.to.write_all(&self.bytes)?;
-            self.bytes.clear();
-        }
-        Ok(())
+        self.hand_on()
+    }
+
+    /// Adds bytes.
+    #[inline]
+    pub fn raw(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// Hands the bytes on where there are many.
+    #[inline]
+    pub fn hand_on(&mut self) -> io::Result<()> {
+        if self.bytes.len() > FULL { self.finish() } else { Ok(()) }
     }
 
     /// Hands on what is left.
-    pub fn end(self) -> io::Result<()> {
-        self.to.write_all(&self.bytes)
+    pub fn finish(&mut self) -> io::Result<()> {
+        self.to.write_all(&self.bytes)?;
+        self.bytes.clear();
+        Ok(())
     }
 }

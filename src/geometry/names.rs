@@ -137,14 +137,19 @@ fn bytes_beside(of: &Path) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
 }
 
 fn parse<'b, T: Deserialize<'b>>(path: &Path, bytes: &'b [u8]) -> Result<T, Error> {
-    serde_json::from_slice(bytes).map_err(|error| Error::Content {
+    let wrong = |line: usize, why: String| Error::Content {
         path: path.into(),
-        place: format!("line {}", error.line()),
+        place: format!("line {line}"),
         message: format!(
-            "no names of references ({error}); write {{\"triangles\": {{\"3\": {{\"name\": \"wing\", \"colour\": \"#aabbcc\"}}}}}} \
+            "no names of references ({why}); write {{\"triangles\": {{\"3\": {{\"name\": \"wing\", \"colour\": \"#aabbcc\"}}}}}} \
              as geo-adapt bootstrap does, or move the file away"
         ),
-    })
+    };
+    // A list would do for serde.
+    if !bytes.trim_ascii_start().starts_with(b"{") {
+        return Err(wrong(1, "an object in braces is expected".into()));
+    }
+    serde_json::from_slice(bytes).map_err(|error| wrong(error.line(), error.to_string()))
 }
 
 #[cfg(test)]

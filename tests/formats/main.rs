@@ -1,5 +1,9 @@
 //! Meshes and fields in the files of other programs: what is written comes back, what others write is read.
+mod damage;
+mod foreign;
+mod gmsh;
 mod round_trip;
 mod sample;
 mod su2;
+mod ugrid;
 mod vtu;

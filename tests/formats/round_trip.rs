@@ -3,12 +3,25 @@ use crate::sample::{Place, dataset, read, sorted, surface};
 use geo_adapt::formats::{self, Dataset};
 
 /// Files that carry meshes, whether as text, and what of a dataset comes back.
-const MESHES: &[(&str, bool)] =
-    &[("a.meshb", false), ("a.mesh", false), ("a.su2", false), ("a.vtu", false), ("a.vtu", true)];
+const MESHES: &[(&str, bool)] = &[
+    ("a.meshb", false),
+    ("a.mesh", false),
+    ("a.su2", false),
+    ("a.vtu", false),
+    ("a.vtu", true),
+    ("a.msh", false),
+    ("a.msh", true),
+    ("a.msh2", false),
+    ("a.msh2", true),
+    ("a.ugrid", false),
+    ("a.b8.ugrid", false),
+    ("a.lb8.ugrid", false),
+    ("a.lb8l.ugrid", false),
+];
 
 /// What a format keeps of a dataset.
 fn kept(name: &str, mut data: Dataset) -> Dataset {
-    if name.ends_with("su2") {
+    if name.ends_with("su2") || name.ends_with("ugrid") {
         data.mesh.edges = Default::default();
         data.mesh.tets.refs.fill(1);
         data.names.edges.clear();
@@ -96,7 +109,7 @@ fn a_mesh_numbered_the_other_way_is_turned() {
     let data = dataset();
     let mut turned = data.clone();
     turned.mesh.tets.nodes.iter_mut().for_each(|nodes| nodes.swap(0, 1));
-    for name in ["a.vtu", "a.su2", "a.meshb"] {
+    for name in ["a.vtu", "a.su2", "a.meshb", "a.msh", "a.msh2", "a.b8.ugrid"] {
         let (path, _) = place.write(name, &turned, false);
         let found = formats::read(&path).unwrap();
         assert_eq!(found.content.mesh.tets.nodes, data.mesh.tets.nodes, "{name}");
@@ -108,7 +121,7 @@ fn a_mesh_numbered_the_other_way_is_turned() {
 fn a_file_without_a_known_extension_is_known_by_its_content() {
     let place = Place::new();
     let data = Dataset { fields: Vec::new(), names: Default::default(), ..dataset() };
-    for name in ["a.meshb", "a.mesh", "a.su2", "a.vtu"] {
+    for name in ["a.meshb", "a.mesh", "a.su2", "a.vtu", "a.msh"] {
         let (path, _) = place.write(name, &data, false);
         let other = place.path("out.1");
         std::fs::rename(path, &other).unwrap();

@@ -21,11 +21,15 @@ pub fn labels(names: &[(i32, &str)]) -> BTreeMap<i32, Label> {
 
 /// A cube of two regions with names for its boundaries, edges and regions, and a field of each kind.
 pub fn dataset() -> Dataset {
-    let mut mesh = cube(2);
+    of_cube(2)
+}
+
+fn of_cube(n: u32) -> Dataset {
+    let mut mesh = cube(n);
     for (x, point) in mesh.vertices.iter_mut().enumerate() {
         point.iter_mut().for_each(|p| *p = *p / 3.0 + 1e-9 * x as f64);
     }
-    mesh.tets.refs.iter_mut().skip(20).for_each(|region| *region = 4);
+    mesh.tets.refs.iter_mut().skip(5).for_each(|region| *region = 4);
     for reference in &mut mesh.triangles.refs {
         *reference = [0, 11, 3, 7, 8, 21, 6][*reference as usize];
     }
@@ -48,7 +52,7 @@ pub fn dataset() -> Dataset {
 
 /// Triangles alone.
 pub fn surface() -> Dataset {
-    let mut data = dataset();
+    let mut data = of_cube(1);
     data.mesh.tets = Elements::default();
     data.names.tetrahedra.clear();
     data.fields.truncate(2);

@@ -3,10 +3,11 @@ use super::driver::{Choice, Rung, gmsh_places, netgen_places};
 use super::process::{self, Failure, Workplace};
 use super::{gmsh, netgen};
 use crate::cli::adapt::progress::Stop;
+use crate::formats;
 use crate::geometry::classify::{Classification, Error, Options, classify};
 use crate::geometry::{Geometry, Model};
+use crate::mesh::TetMesh;
 use crate::mesh::validity;
-use crate::mesh::{TetMesh, io};
 use crate::tasks::Team;
 use std::path::Path;
 use std::time::Duration;
@@ -124,7 +125,7 @@ fn attempt(
     if !out.is_file() {
         return Err(failed("it wrote no mesh".into()));
     }
-    let mesh = io::read_msh(&out).map_err(|error| failed(error.to_string()))?;
+    let mesh = formats::read_msh(&out).map_err(|error| failed(error.to_string()))?;
     judge(team, mesh, model).map_err(failed)
 }
 

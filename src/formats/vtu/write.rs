@@ -246,5 +246,5 @@ fn text(to: &mut dyn Write, data: &Dataset, sections: &[Section]) -> io::Result<
         text.put(format_args!("</{}>\n", section.tag));
     }
     text.put(format_args!("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"));
-    text.end()
+    text.finish()
 }

@@ -8,7 +8,6 @@ mod binary;
 mod cursor;
 mod error;
 mod keyword;
-mod msh;
 pub mod number;
 mod points;
 mod read;
@@ -19,7 +18,6 @@ mod write;
 
 pub use beside::write_beside;
 pub use error::Error;
-pub use msh::read_msh;
 pub use points::read_points;
 pub use solution::{FieldKind, Solution, SolutionField};
 

@@ -1,0 +1,126 @@
+//! The values of a .msh, as words or as bytes.
+use super::super::error;
+use super::super::scan::Scan;
+use crate::mesh::io::Error;
+use std::path::Path;
+
+/// How numbers stand in the file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Text,
+    /// Bytes; whether the most significant comes first.
+    Binary {
+        big: bool,
+    },
+}
+
+/// A place in a file.
+pub(super) struct Source<'a> {
+    path: &'a Path,
+    bytes: &'a [u8],
+    /// Walks through lines and words.
+    pub scan: Scan<'a>,
+    pub encoding: Encoding,
+}
+
+impl<'a> Source<'a> {
+    /// At the beginning; a text until the head tells other.
+    pub fn new(path: &'a Path, bytes: &'a [u8]) -> Self {
+        Self { path, bytes, scan: Scan::new(path, bytes), encoding: Encoding::Text }
+    }
+
+    /// The bytes from here.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.scan.at..]
+    }
+
+    /// Whether it is a text.
+    pub fn is_text(&self) -> bool {
+        self.encoding == Encoding::Text
+    }
+
+    /// An error here.
+    pub fn fail(&self, message: impl Into<String>) -> Error {
+        match self.encoding {
+            Encoding::Text => self.scan.fail(message),
+            Encoding::Binary { .. } => error::at(self.path, format!("byte {}", self.scan.at), message),
+        }
+    }
+
+    #[inline]
+    fn take<const N: usize>(&mut self, big: bool) -> Result<[u8; N], Error> {
+        let Some(&(mut bytes)) = self.bytes[self.scan.at..].first_chunk::<N>() else {
+            return Err(self.fail("the file ends here; it was cut, or a count is too large"));
+        };
+        self.scan.at += N;
+        if big != cfg!(target_endian = "big") {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    /// An int.
+    #[inline]
+    pub fn int(&mut self) -> Result<i64, Error> {
+        match self.encoding {
+            Encoding::Text => self.scan.int(),
+            Encoding::Binary { big } => self.take(big).map(|bytes| i32::from_ne_bytes(bytes).into()),
+        }
+    }
+
+    /// A size_t: a count, or a tag of a node or element.
+    #[inline]
+    pub fn size(&mut self) -> Result<usize, Error> {
+        let value = match self.encoding {
+            Encoding::Text => self.scan.int()?,
+            Encoding::Binary { big } => i64::from_ne_bytes(self.take(big)?),
+        };
+        usize::try_from(value).map_err(|_| self.fail(format!("{value} stands where a count or number is expected")))
+    }
+
+    /// A double.
+    #[inline]
+    pub fn real(&mut self) -> Result<f64, Error> {
+        match self.encoding {
+            Encoding::Text => self.scan.real(),
+            Encoding::Binary { big } => self.take(big).map(f64::from_ne_bytes),
+        }
+    }
+
+    /// Three doubles, finite.
+    pub fn point(&mut self) -> Result<[f64; 3], Error> {
+        let point = [self.real()?, self.real()?, self.real()?];
+        if point.iter().all(|x| x.is_finite()) {
+            Ok(point)
+        } else {
+            Err(self.fail("a coordinate is not finite; correct it"))
+        }
+    }
+
+    /// Passes over so many bytes, where it is no text.
+    pub fn skip(&mut self, bytes: usize) -> Result<(), Error> {
+        if bytes > self.scan.left() {
+            return Err(self.fail("the file ends here; it was cut, or a count is too large"));
+        }
+        self.scan.at += bytes;
+        Ok(())
+    }
+
+    /// Items to make room for: what a count says, but no more than the rest can hold of so many numbers at least each.
+    pub fn room(&self, count: usize, numbers: usize) -> usize {
+        let least = if self.is_text() { 2 } else { 4 };
+        self.scan.room(count, least * numbers)
+    }
+
+    /// Moves on behind the end of a section.
+    pub fn leave(&mut self, section: &[u8]) -> Result<(), Error> {
+        let end = [b"$End", section].concat();
+        let rest = &self.bytes[self.scan.at..];
+        let Some(at) = rest.windows(end.len()).position(|part| part == end) else {
+            let section = String::from_utf8_lossy(section).escape_debug().to_string();
+            return Err(self.fail(format!("$End{section} is missing: the file was cut off")));
+        };
+        self.scan.at += at + end.len();
+        Ok(())
+    }
+}

@@ -1,0 +1,299 @@
+//! The UGRID of AFLR3, FUN3D and refine: .ugrid (text), .b8.ugrid and .lb8.ugrid (binary, the most or least significant byte first), with
+//! the names of the boundaries in .mapbc. Sources: SimCenter's "UGRID 3D Grid File Type", FUN3D's manual. Seven counts, coordinates,
+//! triangles, quadrilaterals, references of both, tetrahedra, pyramids, prisms, hexahedra; indices count from 1.
+use super::scan::Scan;
+use super::text::Text;
+use super::{Dataset, error};
+use crate::geometry::{Label, Names};
+use crate::mesh::io::{Error, Read, write_beside};
+use crate::mesh::{Elements, TetMesh};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// How numbers stand in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// Words.
+    Text,
+    /// Bytes.
+    Binary {
+        /// Whether the most significant comes first.
+        big: bool,
+        /// Whether coordinates have 8 bytes, else 4.
+        double: bool,
+        /// Whether whole numbers have 8 bytes, else 4.
+        long: bool,
+    },
+}
+
+impl Encoding {
+    /// By the word before `.ugrid`, as SimCenter and FUN3D write it.
+    pub(super) fn of(word: &str) -> Option<Self> {
+        let binary = |big, double, long| Some(Self::Binary { big, double, long });
+        match word {
+            "b8" => binary(true, true, false),
+            "lb8" => binary(false, true, false),
+            "b4" => binary(true, false, false),
+            "lb4" => binary(false, false, false),
+            "b8l" => binary(true, true, true),
+            "lb8l" => binary(false, true, true),
+            "r8" | "lr8" | "r4" | "lr4" => None,
+            _ => Some(Self::Text),
+        }
+    }
+}
+
+/// Walks through the numbers of a file.
+struct Source<'a> {
+    path: &'a Path,
+    bytes: &'a [u8],
+    scan: Scan<'a>,
+    encoding: Encoding,
+}
+
+impl Source<'_> {
+    fn fail(&self, message: impl Into<String>) -> Error {
+        match self.encoding {
+            Encoding::Text => self.scan.fail(message),
+            Encoding::Binary { .. } => error::at(self.path, format!("byte {}", self.scan.at), message),
+        }
+    }
+
+    #[inline]
+    fn take<const N: usize>(&mut self, big: bool) -> Result<[u8; N], Error> {
+        let Some(&(mut bytes)) = self.bytes[self.scan.at..].first_chunk::<N>() else {
+            return Err(self.fail("the file ends here; it was cut, or a count is too large"));
+        };
+        self.scan.at += N;
+        if big != cfg!(target_endian = "big") {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    #[inline]
+    fn int(&mut self) -> Result<i64, Error> {
+        match self.encoding {
+            Encoding::Text => self.scan.int(),
+            Encoding::Binary { big, long: false, .. } => self.take(big).map(|bytes| i32::from_ne_bytes(bytes).into()),
+            Encoding::Binary { big, .. } => self.take(big).map(i64::from_ne_bytes),
+        }
+    }
+
+    #[inline]
+    fn real(&mut self) -> Result<f64, Error> {
+        match self.encoding {
+            Encoding::Text => self.scan.real(),
+            Encoding::Binary { big, double: true, .. } => self.take(big).map(f64::from_ne_bytes),
+            Encoding::Binary { big, .. } => self.take(big).map(|bytes| f32::from_ne_bytes(bytes).into()),
+        }
+    }
+
+    fn vertices<const N: usize>(&mut self) -> Result<[u32; N], Error> {
+        let mut nodes = [0; N];
+        for node in &mut nodes {
+            let value = self.int()?;
+            *node = u32::try_from(value.wrapping_sub(1))
+                .map_err(|_| self.fail(format!("{value} is no number of a vertex; they count from 1")))?;
+        }
+        Ok(nodes)
+    }
+
+    fn elements<const N: usize>(&mut self, count: usize) -> Result<Vec<[u32; N]>, Error> {
+        let mut nodes = Vec::with_capacity(self.scan.room(count, 2 * N));
+        for _ in 0..count {
+            nodes.push(self.vertices()?);
+        }
+        Ok(nodes)
+    }
+}
+
+/// Reads a grid without what lies beside.
+pub(super) fn read(path: &Path, bytes: &[u8], encoding: Encoding) -> Result<Read<Dataset>, Error> {
+    let mut source = Source { path, bytes, scan: Scan::new(path, bytes), encoding };
+    let mut counts = [0; 7];
+    for count in &mut counts {
+        let value = source.int()?;
+        *count = usize::try_from(value)
+            .map_err(|_| source.fail(format!("the count {value} cannot be{}", other(encoding))))?;
+    }
+    let [vertices, triangles, quadrilaterals, tets, pyramids, prisms, hexahedra] = counts;
+    // 24 bytes a vertex, or three digits and blanks.
+    if counts.iter().any(|&count| count > source.scan.left()) {
+        return Err(
+            source.fail(format!("the counts {counts:?} do not fit into the file; it was cut{}", other(encoding)))
+        );
+    }
+    for (count, name) in
+        [(quadrilaterals, "quadrilaterals"), (pyramids, "pyramids"), (prisms, "prisms"), (hexahedra, "hexahedra")]
+    {
+        if count > 0 {
+            return Err(
+                source.fail(format!("there are {count} {name}: tetrahedra and triangles are read; split the others"))
+            );
+        }
+    }
+    let mut mesh = TetMesh { vertices: Vec::with_capacity(source.scan.room(vertices, 6)), ..TetMesh::default() };
+    for _ in 0..vertices {
+        mesh.vertices.push([source.real()?, source.real()?, source.real()?]);
+    }
+    mesh.vertex_refs = vec![0; vertices];
+    let nodes = source.elements(triangles)?;
+    let mut refs = Vec::with_capacity(nodes.len());
+    for _ in 0..triangles {
+        let value = source.int()?;
+        refs.push(
+            i32::try_from(value).map_err(|_| source.fail(format!("the reference {value} does not fit 32 bits")))?,
+        );
+    }
+    mesh.triangles = Elements { nodes, refs };
+    let nodes = source.elements(tets)?;
+    mesh.tets = Elements { refs: vec![1; nodes.len()], nodes };
+    let mut notices = Vec::new();
+    let left = &bytes[source.scan.at..];
+    if !left.trim_ascii().is_empty() {
+        notices.push(format!("{}: {} bytes behind the tetrahedra are not read", path.display(), left.len()));
+    }
+    Ok(Read { content: Dataset { mesh, ..Dataset::default() }, notices })
+}
+
+/// What else a wrong count may mean.
+fn other(encoding: Encoding) -> &'static str {
+    match encoding {
+        Encoding::Binary { big: true, .. } => ", or the least significant byte comes first: name it .lb8.ugrid then",
+        Encoding::Binary { big: false, .. } => ", or the most significant byte comes first: name it .b8.ugrid then",
+        Encoding::Text => ", or it is binary: name it .b8.ugrid or .lb8.ugrid then",
+    }
+}
+
+/// The names file of a grid: grid.mapbc beside grid.b8.ugrid.
+pub(super) fn names_path(path: &Path) -> PathBuf {
+    let stem = path.with_extension("");
+    let word = stem.extension().and_then(|word| word.to_str()).unwrap_or("");
+    let is_encoding = !word.is_empty() && !matches!(Encoding::of(&word.to_ascii_lowercase()), Some(Encoding::Text));
+    if is_encoding { stem.with_extension("mapbc") } else { path.with_extension("mapbc") }
+}
+
+/// A line of a names file: reference, boundary condition, name.
+fn rows(path: &Path, bytes: &[u8]) -> Result<Vec<(i32, i64, String)>, Error> {
+    let mut scan = Scan::new(path, bytes);
+    let line = scan.line().unwrap_or_default();
+    let count = scan.count(line)?;
+    let mut rows = Vec::new();
+    while rows.len() < count {
+        let Some(line) = scan.line() else {
+            return Err(scan.fail(format!(
+                "{} boundaries are said to be there, and {} are; correct the count",
+                count,
+                rows.len()
+            )));
+        };
+        if line.is_empty() {
+            continue;
+        }
+        let text = String::from_utf8_lossy(line);
+        let mut words = text.split_ascii_whitespace();
+        let number = |word: Option<&str>| word.and_then(|word| word.parse::<i64>().ok());
+        let (reference, condition) = (number(words.next()), number(words.next()));
+        let (Some(reference), Some(condition)) = (reference.and_then(|r| i32::try_from(r).ok()), condition) else {
+            return Err(scan.fail("the number of a boundary, its condition and its name are expected: 1 4000 wing"));
+        };
+        rows.push((reference, condition, words.collect::<Vec<_>>().join(" ")));
+    }
+    Ok(rows)
+}
+
+/// Reads the names that lie beside.
+pub(super) fn read_beside(path: &Path, names: &mut Names) -> Result<(), Error> {
+    let beside = names_path(path);
+    if !beside.is_file() {
+        return Ok(());
+    }
+    for (reference, _, name) in rows(&beside, &error::read(&beside)?)? {
+        if !name.is_empty() {
+            names.triangles.insert(reference, Label { name: Some(name), colour: None });
+        }
+    }
+    Ok(())
+}
+
+/// Writes a grid, and its names beside it where it has some. Boundary conditions that are there already stay; new boundaries have 0.
+pub(super) fn write(path: &Path, data: &Dataset, encoding: Encoding) -> Result<Vec<String>, Error> {
+    let mesh = &data.mesh;
+    if encoding != Encoding::Text
+        && mesh.vertices.len().max(mesh.tets.len()) > i32::MAX as usize
+        && !matches!(encoding, Encoding::Binary { long: true, .. })
+    {
+        return Err(error::at(path, "counts", "they do not fit 32 bits; write .lb8l.ugrid"));
+    }
+    write_beside(path, |to| emit(to, mesh, encoding))?;
+    let references: BTreeSet<i32> = mesh.triangles.refs.iter().copied().collect();
+    let name = |reference: &i32| data.names.triangles.get(reference).and_then(|label| label.name.clone());
+    let beside = names_path(path);
+    if !references.iter().any(|reference| name(reference).is_some()) && !beside.exists() {
+        return Ok(Vec::new());
+    }
+    let old: BTreeMap<i32, i64> = if beside.is_file() {
+        rows(&beside, &error::read(&beside)?)?
+            .into_iter()
+            .map(|(reference, condition, _)| (reference, condition))
+            .collect()
+    } else {
+        BTreeMap::new()
+    };
+    write_beside(&beside, |to| {
+        writeln!(to, "{}", references.len())?;
+        for reference in &references {
+            let name = name(reference).unwrap_or_default();
+            let name = name.split_whitespace().collect::<Vec<_>>().join(" ");
+            writeln!(to, "{}", format!("{reference} {} {name}", old.get(reference).unwrap_or(&0)).trim_end())?;
+        }
+        Ok(())
+    })?;
+    let mut notices = vec![format!("the names are in {}", beside.display())];
+    let new = references.iter().filter(|reference| !old.contains_key(reference)).count();
+    if new > 0 {
+        notices.push(format!("{new} boundaries have the condition 0 there; write those of your solver"));
+    }
+    Ok(notices)
+}
+
+fn emit(to: &mut dyn Write, mesh: &TetMesh, encoding: Encoding) -> io::Result<()> {
+    let mut text = Text::new(to);
+    let int = |text: &mut Text, value: i64| match encoding {
+        Encoding::Text => text.int(value),
+        Encoding::Binary { big: true, long: true, .. } => text.raw(&value.to_be_bytes()),
+        Encoding::Binary { big: false, long: true, .. } => text.raw(&value.to_le_bytes()),
+        Encoding::Binary { big: true, .. } => text.raw(&(value as i32).to_be_bytes()),
+        Encoding::Binary { .. } => text.raw(&(value as i32).to_le_bytes()),
+    };
+    let real = |text: &mut Text, value: f64| match encoding {
+        Encoding::Text => text.real(value),
+        Encoding::Binary { big: true, double: true, .. } => text.raw(&value.to_be_bytes()),
+        Encoding::Binary { double: true, .. } => text.raw(&value.to_le_bytes()),
+        Encoding::Binary { big: true, .. } => text.raw(&(value as f32).to_be_bytes()),
+        Encoding::Binary { .. } => text.raw(&(value as f32).to_le_bytes()),
+    };
+    let end_row = |text: &mut Text| if encoding == Encoding::Text { text.end_line() } else { text.hand_on() };
+    let counts = [mesh.vertices.len(), mesh.triangles.len(), 0, mesh.tets.len(), 0, 0, 0];
+    counts.iter().for_each(|&count| int(&mut text, count as i64));
+    end_row(&mut text)?;
+    for point in &mesh.vertices {
+        point.iter().for_each(|&x| real(&mut text, x));
+        end_row(&mut text)?;
+    }
+    for nodes in &mesh.triangles.nodes {
+        nodes.iter().for_each(|&v| int(&mut text, i64::from(v) + 1));
+        end_row(&mut text)?;
+    }
+    for &reference in &mesh.triangles.refs {
+        int(&mut text, reference.into());
+        end_row(&mut text)?;
+    }
+    for nodes in &mesh.tets.nodes {
+        nodes.iter().for_each(|&v| int(&mut text, i64::from(v) + 1));
+        end_row(&mut text)?;
+    }
+    text.finish()
+}
