@@ -262,6 +262,8 @@ solution_out = "out.sol"
 fields = ["T"]
 functionals = "forces.json"
 printed = { drag = 'CD = (\S+)' }
+[probes]
+middle = { field = "T", at = [0.5, 0.5, 0.5] }
 [metric]
 fields = ["T"]
 [schedule]
@@ -275,7 +277,8 @@ pictures = false
     place.write("solve.sh", script);
     place.run(&[]);
     let report = place.report();
-    assert_eq!(report["cycles"][1]["functionals"], serde_json::json!({ "drag": 0.25, "lift": 4.0 }));
+    // A vertex of the cube is in the middle.
+    assert_eq!(report["cycles"][0]["functionals"], serde_json::json!({ "drag": 0.25, "lift": 4.0, "middle": 2.75 }));
     let mesh = geo_adapt::mesh::io::read_mesh(&place.path("out/cycle-01/adapt/mesh.meshb")).unwrap().content;
     let field = geo_adapt::mesh::io::read_solution(&place.path("out/cycle-02/solve/solution.solb")).unwrap().content;
     for (p, value) in mesh.vertices.iter().zip(&field.fields[0].values) {
@@ -336,7 +339,7 @@ fn a_configuration_that_cannot_be_is_refused_before_anything() {
         assert!(!place.path("out").exists(), "{message}");
     }
     let place = Place::new(&ANALYTIC.replace("\"u\"", "\"v\""));
-    assert!(place.refusal(&[]).contains("the solver has no field 'v'; there are u"));
+    assert!(place.refusal(&["-q"]).contains("the solver has no field 'v'; there are u"));
 }
 
 #[test]

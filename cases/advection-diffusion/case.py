@@ -25,8 +25,8 @@ LAYER, RADIUS = 0.005, 0.5
 CONTENT = np.pi / 2 * RADIUS**2 / 98
 # (target, floor of today)
 BOUNDS = [
-    Bound("uniform error / error", "≥", 10, 10), Bound("content, relative error", "≤", 0.01, 0.01),
-    Bound("cells across the layer", "≥", 3, 3), Bound("unit_edges", "≥", 0.9, 0.9), Bound("seconds", "≤", 120, 360),
+    Bound("uniform error / error", "≥", 500, 300), Bound("content, relative error", "≤", 0.005, 0.005),
+    Bound("cells across the layer", "≥", 10, 8), Bound("unit_edges", "≥", 0.92, 0.90), Bound("seconds", "≤", 120, 360),
 ]
 
 

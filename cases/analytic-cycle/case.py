@@ -22,8 +22,8 @@ OUT = cycles.ROOT / "out" / "analytic-cycle"
 # (target, floor of today). Second order is 2/3 with the vertices.
 BOUNDS = [
     Bound("order", "≥", 0.65, 0.62), Bound("unit_edges", "≥", 0.95, 0.95),
-    Bound("ratio_least", "≥", 0.2, 0.15), Bound("ratio_mean", "≥", 0.8, 0.8),
-    Bound("error", "≤", 0.0035, 0.0038), Bound("seconds", "≤", 60, 180),
+    Bound("ratio_least", "≥", 0.4, 0.3), Bound("ratio_mean", "≥", 0.87, 0.85),
+    Bound("error", "≤", 0.005, 0.005), Bound("seconds", "≤", 30, 180),
 ]
 # Complexities that the order is fitted to.
 FITTED = 3

@@ -1,7 +1,9 @@
 //! The steps of a cycle, each by the commands that make it.
 use super::config::{Loaded, TransferMethod};
 use super::layout::Layout;
-use super::solver::{Before, FieldName, Job, Solver, kind_of};
+use super::picked::{as_words, picked};
+use super::probe;
+use super::solver::{Before, FieldName, Job, Solver};
 use super::step::{Done, Steps, text};
 use super::{Error, Options};
 use crate::geometry::{Names, called, names};
@@ -10,6 +12,9 @@ use crate::mesh::samples::cube;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+
+/// Size of a picture, pixels: it goes into the report.
+const PICTURE: &str = "800x600";
 
 /// What makes steps.
 pub struct Pipeline<'a> {
@@ -105,9 +110,10 @@ impl<'a> Pipeline<'a> {
             for call in self.solver().prepare(&job)? {
                 running.call(&call)?;
             }
-            let solved = self.solver().collect(&job)?;
+            let mut solved = self.solver().collect(&job)?;
             let counted = read_mesh(&mesh)?.content;
             solved.check(counted.vertices.len())?;
+            probe::add(&self.loaded.config.probes, &counted, &mut solved)?;
             let fields: Vec<FieldName> = solved.fields.iter().map(FieldName::of).collect();
             let called: Vec<String> = fields.iter().map(|field| field.name.clone()).collect();
             let content =
@@ -122,7 +128,7 @@ impl<'a> Pipeline<'a> {
 
     /// Which values of the solution the metric is made from, as `field pick --take` has them.
     fn sensors(&self, fields: &[FieldName]) -> Result<String, String> {
-        picked(&self.loaded.config.metric.fields, fields)
+        Ok(as_words(&picked(&self.loaded.config.metric.fields, fields)?))
     }
 
     /// Pictures of the mesh of a cycle: surface and cut.
@@ -144,7 +150,7 @@ impl<'a> Pipeline<'a> {
             ])?;
             let mut common =
                 vec!["view".into(), text(&mesh), "--field".into(), text(&field), "--color".into(), "field".into()];
-            common.push("-q".into());
+            common.extend(["--size".into(), PICTURE.into(), "-q".into()]);
             option(&mut common, "--zoom", output.zoom.as_ref());
             option(&mut common, "--view", output.view.map(|[a, e]| format!("{a},{e}")).as_ref());
             option(&mut common, "--at", output.at.map(|[x, y, z]| format!("{x},{y},{z}")).as_ref());
@@ -249,65 +255,4 @@ fn middle(mesh: &Path) -> Result<String, Error> {
     let ends =
         vertices.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[0]), high.max(p[0])]);
     Ok(format!("x={}", (ends[0] + ends[1]) / 2.0))
-}
-
-/// The values of a solution that are asked for, as `field pick --take` has them: `U:x` its number, `U:norm` norm:2-4.
-fn picked(wanted: &[String], fields: &[FieldName]) -> Result<String, String> {
-    let mut first = BTreeMap::new();
-    let mut next = 1;
-    for field in fields {
-        first.entry(field.name.as_str()).or_insert((next, field.values));
-        next += field.values;
-    }
-    let known = || fields.iter().map(|field| field.name.clone()).collect::<Vec<_>>().join(", ");
-    if wanted.is_empty() {
-        let scalars =
-            fields.iter().filter(|field| field.values == 1).map(|field| first[field.name.as_str()].0.to_string());
-        let scalars: Vec<String> = scalars.collect();
-        let remedy = "name some in [metric] fields, of a vector U a component \"U:x\" or its length \"U:norm\"";
-        return if scalars.is_empty() {
-            Err(format!("no field is a scalar ({}): {remedy}", known()))
-        } else {
-            Ok(scalars.join(","))
-        };
-    }
-    let one = |word: &String| {
-        let (name, part) = word.rsplit_once(':').map_or((word.as_str(), None), |(name, part)| (name, Some(part)));
-        let Some(&(from, values)) = first.get(name) else {
-            return Err(format!("[metric] fields: the solver has no field '{name}'; there are {}", known()));
-        };
-        let number = match part {
-            None if values == 1 => return Ok(from.to_string()),
-            Some("norm") => return Ok(format!("norm:{from}-{}", from + values - 1)),
-            Some("x") if values == 3 => Some(1),
-            Some("y") if values == 3 => Some(2),
-            Some("z") if values == 3 => Some(3),
-            Some(part) => part.parse().ok().filter(|number| (1..=values).contains(number)),
-            None => None,
-        };
-        let kind = kind_of(values);
-        number.map(|number: usize| (from + number - 1).to_string()).ok_or_else(|| {
-            format!("[metric] fields: '{word}': {name} has {values} values a vertex ({kind:?}); give \"{name}:norm\", or one of them, \"{name}:1\" to \"{name}:{values}\"")
-        })
-    };
-    let all: Result<Vec<String>, String> = wanted.iter().map(one).collect();
-    Ok(all?.join(","))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fields_are_picked_by_name() {
-        let field = |name: &str, values| FieldName { name: name.into(), values };
-        let fields = [field("p", 1), field("U", 3), field("T", 1)];
-        let take = |words: &[&str]| picked(&words.iter().map(|&word| word.into()).collect::<Vec<_>>(), &fields);
-        assert_eq!(take(&[]).unwrap(), "1,5");
-        assert_eq!(take(&["T", "U:norm", "U:z", "U:1"]).unwrap(), "5,norm:2-4,4,2");
-        assert!(take(&["q"]).unwrap_err().contains("'q'; there are p, U, T"));
-        assert!(take(&["U"]).unwrap_err().contains("U:norm"));
-        assert!(take(&["U:4"]).unwrap_err().contains("U:3"));
-        assert!(picked(&[], &fields[1..2]).unwrap_err().contains("no field is a scalar"));
-    }
 }

@@ -4,10 +4,11 @@
 mod check;
 mod parts;
 
-pub use parts::{Adapt, Converged, Growth, Mesh, Metric, NormWord, Output, Schedule, Transfer, TransferMethod};
+pub use parts::{Adapt, Converged, Growth, Mesh, Metric, NormWord, Output, Probe, Schedule, Transfer, TransferMethod};
 
 use super::solver::Choice;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What a configuration file says.
@@ -20,6 +21,9 @@ pub struct Config {
     pub mesh: Mesh,
     /// Who solves: exactly one of its tables.
     pub solver: Choice,
+    /// Values of the solution at points, as further functionals, by their names.
+    #[serde(default)]
+    pub probes: BTreeMap<String, Probe>,
     /// What sizes are made from.
     pub metric: Metric,
     /// How fine, and until when.

@@ -24,6 +24,16 @@ pub struct Mesh {
     pub options: Vec<String>,
 }
 
+/// An entry of `[probes]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Probe {
+    /// A field, or of a vector `U` one component `U:x` or its length `U:norm`.
+    pub field: String,
+    /// Where, model units.
+    pub at: [f64; 3],
+}
+
 /// `[metric]`: the fields whose interpolation error is made small, and bounds of the sizes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -81,14 +81,16 @@ pub fn histogram(distribution: &Value, title: &str, lengths: bool) -> String {
             (low, high) => format!("{} to {}", short(low.unwrap_or(0.0)), short(high.unwrap_or(0.0))),
         };
         let share = if total > 0.0 { 100.0 * count / total } else { 0.0 };
-        let _ = write!(
-            svg,
-            "<rect class=\"{}\" x=\"{:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"><title>{range}: {count} ({share:.2} %)</title></rect>",
-            if unit { "unit" } else { "bar" },
-            left + 1.0,
-            wide - 2.0,
-            bottom - top
-        );
+        if *count > 0.0 {
+            let _ = write!(
+                svg,
+                "<rect class=\"{}\" x=\"{:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"><title>{range}: {count} ({share:.2} %)</title></rect>",
+                if unit { "unit" } else { "bar" },
+                left + 1.0,
+                wide - 2.0,
+                bottom - top
+            );
+        }
         if share >= 0.05 {
             let text = if share >= 9.95 { format!("{share:.0}") } else { format!("{share:.1}") };
             let _ = write!(

@@ -128,9 +128,10 @@ fn meshes(layout: &Layout, history: &History) -> String {
                 }
             }
         }
+        html += "<div class=\"histograms\">";
         html += &bars::histogram(&statistics["edge_lengths"], "edge lengths in the metric", true);
         html += &bars::histogram(&statistics["mean_ratios"], "mean ratios in the metric", false);
-        html += "</div></article>";
+        html += "</div></div></article>";
     }
     html
 }

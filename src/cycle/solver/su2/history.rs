@@ -13,7 +13,7 @@ pub fn last(path: &Path, wanted: &[String]) -> Result<BTreeMap<String, f64>, Str
     let clean = |word: &str| word.trim().trim_matches('"').trim().to_owned();
     let head: Vec<String> = lines.next().unwrap_or_default().split(',').map(clean).collect();
     let row: Vec<String> =
-        lines.last().ok_or_else(|| named(&"no row: SU2 made no iteration"))?.split(',').map(clean).collect();
+        lines.next_back().ok_or_else(|| named(&"no row: SU2 made no iteration"))?.split(',').map(clean).collect();
     let find = |name: &String| {
         let at = head.iter().position(|column| column == name).ok_or_else(|| {
             named(&format!(
