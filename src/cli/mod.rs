@@ -15,6 +15,7 @@ mod load;
 mod metric;
 mod model;
 mod names;
+mod openfoam;
 mod table;
 mod transfer;
 mod tune;
@@ -50,6 +51,9 @@ enum Command {
     Metric(metric::Arguments),
     /// List the entities of a CAD model
     Model(model::Arguments),
+    /// Run a case of OpenFOAM that `cycle` has prepared
+    #[command(hide = true)]
+    Openfoam(openfoam::Arguments),
     /// Bring fields from one mesh to another
     Transfer(transfer::Arguments),
     /// Measure which back-end, strategy and grain are the fastest on a case
@@ -81,6 +85,7 @@ pub fn main() -> ExitCode {
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
+        Command::Openfoam(arguments) => openfoam::run(&arguments),
         Command::Transfer(arguments) => transfer::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::View(arguments) => view::run(&arguments),

@@ -1,10 +1,11 @@
 //! Starting configurations, with comments.
 
 /// Kinds of solvers with a configuration to begin with.
-pub const ALL: [(&str, &str); 3] = [
+pub const ALL: [(&str, &str); 4] = [
     ("analytic", include_str!("examples/analytic.toml")),
     ("command", include_str!("examples/command.toml")),
     ("su2", include_str!("examples/su2.toml")),
+    ("openfoam", include_str!("examples/openfoam.toml")),
 ];
 
 /// The configuration of a kind.

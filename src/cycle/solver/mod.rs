@@ -2,6 +2,7 @@
 pub mod analytic;
 pub mod command;
 mod handover;
+pub mod openfoam;
 pub mod su2;
 
 use crate::formats::{Dataset, NamedField};
@@ -22,6 +23,8 @@ pub enum Choice {
     Command(command::Config),
     /// SU2.
     Su2(su2::Config),
+    /// OpenFOAM's rhoCentralFoam.
+    Openfoam(openfoam::Config),
 }
 
 impl Choice {
@@ -31,6 +34,7 @@ impl Choice {
             Self::Analytic(solver) => solver,
             Self::Command(solver) => solver,
             Self::Su2(solver) => solver,
+            Self::Openfoam(solver) => solver,
         }
     }
 }
