@@ -13,7 +13,7 @@
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use geo_adapt::adapt::bench_support::{Domain, Snapshot, Sweep, Workbench, domain};
-use geo_adapt::adapt::{Adapted, Counts, Kind, Observer, Options, Refusal, adapt};
+use geo_adapt::adapt::{Adapted, Counts, Options, Refusal, Silent, adapt};
 use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::samples::cube;
 use geo_adapt::mesh::vector::{Vec3, norm};
@@ -34,17 +34,6 @@ const SMALL: f64 = -1.0;
 /// Sweeps that bring the coarse cube near to its metric, with long and short edges left.
 const ROUND: [Sweep; 5] = [Sweep::Split, Sweep::Reconnect, Sweep::Collapse, Sweep::Reconnect, Sweep::Smooth];
 const ROUNDS: usize = 3;
-
-struct Silent;
-
-impl Observer for Silent {
-    fn begin(&self, _: Kind, _: usize, _: usize) {}
-    fn advance(&self, _: usize) {}
-    fn end(&self, _: &Counts) {}
-    fn stop(&self) -> bool {
-        false
-    }
-}
 
 /// The field, evaluated.
 fn evaluated(log_scale: f64) -> Source {

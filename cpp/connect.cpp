@@ -12,10 +12,14 @@
 #include <TopTools_MapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
 
+#include <cmath>
 #include <vector>
 
 namespace geo_adapt {
 namespace {
+
+/// Of the diagonal.
+constexpr double TOUCHING = 1e-7;
 
 /// Whether the boxes of two solids meet.
 bool may_touch(const TopTools_IndexedMapOfShape& solids)
@@ -42,12 +46,16 @@ TopoDS_Shape connected(const TopoDS_Shape& shape, Labels& labels)
     return shape;
   }
   TopTools_ListOfShape arguments;
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, Standard_False);
   for (int i = 1; i <= solids.Extent(); ++i) {
     arguments.Append(solids(i));
   }
   BRepAlgoAPI_BuilderAlgo fuse;
   fuse.SetArguments(arguments);
   fuse.SetNonDestructive(Standard_True);
+  // What is nearer than this touches, as for the sizes of gaps (src/sizing/feature.rs): a mesher would join it by chance.
+  fuse.SetFuzzyValue(TOUCHING * std::sqrt(box.SquareExtent()));
   fuse.SetRunParallel(Standard_False); // the same shape on every run
   fuse.Build();
   if (!fuse.IsDone() || fuse.HasErrors()) {

@@ -1,5 +1,6 @@
 // Reading of STEP, IGES and BREP files.
 #include "geo-adapt/cpp/damage.hpp"
+#include "geo-adapt/cpp/names.hpp"
 #include "geo-adapt/cpp/occt.hpp"
 
 #include <BRepBuilderAPI_MakeSolid.hxx>
@@ -104,11 +105,38 @@ TopoDS_Shape read_step(const std::string& path, Labels& labels)
   return reader.OneShape();
 }
 
-/// IGES knows faces rather than solids: those without a solid are sewn, and closed shells made solid.
-TopoDS_Shape sewn(const TopoDS_Shape& shape)
+/// The closed shells of a shape as solids, beside all else of it; null where there is none.
+TopoDS_Shape filled(const TopoDS_Shape& shape)
+{
+  TopoDS_Compound all;
+  BRep_Builder builder;
+  builder.MakeCompound(all);
+  bool is_closed = false;
+  for (TopExp_Explorer it(shape, TopAbs_SHELL); it.More(); it.Next()) {
+    const TopoDS_Shell shell = TopoDS::Shell(it.Current());
+    TopoDS_Solid solid;
+    if (BRep_Tool::IsClosed(shell)) {
+      solid = BRepBuilderAPI_MakeSolid(shell).Solid();
+      BRepLib::OrientClosedSolid(solid);
+      is_closed = true;
+    }
+    builder.Add(all, solid.IsNull() ? TopoDS_Shape(shell) : TopoDS_Shape(solid));
+  }
+  for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) {
+    builder.Add(all, it.Current());
+  }
+  return is_closed ? TopoDS_Shape(all) : TopoDS_Shape();
+}
+
+/// IGES knows faces rather than solids, and STEP and BREP files may hold a surface model: closed shells are made solid; where there is
+/// none the faces are sewn. What stays open is left as it is in STEP and BREP files, sewn in IGES files.
+TopoDS_Shape closed(const TopoDS_Shape& shape, Labels& labels, bool is_iges)
 {
   if (TopExp_Explorer(shape, TopAbs_SOLID).More()) {
     return shape;
+  }
+  if (const TopoDS_Shape solids = filled(shape); !solids.IsNull()) {
+    return solids;
   }
   double tolerance = 1e-7;
   for (TopExp_Explorer it(shape, TopAbs_EDGE); it.More(); it.Next()) {
@@ -121,22 +149,14 @@ TopoDS_Shape sewn(const TopoDS_Shape& shape)
   if (joined.IsNull()) {
     return shape;
   }
-  TopoDS_Compound all;
-  BRep_Builder builder;
-  builder.MakeCompound(all);
-  for (TopExp_Explorer it(joined, TopAbs_SHELL); it.More(); it.Next()) {
-    const TopoDS_Shell shell = TopoDS::Shell(it.Current());
-    TopoDS_Solid solid;
-    if (BRep_Tool::IsClosed(shell)) {
-      solid = BRepBuilderAPI_MakeSolid(shell).Solid();
-      BRepLib::OrientClosedSolid(solid);
-    }
-    builder.Add(all, solid.IsNull() ? TopoDS_Shape(shell) : TopoDS_Shape(solid));
+  const TopoDS_Shape solids = filled(joined);
+  if (solids.IsNull() && !is_iges) {
+    return shape;
   }
-  for (TopExp_Explorer it(joined, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) {
-    builder.Add(all, it.Current());
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    hand_on(labels, it.Current(), sewing.ModifiedSubShape(it.Current()));
   }
-  return all;
+  return solids.IsNull() ? joined : solids;
 }
 
 TopoDS_Shape read_iges(const std::string& path)
@@ -153,8 +173,7 @@ TopoDS_Shape read_iges(const std::string& path)
     model->SetGlobalSection(header);
   }
   reader.TransferRoots();
-  const TopoDS_Shape shape = reader.OneShape();
-  return shape.IsNull() ? shape : sewn(shape);
+  return reader.OneShape();
 }
 
 TopoDS_Shape read_brep(const std::string& path)
@@ -195,7 +214,7 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
     throw std::runtime_error("the model has no faces; export the solid's surfaces, not only curves or a mesh");
   }
   BRepLib::BuildCurves3d(shape);
-  return std::make_shared<Model>(connected(shape, labels), labels);
+  return std::make_shared<Model>(connected(closed(shape, labels, format == 1), labels), labels);
 }
 
 } // namespace geo_adapt

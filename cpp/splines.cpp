@@ -81,29 +81,44 @@ void set_conic(Spline& out, Kind kind, const gp_Ax2& axes, double x, double y, c
             across.Transformed(move).XYZ());
 }
 
+/// A B-spline of the plane or of space; `place` gives the coordinates of a pole.
+template <typename Curve, typename Place>
+void add_spline(Spline& out, const Curve& curve, const Place& place)
+{
+  out.kind = SPLINE;
+  out.degrees[0] = static_cast<std::uint32_t>(curve->Degree());
+  out.periods[0] = curve->IsPeriodic() ? curve->Period() : 0.0;
+  out.rational = curve->IsRational();
+  add_knots(out, curve->KnotSequence());
+  const int count = curve->KnotSequence().Length() - curve->Degree() - 1;
+  for (int i = 0; i < count; ++i) {
+    const int pole = 1 + i % curve->NbPoles();
+    add_pole(out, place(curve->Pole(pole)), curve->Weight(pole));
+  }
+}
+
+/// A Bezier curve, as a B-spline.
+template <typename Curve, typename Place>
+void add_bezier(Spline& out, const Curve& curve, const Place& place)
+{
+  out.kind = SPLINE;
+  out.degrees[0] = static_cast<std::uint32_t>(curve->Degree());
+  out.rational = curve->IsRational();
+  add_bezier_knots(out, curve->Degree());
+  for (int i = 1; i <= curve->NbPoles(); ++i) {
+    add_pole(out, place(curve->Pole(i)), curve->Weight(i));
+  }
+}
+
 void set_curve(Spline& out, const Handle(Geom_Curve)& curve, const gp_Trsf& move)
 {
+  const auto moved = [&](const gp_Pnt& point) { return point.Transformed(move).XYZ(); };
   if (const auto trimmed = Handle(Geom_TrimmedCurve)::DownCast(curve); !trimmed.IsNull()) {
     set_curve(out, trimmed->BasisCurve(), move);
   } else if (const auto spline = Handle(Geom_BSplineCurve)::DownCast(curve); !spline.IsNull()) {
-    out.kind = SPLINE;
-    out.degrees[0] = static_cast<std::uint32_t>(spline->Degree());
-    out.periods[0] = spline->IsPeriodic() ? spline->Period() : 0.0;
-    out.rational = spline->IsRational();
-    add_knots(out, spline->KnotSequence());
-    const int count = spline->KnotSequence().Length() - spline->Degree() - 1;
-    for (int i = 0; i < count; ++i) {
-      const int pole = 1 + i % spline->NbPoles();
-      add_pole(out, spline->Pole(pole).Transformed(move).XYZ(), spline->Weight(pole));
-    }
+    add_spline(out, spline, moved);
   } else if (const auto bezier = Handle(Geom_BezierCurve)::DownCast(curve); !bezier.IsNull()) {
-    out.kind = SPLINE;
-    out.degrees[0] = static_cast<std::uint32_t>(bezier->Degree());
-    out.rational = bezier->IsRational();
-    add_bezier_knots(out, bezier->Degree());
-    for (int i = 1; i <= bezier->NbPoles(); ++i) {
-      add_pole(out, bezier->Pole(i).Transformed(move).XYZ(), bezier->Weight(i));
-    }
+    add_bezier(out, bezier, moved);
   } else if (const auto line = Handle(Geom_Line)::DownCast(curve); !line.IsNull()) {
     const gp_XYZ along = gp_Vec(line->Lin().Direction()).Transformed(move).XYZ();
     set_conic(out, LINE, line->Lin().Location().Transformed(move).XYZ(), along, along);
@@ -126,24 +141,9 @@ void set_pcurve(Spline& out, const Handle(Geom2d_Curve)& curve)
   if (const auto trimmed = Handle(Geom2d_TrimmedCurve)::DownCast(curve); !trimmed.IsNull()) {
     set_pcurve(out, trimmed->BasisCurve());
   } else if (const auto spline = Handle(Geom2d_BSplineCurve)::DownCast(curve); !spline.IsNull()) {
-    out.kind = SPLINE;
-    out.degrees[0] = static_cast<std::uint32_t>(spline->Degree());
-    out.periods[0] = spline->IsPeriodic() ? spline->Period() : 0.0;
-    out.rational = spline->IsRational();
-    add_knots(out, spline->KnotSequence());
-    const int count = spline->KnotSequence().Length() - spline->Degree() - 1;
-    for (int i = 0; i < count; ++i) {
-      const int pole = 1 + i % spline->NbPoles();
-      add_pole(out, flat(spline->Pole(pole)), spline->Weight(pole));
-    }
+    add_spline(out, spline, flat);
   } else if (const auto bezier = Handle(Geom2d_BezierCurve)::DownCast(curve); !bezier.IsNull()) {
-    out.kind = SPLINE;
-    out.degrees[0] = static_cast<std::uint32_t>(bezier->Degree());
-    out.rational = bezier->IsRational();
-    add_bezier_knots(out, bezier->Degree());
-    for (int i = 1; i <= bezier->NbPoles(); ++i) {
-      add_pole(out, flat(bezier->Pole(i)), bezier->Weight(i));
-    }
+    add_bezier(out, bezier, flat);
   } else if (const auto line = Handle(Geom2d_Line)::DownCast(curve); !line.IsNull()) {
     const gp_XYZ along = flat(line->Direction().XY());
     set_conic(out, LINE, flat(line->Location()), along, along);

@@ -59,4 +59,4 @@ pub use outcome::{Counts, Refusal};
 pub use required::Freeze;
 pub use run::{Adapted, Options, adapt};
 pub use schedule::{Grains, Scheduler};
-pub use work::{KINDS, Kind, Observer, Work};
+pub use work::{KINDS, Kind, Observer, Silent, Work};

@@ -55,11 +55,18 @@ pub struct Work {
 /// Is told what happens; called from several threads.
 pub trait Observer: Sync {
     /// A sweep begins.
-    fn begin(&self, kind: Kind, pass: usize, items: usize);
+    fn begin(&self, _kind: Kind, _pass: usize, _items: usize) {}
     /// So many more items are done.
-    fn advance(&self, items: usize);
+    fn advance(&self, _items: usize) {}
     /// The sweep is over.
-    fn end(&self, counts: &Counts);
+    fn end(&self, _counts: &Counts) {}
     /// Whether to stop after this sweep.
-    fn stop(&self) -> bool;
+    fn stop(&self) -> bool {
+        false
+    }
 }
+
+/// Nobody is told, nobody stops it.
+pub struct Silent;
+
+impl Observer for Silent {}

@@ -7,13 +7,17 @@ mod adapt;
 mod bootstrap;
 mod classify;
 mod convert;
+mod cycle;
+mod field;
 mod image_mesh;
 mod inspect;
 mod load;
 mod metric;
 mod model;
 mod names;
+mod openfoam;
 mod table;
+mod transfer;
 mod tune;
 mod view;
 
@@ -35,6 +39,10 @@ enum Command {
     Classify(classify::Arguments),
     /// Bring a mesh with its names and fields into the format of another program
     Convert(convert::Arguments),
+    /// Adapt and solve in turn, until it is fine enough
+    Cycle(cycle::Arguments),
+    /// Make and pick fields at vertices
+    Field(field::Arguments),
     /// Mesh the regions of a 3D image
     ImageMesh(image_mesh::Arguments),
     /// Check a mesh and measure it in a metric
@@ -43,6 +51,11 @@ enum Command {
     Metric(metric::Arguments),
     /// List the entities of a CAD model
     Model(model::Arguments),
+    /// Run a case of OpenFOAM that `cycle` has prepared
+    #[command(hide = true)]
+    Openfoam(openfoam::Arguments),
+    /// Bring fields from one mesh to another
+    Transfer(transfer::Arguments),
     /// Measure which back-end, strategy and grain are the fastest on a case
     Tune(tune::Arguments),
     /// Show a mesh: a page for the browser, or a picture
@@ -66,10 +79,14 @@ pub fn main() -> ExitCode {
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
+        Command::Cycle(arguments) => cycle::run(&arguments),
+        Command::Field(arguments) => field::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
+        Command::Openfoam(arguments) => openfoam::run(&arguments),
+        Command::Transfer(arguments) => transfer::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::View(arguments) => view::run(&arguments),
     };

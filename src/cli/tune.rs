@@ -2,7 +2,7 @@
 use super::Outcome;
 use super::adapt::input::{Input, InputArguments};
 use super::metric::common::check_output;
-use crate::adapt::{self, Counts, Grains, Kind, Observer, Options, Scheduler};
+use crate::adapt::{self, Grains, Kind, Options, Scheduler, Silent};
 use crate::mesh::io;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team};
 use clap::ValueEnum;
@@ -70,18 +70,6 @@ impl Timing {
 
     fn name(&self) -> String {
         format!("{:<9}{}", self.backend.name(), named(self.strategy))
-    }
-}
-
-/// Nobody is told.
-struct Silent;
-
-impl Observer for Silent {
-    fn begin(&self, _kind: Kind, _pass: usize, _items: usize) {}
-    fn advance(&self, _items: usize) {}
-    fn end(&self, _counts: &Counts) {}
-    fn stop(&self) -> bool {
-        false
     }
 }
 

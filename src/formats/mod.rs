@@ -8,6 +8,7 @@ mod check;
 mod columns;
 mod dataset;
 mod error;
+pub mod foam;
 mod format;
 mod lacks;
 mod libmeshb;

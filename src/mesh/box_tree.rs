@@ -8,7 +8,7 @@ const LEAF: usize = 4;
 const DEPTH: usize = 40;
 
 /// Least and greatest corner.
-type Bounds = [Vec3; 2];
+pub type Bounds = [Vec3; 2];
 
 /// A balanced binary tree over boxes. The items of a node are a range of `items`; node i has the children 2i+1 and 2i+2 and
 /// halves its range, so no links are stored.
@@ -58,6 +58,30 @@ impl BoxTree {
             top += 2;
         }
     }
+
+    /// Visits the items whose boxes touch a box, in the order of the tree.
+    pub fn overlapping(&self, box_: &Bounds, mut visit: impl FnMut(u32)) {
+        let touches = |other: &Bounds| (0..3).all(|i| box_[0][i] <= other[1][i] && other[0][i] <= box_[1][i]);
+        // Node and range of items.
+        let mut stack = [(0usize, 0usize, 0usize); DEPTH + 1];
+        stack[0] = (0, 0, self.items.len());
+        let mut top = 1;
+        while top > 0 {
+            top -= 1;
+            let (node, begin, end) = stack[top];
+            if !touches(&self.bounds[node]) {
+                continue;
+            }
+            if 2 * node + 2 >= self.bounds.len() {
+                self.items[begin..end].iter().for_each(|&item| visit(item));
+                continue;
+            }
+            let middle = begin + (end - begin).div_ceil(2);
+            stack[top] = (2 * node + 2, middle, end);
+            stack[top + 1] = (2 * node + 1, begin, middle);
+            top += 2;
+        }
+    }
 }
 
 /// Fills the bounds of a node and orders its items, halved along the longest side of the box of their middles.
@@ -93,4 +117,28 @@ fn build(node: usize, items: &mut [u32], boxes: &[Bounds], bounds: &mut [Bounds]
 #[inline(always)]
 fn square_distance(p: Vec3, [low, high]: &Bounds) -> f64 {
     (0..3).map(|i| (low[i] - p[i]).max(p[i] - high[i]).max(0.0).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_touches_a_box_is_found() {
+        let low = |item: u32| [0, 1, 2].map(|i| f64::from(item.wrapping_mul([7919, 104_729, 1_299_709][i]) % 1000));
+        let bounds = |item: u32| [low(item), low(item).map(|x| x + 40.0)];
+        let tree = BoxTree::new(777, bounds);
+        for (from, side) in [(100.0, 300.0), (960.0, 10.0), (-5.0, 2.0), (0.0, 2000.0)] {
+            let asked = [[from; 3], [from + side; 3]];
+            let mut found = vec![0; 777];
+            tree.overlapping(&asked, |item| found[item as usize] += 1);
+            for item in 0..777 {
+                let [low, high] = bounds(item);
+                let touches = (0..3).all(|i| low[i] <= asked[1][i] && asked[0][i] <= high[i]);
+                // A leaf whose box touches shows all its items.
+                assert!(if touches { found[item as usize] == 1 } else { found[item as usize] <= 1 });
+            }
+            assert!(side > 5.0 || found.iter().all(|&count| count == 0));
+        }
+    }
 }

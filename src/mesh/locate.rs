@@ -1,7 +1,7 @@
 //! Point location in a tetrahedral mesh: a walk from a hint, and trees of boxes for where the walk cannot go: a small one of the faces on
 //! the boundary for points outside, and one of all tetrahedra.
 use super::adjacency::{FACES, MatchedFaces, NONE};
-use super::box_tree::BoxTree;
+use super::box_tree::{Bounds, BoxTree};
 use super::starts::Starts;
 use super::vector::{Vec3, add, cross, distance, dot, norm, scale, sub, volume6};
 use super::{Elements, TetMesh};
@@ -109,9 +109,15 @@ impl Locator {
         found
     }
 
+    /// Visits tetrahedra with a face on the boundary, at least those whose face's box touches this box; one with two such faces twice.
+    pub fn at_boundary(&self, within: &Bounds, mut visit: impl FnMut(u32)) {
+        let (sides, tree) = &**self.boundary.get_or_init(|| Box::new(self.boundary_tree()));
+        tree.overlapping(within, |item| visit(sides[item as usize] / 4));
+    }
+
     /// Corners of a tetrahedron.
     #[inline]
-    fn corners(&self, tet: u32) -> [Vec3; 4] {
+    pub fn corners(&self, tet: u32) -> [Vec3; 4] {
         self.mesh.tets.nodes[tet as usize].map(|v| self.mesh.vertices[v as usize])
     }
 

@@ -147,6 +147,7 @@ impl<'a> Near<'a> {
         // The nearest first: it often leaves nothing to do for those behind it.
         others.sort_unstable_by(|a, b| a.length.total_cmp(&b.length).then(a.to.cmp(&b.to)));
         let mut nearest: Option<Gap> = None;
+        let mut thinnest = f64::INFINITY;
         for &Other { length, to, there, normal } in others.iter() {
             let way = scale(sub(there, at.point), 1.0 / length);
             let across = across(way, at, local);
@@ -159,10 +160,11 @@ impl<'a> Near<'a> {
             let in_face = normal.is_none() && self.touch.share_face(at.entity, edge_of(to));
             if in_face || self.sight.is_clear(at.point, there, |triangle| self.is_own(at, to, triangle)) {
                 metric = cut(metric, g, size);
+                thinnest = thinnest.min(size);
                 nearest = nearest.or(Some(Gap { distance: length, at: at.point, from: at.entity, to }));
             }
         }
-        (metric, nearest)
+        (unbent(metric, thinnest, local.bend), nearest)
     }
 
     /// The closest point of another entity, and the normal there of a face. From inside a face edges are not asked: the faces beside
@@ -208,6 +210,14 @@ impl<'a> Near<'a> {
         };
         beside || here
     }
+}
+
+/// No size such that what bends leaves a cell as thin as `across`: the middle of an edge of this size is that far from its arc. Cells
+/// along a sliver of a face on a curved wall would stand out of it else, and no mesh follows them.
+fn unbent(metric: Sym3, across: f64, bend: f64) -> Sym3 {
+    let along = (8.0 * across / bend).sqrt();
+    let reaches = along.is_finite() && metric.eigen().values[0] * along * along < 1.0;
+    if reaches { metric.intersect(&Sym3::IDENTITY.times(along.max(across).powi(-2))) } else { metric }
 }
 
 /// Whether a gap to a point of this box may go across what lies at the place: if not for any piece of an entity, its closest point

@@ -17,6 +17,7 @@ mod sheet;
 mod surface;
 mod values;
 
+pub(crate) use pack::base64;
 pub use page::write_page;
 pub use scene::{Given, Quality, Scene};
 pub use values::ScalarField;

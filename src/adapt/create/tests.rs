@@ -4,9 +4,9 @@ use super::super::build::{self, Filled};
 use super::super::check::check;
 use super::super::extend::active_vertices;
 use super::super::schedule::{self, Create, Crew, Extend, Grains, Scheduler};
-use super::super::work::{Kind, Observer};
+use super::super::work::{Kind, Silent};
 use super::super::worker::State;
-use super::super::{Counts, Options, adapt, extract};
+use super::super::{Options, adapt, extract};
 use super::*;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
@@ -15,17 +15,6 @@ use crate::mesh::vector::volume6;
 use crate::mesh::{TetMesh, samples, validity};
 use crate::metric::{Background, Source};
 use crate::tasks::{Plan, Pool, Team};
-
-struct Silent;
-
-impl Observer for Silent {
-    fn begin(&self, _: Kind, _: usize, _: usize) {}
-    fn advance(&self, _: usize) {}
-    fn end(&self, _: &Counts) {}
-    fn stop(&self) -> bool {
-        false
-    }
-}
 
 /// Image of p under x ↦ Ax, A the upper triangle of which AᵀA is [`SKEW`].
 fn skewed([x, y, z]: Vec3) -> Vec3 {

@@ -50,22 +50,10 @@ impl Pipeline<'_, '_> {
 mod tests {
     use super::*;
     use crate::adapt::criteria::Criterion;
-    use crate::adapt::outcome::Counts;
     use crate::adapt::schedule::{Crew, Grains, Scheduler};
     use crate::adapt::tests::bench::{Bench, Shape, sample};
-    use crate::adapt::work::{Kind, Observer};
+    use crate::adapt::work::Silent;
     use crate::tasks::{Plan, Pool, Team};
-
-    struct Silent;
-
-    impl Observer for Silent {
-        fn begin(&self, _: Kind, _: usize, _: usize) {}
-        fn advance(&self, _: usize) {}
-        fn end(&self, _: &Counts) {}
-        fn stop(&self) -> bool {
-            false
-        }
-    }
 
     /// Whether a cube of 22 000 vertices may grow from a mesh of so many, for a metric of this size.
     fn may_grow(size: f64, input: usize) -> bool {

@@ -1,44 +1,26 @@
 //! The files of a run: checked before it, written after it.
 use super::Arguments;
 use super::report::{Asked, Report};
+use crate::cli::metric::common::{check_output, check_place};
 use crate::geometry::names;
 use crate::mesh::io;
 use crate::metric::Field;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Refuses before the work what would fail after it: outputs that cannot be written, or that are inputs.
 pub fn check(arguments: &Arguments) -> Result<(), String> {
     let output = &arguments.output;
-    let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    if !["mesh", "meshb"].contains(&extension) {
-        return Err(format!("{}: the output must end in .mesh or .meshb", output.display()));
-    }
     let metric = arguments.asked(0).metric_path();
-    let outputs = [Some(output), Some(&metric), arguments.report.as_ref()];
     if let Some(report) = arguments.report.as_ref().filter(|&report| report == output || *report == metric) {
         return Err(format!("{}: is also the mesh's or its metric's file; give another --report", report.display()));
     }
     let given = &arguments.input;
     let inputs = [Some(&given.mesh), given.cad.as_ref(), given.field.metric.as_ref()];
-    let inputs = inputs.into_iter().flatten().chain(&given.field.field);
-    for written in outputs.into_iter().flatten() {
-        let folder = written.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        if !folder.is_dir() {
-            return Err(format!("{}: there is no folder {}; make it first", written.display(), folder.display()));
-        }
-        if written.is_dir() {
-            return Err(format!("{}: this is a folder; name a file", written.display()));
-        }
-        for read in inputs.clone() {
-            if let (Ok(a), Ok(b)) = (written.canonicalize(), read.canonicalize())
-                && a == b
-            {
-                return Err(format!("{}: is an input and would be overwritten; give another -o", written.display()));
-            }
-        }
-    }
-    Ok(())
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().chain(&given.field.field).map(PathBuf::as_path).collect();
+    check_output(output, &["mesh", "meshb"], &inputs)?;
+    check_output(&metric, &["solb"], &inputs)?;
+    arguments.report.as_ref().map_or(Ok(()), |report| check_place(report, &inputs))
 }
 
 /// Writes mesh, metric and, where it is asked for, the report; `times` since the start: when the work began, when it ended, now.

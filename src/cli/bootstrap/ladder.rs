@@ -9,7 +9,7 @@ use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::validity;
 use crate::tasks::Team;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// What the mesh should be like.
@@ -52,39 +52,80 @@ enum Miss {
     Failed(String),
 }
 
-/// Tries the rungs in turn, the first good mesh is taken.
-///
-/// # Errors
-/// When none is good, with what the last ones said; when there is no mesher, with what to install.
-pub fn climb(team: Team<'_>, model: &Model, wish: &Wish, choice: Choice, log: &Path) -> Result<Meshed, String> {
-    let place = Workplace::new().map_err(|error| format!("no folder for the mesher's files: {error}"))?;
-    process::begin(log).map_err(|error| error.to_string())?;
-    let brep = place.file("model.brep");
-    model.write_brep(&brep).map_err(|error| error.to_string())?;
-    let (mut missing, mut failed): (Vec<String>, Vec<(Rung, String)>) = (Vec::new(), Vec::new());
-    let (mut gone, mut slow) = (Vec::new(), Vec::new());
-    for rung in Rung::of(choice) {
-        if gone.contains(&rung.program()) || !rung.is_light() && slow.contains(&rung.program()) {
-            continue;
-        }
-        match attempt(team, model, wish, rung, &place, &brep, log) {
-            Ok((mesh, classification)) => {
-                let notices = failed.iter().map(|(rung, why)| format!("{rung} gave no good mesh: {why}")).collect();
-                return Ok(Meshed { mesh, place: classification, by: rung, notices });
-            }
-            Err(Miss::NotThere(why)) => {
-                gone.push(rung.program());
-                missing.push(why);
-            }
-            Err(Miss::Interrupted) => return Err(format!("{} was interrupted; no mesh was written", rung.program())),
-            Err(Miss::TooLong(why)) => {
-                slow.push(rung.program());
-                failed.push((rung, why));
-            }
-            Err(Miss::Failed(why)) => failed.push((rung, why)),
-        }
+/// The rungs that are left, and what the ones before gave.
+pub struct Ladder<'a> {
+    team: Team<'a>,
+    model: &'a Model,
+    wish: &'a Wish,
+    log: &'a Path,
+    place: Workplace,
+    brep: PathBuf,
+    rungs: std::vec::IntoIter<Rung>,
+    /// What is not there, for the user.
+    missing: Vec<String>,
+    /// Rungs without a good mesh, and why.
+    failed: Vec<(Rung, String)>,
+    /// Programs that are not there, and those that took too long.
+    gone: Vec<&'static str>,
+    slow: Vec<&'static str>,
+}
+
+impl<'a> Ladder<'a> {
+    /// Before the first rung; the model is written for the meshers, the log begun.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn new(
+        team: Team<'a>,
+        model: &'a Model,
+        wish: &'a Wish,
+        choice: Choice,
+        log: &'a Path,
+    ) -> Result<Self, String> {
+        let place = Workplace::new().map_err(|error| format!("no folder for the mesher's files: {error}"))?;
+        process::begin(log).map_err(|error| error.to_string())?;
+        let brep = place.file("model.brep");
+        model.write_brep(&brep).map_err(|error| error.to_string())?;
+        let rungs: Vec<Rung> = Rung::of(choice).collect();
+        let (missing, failed, gone, slow) = Default::default();
+        Ok(Self { team, model, wish, log, place, brep, rungs: rungs.into_iter(), missing, failed, gone, slow })
     }
-    Err(describe(&missing, &failed, log))
+
+    /// The mesh of the next rung that gives a good one.
+    ///
+    /// # Errors
+    /// When none is left, with what the last ones said; when there is no mesher, with what to install; when the user ended it.
+    pub fn climb(&mut self) -> Result<Meshed, String> {
+        for rung in self.rungs.by_ref() {
+            let program = rung.program();
+            if self.gone.contains(&program) || !rung.is_light() && self.slow.contains(&program) {
+                continue;
+            }
+            match attempt(self.team, self.model, self.wish, rung, &self.place, &self.brep, self.log) {
+                Ok((mesh, place)) => {
+                    let told = self.failed.iter();
+                    let notices = told.map(|(rung, why)| format!("{rung} gave no good mesh: {why}")).collect();
+                    return Ok(Meshed { mesh, place, by: rung, notices });
+                }
+                Err(Miss::NotThere(why)) => {
+                    self.gone.push(program);
+                    self.missing.push(why);
+                }
+                Err(Miss::Interrupted) => return Err(format!("{program} was interrupted; no mesh was written")),
+                Err(Miss::TooLong(why)) => {
+                    self.slow.push(program);
+                    self.failed.push((rung, why));
+                }
+                Err(Miss::Failed(why)) => self.failed.push((rung, why)),
+            }
+        }
+        Err(describe(&self.missing, &self.failed, self.log))
+    }
+
+    /// Remembers why the mesh of a rung would not do.
+    pub fn refuse(&mut self, rung: Rung, why: String) {
+        self.failed.push((rung, why));
+    }
 }
 
 /// The error of a ladder without a good rung.

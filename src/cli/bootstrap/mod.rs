@@ -22,7 +22,8 @@ use crate::mesh::io;
 use crate::mesh::vector::distance;
 use crate::tasks::{Plan, Pool, Team, stage};
 use driver::Choice;
-use ladder::{Meshed, Wish};
+use ladder::{Ladder, Meshed, Wish};
+use refine::Refined;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -100,28 +101,48 @@ pub fn run(arguments: &Arguments) -> Outcome {
         limit: Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX),
     };
     let log = arguments.log();
-    let meshed = match ladder::climb(team, &model, &wish, arguments.mesher, &log) {
-        Ok(meshed) => meshed,
-        Err(error) => {
-            let error = format!("{}: {error}", arguments.model.display());
-            if !wish.stop.load(Ordering::Relaxed) {
-                return Err(error.into());
-            }
-            eprintln!("geo-adapt: error: {error}");
-            return Ok(ExitCode::from(INTERRUPTED));
+    let named = |error: String| format!("{}: {error}", arguments.model.display());
+    let mut ladder = Ladder::new(team, &model, &wish, arguments.mesher, &log).map_err(named)?;
+    let ended = |error: String| -> Outcome {
+        if !wish.stop.load(Ordering::Relaxed) {
+            return Err(named(error).into());
         }
+        eprintln!("geo-adapt: error: {}", named(error));
+        Ok(ExitCode::from(INTERRUPTED))
     };
-    stage("meshed");
-    for notice in meshed.notices.iter().filter(|_| !arguments.quiet) {
-        eprintln!("geo-adapt: note: {notice}");
-    }
     if arguments.no_adapt {
-        return arguments.write_as_it_is(&meshed, &model);
+        return match ladder.climb() {
+            Ok(meshed) => arguments.write_as_it_is(&meshed, &model),
+            Err(error) => ended(error),
+        };
     }
     let asked =
         Asked { input: arguments.model.clone(), output: arguments.output.clone(), threads, complexity_wanted: None };
-    refine::run(arguments, &pool, (meshed, model), &asked, (start, wish.stop))
+    let mut best: Option<Refined> = None;
+    for rest in (0..TRIALS).rev() {
+        let meshed = match ladder.climb() {
+            Ok(meshed) => meshed,
+            Err(_) if best.is_some() => break,
+            Err(error) => return ended(error),
+        };
+        stage("meshed");
+        let by = meshed.by;
+        let refined = refine::run(arguments, &pool, meshed, &model, (start, &wish.stop))?;
+        let flaw = refined.flaw();
+        if best.as_ref().is_none_or(|best| refined.is_better_than(best)) {
+            best = Some(refined);
+        }
+        match flaw {
+            Some(why) if rest > 0 => ladder.refuse(by, why),
+            _ => break,
+        }
+    }
+    let best = best.ok_or("no rung was tried")?;
+    best.write(arguments, team, &asked, model, start)
 }
+
+/// Meshes of the mesher that are adapted where there is a flaw in what comes of the first; the best is taken.
+const TRIALS: usize = 3;
 
 /// Least size by curvature that the mesher is told, of a small face: at an apex it would make a thousand times as many cells as are left
 /// of them, and more than that our kernel finds by itself.

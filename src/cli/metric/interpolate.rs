@@ -6,6 +6,7 @@ use crate::metric::transfer::{Transferred, transfer};
 use crate::tasks::{Plan, Team};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Arguments of `geo-adapt metric interpolate`.
 #[derive(clap::Args)]
@@ -31,7 +32,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let old = common::mesh(run, &arguments.old_mesh)?;
     let logs = common::logs(run, team, &arguments.old_metric, old.vertices.len())?;
     let new = common::mesh(run, &arguments.new_mesh)?;
-    let Transferred { logs, outside, farthest } = transfer(team, &old, &logs, &new.vertices);
+    let Transferred { logs, outside, farthest } = transfer(team, Arc::new(old), &logs, &new.vertices);
     to.write_logs(team, &logs)?;
     let mut table = Table::new();
     table.row("vertices", logs.len());

@@ -1,0 +1,31 @@
+"""Loops of `geo-adapt cycle` in cases: their configurations with other values, and what they reported."""
+
+import json
+import re
+import subprocess
+import sys
+import time
+
+from .cycles import ROOT
+
+
+def replaced(text, values):
+    """A configuration with other values of some keys, each of which it has once; its paths then begin anywhere."""
+    for key, value in values.items():
+        text, count = re.subn(rf"(?m)^{key} = \S+", f"{key} = {value}", text)
+        if count != 1:
+            sys.exit(f"the configuration has {key} {count} times")
+    return text.replace('"../../', f'"{ROOT}/')
+
+
+def run(program, config, folder, *words):
+    """Runs a loop; seconds, and the cycles of its report."""
+    began = time.monotonic()
+    if subprocess.run([str(word) for word in (program, "cycle", config, *words)], check=False).returncode != 0:
+        sys.exit(f"{config}: the loop failed")
+    return time.monotonic() - began, json.loads((folder / "report.json").read_text())["cycles"]
+
+
+def last(loop, folder):
+    """The last mesh of a loop, and the solution on it."""
+    return folder / f"cycle-{loop[-2]['cycle']:02}/adapt/mesh.meshb", folder / f"cycle-{loop[-1]['cycle']:02}/solve/solution.solb"

@@ -1,0 +1,74 @@
+"""The ONERA M6 wing, inviscid, Mach 0.84 and 3.06°, by OpenFOAM in the loop: pressures at seven sections beside the measured ones.
+
+Runs loop.toml (--restart: anew), compares Cp with test 2308 of AGARD AR-138, draws the sections and the wing, and tells how much of the time was the
+adaptation's. --short: one coarse cycle, with its own floors. Exit code: 0 when every floor is held, else 1. Half an hour to two hours.
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import pressure  # noqa: E402
+from comparing.expected import Bound  # noqa: E402
+from judging import cycles, loops, meshfile  # noqa: E402
+
+HERE = Path(__file__).resolve().parent
+OUT = cycles.ROOT / "out" / "onera-m6-flow"
+MACH = 0.84
+# (target, floor of today); `within`: of the section where the fewest points are near the measured ones.
+BOUNDS = [Bound("within", "≥", 0.8, 0.8), Bound("adaptation", "≤", 0.05, 0.05), Bound("lift", "≥", 0.28, 0.27)]
+SHORT = [Bound("within", "≥", 0.8, 0.4), Bound("lift", "≥", 0.28, 0.25)]
+SHORTER = {"complexity": "4000", "max_complexity": "4000", "every": "1", "steps": "800", "folder": '"../../out/onera-m6-flow/short"'}
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path, default=cycles.ROOT / "target/release/geo-adapt")
+    parser.add_argument("--short", action="store_true", help="one coarse cycle")
+    parser.add_argument("--restart", action="store_true", help="throw away what is there")
+    parser.add_argument("--complexity", type=float, help="of the end (default: of loop.toml)")
+    return parser.parse_args()
+
+
+def main():
+    options = arguments()
+    name = "short" if options.short else "loop"
+    folder = OUT / name
+    folder.mkdir(parents=True, exist_ok=True)
+    changed = dict(SHORTER) if options.short else {}
+    if options.complexity:
+        changed["max_complexity"] = f"{options.complexity:g}"
+    config = OUT / f"{name}.toml"
+    config.write_text(loops.replaced((HERE / "loop.toml").read_text(), changed))
+    words = ["--restart"] if options.restart or options.short else []
+    loop = loops.run(options.program, config, folder, *words)[1]
+    mesh, solution = loops.last(loop, folder)
+    mesh, values = meshfile.read_mesh(mesh), meshfile.read_fields(solution)[1]
+    lines = pressure.compared(mesh, pressure.coefficient(values[:, 0], MACH))
+    pressure.draw(lines, folder / "sections.png")
+    for line in lines:
+        cycles.say(f"y/b {line['share']:.2f}  {line['within']:6.1%} of {line['points']} points within 0.1, {line['left_out']} at shocks left out")
+    result = {"within": min(line["within"] for line in lines), "lift": loop[-1]["functionals"]["CL"], "drag": loop[-1]["functionals"]["CD"],
+              "vertices": len(mesh.points), "adaptation": adaptation(loop)}
+    (OUT / f"{name}.json").write_text(json.dumps(result, indent=1))
+    cycles.say("  ".join(f"{key} {value:.5g}" for key, value in result.items()))
+    bounds = SHORT if options.short else BOUNDS
+    for bound in bounds:
+        cycles.say(f"  {bound.line(result[bound.figure])}")
+    lost = [bound.line(result[bound.figure]) for bound in bounds if not bound.held(result[bound.figure])]
+    for line in lost:
+        cycles.say(f"LOST  {line}")
+    cycles.say(f"{folder}/report.html, {folder}/sections.png")
+    return 1 if lost else 0
+
+
+def adaptation(loop):
+    """The share of metric, adaptation and transfer in the seconds of the loop without its pictures."""
+    seconds = [(name, value) for step in loop for name, value in step["seconds"].items() if name != "picture"]
+    return 1 - sum(value for name, value in seconds if name == "solve") / sum(value for _, value in seconds)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,239 @@
+//! The adapter in memory, for a solver that calls it between its steps: mesh and metric as slices in, mesh, metric and parents out. No
+//! file is read or written but the CAD model, once; model and threads stay between the calls.
+//!
+//! ```
+//! use geo_adapt::api::{Adapter, MeshView, Settings};
+//!
+//! // A tetrahedron, with a metric that asks for edges of length 1/2.
+//! let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let tets = [[0, 1, 2, 3]];
+//! let metric = [[4.0, 0.0, 4.0, 0.0, 0.0, 4.0]; 4];
+//!
+//! let mut adapter = Adapter::discrete(Settings { threads: 1, ..Settings::default() })?;
+//! let first = adapter.adapt(&MeshView { vertices: &vertices, tets: &tets, ..MeshView::default() }, &metric)?;
+//! assert!(first.mesh.vertices.len() > 4);
+//!
+//! // A field of the caller's, brought to the new vertices.
+//! let density = [1.0, 2.0, 3.0, 4.0];
+//! let density = first.parents.interpolate(&tets, 1, &density);
+//! assert_eq!(density.len(), first.mesh.vertices.len());
+//!
+//! // What came out goes in again, with its place on the surface: nothing is looked for anew.
+//! let second = adapter.adapt(&first.view(), &first.metric)?;
+//! assert_eq!(second.parents.tets.len(), second.mesh.vertices.len());
+//! # Ok::<(), geo_adapt::api::Error>(())
+//! ```
+//!
+//! **On a CAD model** take [`Adapter::on_cad`]. OpenCASCADE reads the file in the caller's own process, and on a damaged file it can crash,
+//! which no error can tell. The program `geo-adapt` therefore reads each model in a child process first; a library starts no processes of
+//! its own accord. Who takes models from strangers runs `geo-adapt model FILE` before: its exit code is 0 for a model that can be read. All else
+//! that is wrong with model, mesh or metric is an [`Error`], never a panic.
+//!
+//! **The same mesh** as by `geo-adapt adapt` comes out, to the last bit and on any number of threads, when the same mesh, metric and settings
+//! go in. The one difference is a [`MeshView`] with its `place`, which the program finds anew from its files.
+mod error;
+mod output;
+mod view;
+
+pub use error::Error;
+pub use output::{AdaptedMesh, Parents};
+pub use view::MeshView;
+
+use crate::adapt::{self, Kind, Observer, Options};
+use crate::geometry::classify::{self, Classification};
+use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
+use crate::geometry::{Discrete, Model};
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::MatchedFaces;
+use crate::metric::{Background, Field, Source, Sym3, field};
+use crate::tasks::{Pool, Team};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Twelve tetrahedra for each unit of complexity, numbered with 32 bits; some numbers lie idle.
+const GREATEST_COMPLEXITY: f64 = 2e8;
+
+/// How to adapt: what the program's options say.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// Threads; 0 stands for all cores.
+    pub threads: usize,
+    /// Scale the metric to this complexity, about half the number of vertices; without it the metric is taken as it is.
+    pub complexity: Option<f64>,
+    /// How far a vertex of the input may be from the CAD model, in its units. By default 1e-6 of the model's diagonal.
+    pub tolerance: Option<f64>,
+    /// All else: what is frozen, bounds of the surface, the scheduler.
+    pub options: Options,
+}
+
+/// What the boundary lies on.
+enum Ground {
+    /// A CAD model, read once.
+    Cad(Model),
+    /// The surface of the mesh that came last without a place, once there was one.
+    Surface(Option<Model>),
+}
+
+/// An adapter that keeps its model and its threads between the calls.
+pub struct Adapter {
+    ground: Ground,
+    settings: Settings,
+    pool: Pool,
+}
+
+impl Adapter {
+    /// Without a CAD model: the surface of the mesh is the model. It is that of the last mesh that came without a
+    /// [`place`](MeshView::place); as long as meshes come with theirs it stays the same, however often they are adapted.
+    ///
+    /// # Errors
+    /// [`Error::Threads`] when the system refuses the threads.
+    pub fn discrete(settings: Settings) -> Result<Self, Error> {
+        Self::new(Ground::Surface(None), settings)
+    }
+
+    /// On a CAD model: .step, .stp, .iges, .igs, .brep or .egads. See the [module](self) for damaged files.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when the file is no readable model, or this build has no CAD backend; [`Error::Threads`] when the system refuses
+    /// the threads.
+    pub fn on_cad(path: &Path, settings: Settings) -> Result<Self, Error> {
+        Self::on_model(Model::read(path)?, settings)
+    }
+
+    /// On a model that was read before.
+    ///
+    /// # Errors
+    /// [`Error::Threads`] when the system refuses the threads.
+    pub fn on_model(model: Model, settings: Settings) -> Result<Self, Error> {
+        Self::new(Ground::Cad(model), settings)
+    }
+
+    fn new(ground: Ground, settings: Settings) -> Result<Self, Error> {
+        let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let pool = Pool::new(if settings.threads == 0 { cores() } else { settings.threads })?;
+        pool.prepare(settings.options.plan.backend)?;
+        Ok(Self { ground, settings, pool })
+    }
+
+    /// The settings; all but the threads may be changed between calls.
+    pub fn settings(&mut self) -> &mut Settings {
+        &mut self.settings
+    }
+
+    /// The model, if there is one by now.
+    pub fn model(&self) -> Option<&Model> {
+        match &self.ground {
+            Ground::Cad(model) => Some(model),
+            Ground::Surface(model) => model.as_ref(),
+        }
+    }
+
+    /// Adapts a mesh to a metric at its vertices, shape (vertices, 6): 11 12 22 13 23 33, in 1/length². Triangles that are missing on
+    /// the boundary or between regions are added.
+    ///
+    /// # Errors
+    /// [`Error`], by what is wrong with the input. The adapter can be used again.
+    pub fn adapt(&mut self, view: &MeshView<'_>, metric: &[[f64; 6]]) -> Result<AdaptedMesh, Error> {
+        self.adapt_observed(view, metric, &Silent)
+    }
+
+    /// As [`Adapter::adapt`], with an observer that is told what happens and may stop it: the mesh then is valid, but not done.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn adapt_observed(
+        &mut self,
+        view: &MeshView<'_>,
+        metric: &[[f64; 6]],
+        observer: &dyn Observer,
+    ) -> Result<AdaptedMesh, Error> {
+        let Self { ground, settings, pool } = self;
+        let team = Team::new(pool, settings.options.plan);
+        let logs = logs(team, view, metric)?;
+        let mut mesh = view.mesh()?;
+        if mesh.tets.is_empty() {
+            return Err(Error::Mesh(adapt::Error::Empty));
+        }
+        let faces = MatchedFaces::of(team, &mesh.tets.nodes);
+        let added = complete_matched(team, &mut mesh, &faces);
+        let mesh = Arc::new(mesh);
+        let place = match view.place {
+            Some(_) if added > 0 => return Err(Error::place(format!("{added} triangles of the boundary are missing"))),
+            Some(place) => {
+                let model = match &*ground {
+                    Ground::Cad(model) | Ground::Surface(Some(model)) => model,
+                    Ground::Surface(None) => return Err(Error::place("no mesh came before it".into())),
+                };
+                view::check_place(place, &mesh, model)?;
+                place.clone()
+            }
+            None => placed(team, ground, &mesh, settings)?,
+        };
+        let (Ground::Cad(model) | Ground::Surface(Some(model))) = &*ground else {
+            return Err(Error::place("no mesh came before it".into()));
+        };
+        let mut source = Source::Background(Background::on(team, Arc::clone(&mesh), faces, logs));
+        scale(team, &mesh, &mut source, settings.complexity)?;
+        let adapted = adapt::adapt(&mesh, &place, model, &source, &settings.options, pool, observer)?;
+        let Source::Background(background) = &source else { unreachable!("made above") };
+        Ok(output::AdaptedMesh::of(team, adapted, model, background))
+    }
+}
+
+/// Puts a mesh on its model; without a CAD model its surface becomes the model.
+fn placed(team: Team<'_>, ground: &mut Ground, mesh: &TetMesh, settings: &Settings) -> Result<Classification, Error> {
+    match ground {
+        Ground::Cad(model) => {
+            let options = classify::Options { tolerance: settings.tolerance, ..classify::Options::default() };
+            Ok(classify::classify(team, mesh, model, &options).map_err(crate::geometry::Error::from)?.0)
+        }
+        Ground::Surface(kept) => {
+            let (model, place) = Discrete::from_mesh(team, mesh, DEFAULT_RIDGE_ANGLE)?;
+            *kept = Some(Model::Discrete(model));
+            Ok(place)
+        }
+    }
+}
+
+/// ln M of a metric that fits the mesh and is positive definite.
+fn logs(team: Team<'_>, view: &MeshView<'_>, metric: &[[f64; 6]]) -> Result<Vec<Sym3>, Error> {
+    view::fits("metrics", metric.len(), view.vertices.len())?;
+    let metrics: Vec<Sym3> = metric.iter().map(|&terms| Sym3(terms)).collect();
+    if let Some(vertex) = metrics.iter().position(|metric| !metric.is_spd()) {
+        return Err(Error::Metric { vertex });
+    }
+    Ok(Field::logs_of(team, &metrics))
+}
+
+/// Scales the source to the complexity that is asked for; refuses one that no mesh can have.
+fn scale(team: Team<'_>, mesh: &TetMesh, source: &mut Source, wanted: Option<f64>) -> Result<(), Error> {
+    if let Some(complexity) = wanted.filter(|wanted| !(*wanted > 0.0 && wanted.is_finite())) {
+        return Err(Error::Complexity { complexity, most: GREATEST_COMPLEXITY });
+    }
+    if wanted.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
+        return Ok(());
+    }
+    let own = source.complexity(team, mesh);
+    if let Some(target) = wanted {
+        source.scale(team, field::complexity_factor(own, target).ln());
+    }
+    let complexity = wanted.unwrap_or(own);
+    // One that is no number is refused, too.
+    if complexity <= GREATEST_COMPLEXITY {
+        Ok(())
+    } else {
+        Err(Error::Complexity { complexity, most: GREATEST_COMPLEXITY })
+    }
+}
+
+/// An observer that listens to nothing.
+struct Silent;
+
+impl Observer for Silent {
+    fn begin(&self, _: Kind, _: usize, _: usize) {}
+    fn advance(&self, _: usize) {}
+    fn end(&self, _: &adapt::Counts) {}
+    fn stop(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,111 @@
+//! What comes out.
+use super::MeshView;
+use crate::adapt::{Adapted, Extracted};
+use crate::geometry::classify::Classification;
+#[cfg(feature = "occt")]
+use crate::geometry::classify::associate;
+use crate::geometry::{Entity, Evaluate, Geometry, Model};
+use crate::mesh::TetMesh;
+use crate::metric::Background;
+use crate::tasks::Team;
+use crate::transfer::Places;
+
+/// An adapted mesh, with all that the next call and the caller's own fields need.
+#[derive(Clone, Debug)]
+pub struct AdaptedMesh {
+    /// The mesh: vertices, tetrahedra, triangles and edges with their references, those of the input; on a CAD model with its association.
+    pub mesh: TetMesh,
+    /// The metric at its vertices, shape (n, 6): 11 12 22 13 23 33.
+    pub metric: Vec<[f64; 6]>,
+    /// Where each vertex was in the mesh that went in.
+    pub parents: Parents,
+    /// For each vertex its entity of the model with its parameters there, for each triangle its face; indices count from 0.
+    pub place: Classification,
+    /// Boundary vertices that found no room on the model.
+    pub off_model: Vec<u32>,
+    /// Whether the mesh stopped growing, having far more vertices than the metric accounts for, or no memory for more.
+    pub overgrown: bool,
+    /// Surface triangles beyond the bounds of the surface that were set.
+    pub astray: usize,
+}
+
+/// For each new vertex a place in the old mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Parents {
+    /// The old tetrahedron that holds it, or the nearest one, shape (n,).
+    pub tets: Vec<u32>,
+    /// Its barycentric coordinates there, shape (n, 4): ≥ 0, sum 1; of a vertex outside the old mesh (on a curved boundary) those of the
+    /// nearest point of it.
+    pub weights: Vec<[f64; 4]>,
+    /// Vertices outside the old mesh.
+    pub outside: usize,
+    /// Greatest distance of one from it, length.
+    pub farthest: f64,
+}
+
+impl Parents {
+    /// Values at the new vertices, linear in the old tetrahedra `tets`, from those at the old vertices: rows of `width` a vertex.
+    ///
+    /// # Panics
+    /// When these are not the tetrahedra and values of the mesh that went in.
+    pub fn interpolate(&self, tets: &[[u32; 4]], width: usize, values: &[f64]) -> Vec<f64> {
+        let mut all = Vec::with_capacity(width * self.tets.len());
+        for (&tet, weights) in self.tets.iter().zip(&self.weights) {
+            let nodes = tets[tet as usize].map(|v| v as usize * width);
+            all.extend(
+                (0..width).map(|c| nodes.iter().zip(weights).map(|(node, w)| w * values[node + c]).sum::<f64>()),
+            );
+        }
+        all
+    }
+}
+
+impl AdaptedMesh {
+    /// The mesh with its place, to go in again.
+    pub fn view(&self) -> MeshView<'_> {
+        MeshView { place: Some(&self.place), ..MeshView::of(&self.mesh) }
+    }
+
+    /// Of what the kernel gives; `old` is the mesh that went in.
+    pub(super) fn of(team: Team<'_>, adapted: Adapted, model: &Model, old: &Background) -> Self {
+        let Extracted { mut mesh, mut classification, metrics, off_model } = adapted.extracted;
+        match model {
+            Model::Discrete(surface) => surface.restore(&mut mesh, &classification),
+            #[cfg(feature = "occt")]
+            Model::Occt(_) => {
+                associate(&mut mesh, &classification);
+            }
+        }
+        settle(&mut classification, &off_model, model);
+        let Places { tets, weights, outside, farthest } = Places::of(team, old.locator(), &mesh.vertices);
+        Self {
+            metric: metrics.iter().map(|metric| metric.0).collect(),
+            parents: Parents { tets, weights, outside, farthest },
+            place: classification,
+            mesh,
+            off_model,
+            overgrown: adapted.overgrown,
+            astray: adapted.astray,
+        }
+    }
+}
+
+/// Gives the vertices that found no room on the model their closest points there: the next call tries again.
+fn settle(place: &mut Classification, off_model: &[u32], model: &Model) {
+    let mut evaluator = model.evaluator();
+    for v in off_model.iter().map(|&v| v as usize) {
+        let (point, parameters) = (place.projected[v], &mut place.parameters[v]);
+        match place.entities[v] {
+            Entity::Edge(edge) => {
+                let on = evaluator.closest_on_edge(edge, point, Some(parameters[0]));
+                (place.projected[v], *parameters) = (on.point, [on.t, 0.0]);
+            }
+            Entity::Face(face) => {
+                let on = evaluator.closest_on_face(face, point, Some(*parameters));
+                (place.projected[v], *parameters) = (on.point, on.uv);
+            }
+            Entity::Vertex(corner) => place.projected[v] = model.topology().vertices[corner as usize].point,
+            Entity::Interior => {}
+        }
+    }
+}

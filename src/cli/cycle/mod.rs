@@ -1,0 +1,82 @@
+//! `geo-adapt cycle`: the loop of solver and adaptation.
+mod progress;
+
+use super::adapt::INTERRUPTED;
+use super::table::figure;
+use super::{Outcome, print};
+use crate::cycle::{self, Error, Loaded, Options, Stop, example};
+use progress::Progress;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// Arguments of `geo-adapt cycle`.
+#[derive(clap::Args)]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["config", "example"])))]
+pub struct Arguments {
+    /// The configuration: .toml. The same command goes on where a loop was ended, also by a kill
+    #[arg(value_name = "CONFIG.toml")]
+    config: Option<PathBuf>,
+    /// Print a configuration to begin with, of this solver
+    #[arg(long, value_name = "SOLVER", value_parser = clap::builder::PossibleValuesParser::new(example::ALL.map(|(name, _)| name)))]
+    example: Option<String>,
+    /// Throw away what is in the loop's folder and begin anew
+    #[arg(long, requires = "config")]
+    restart: bool,
+    /// No progress and no table; errors only
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    if let Some(text) = arguments.example.as_deref().and_then(example::of) {
+        print(text);
+        return Ok(ExitCode::SUCCESS);
+    }
+    let Some(path) = &arguments.config else { return Err("give a configuration".into()) };
+    let loaded = Loaded::read(path)?;
+    let stop = stop_on_interrupt();
+    let threads = loaded.config.threads.map_or_else(super::cores, usize::from);
+    let options = Options { threads, restart: arguments.restart };
+    let progress = Progress::new(!arguments.quiet, &loaded.config.schedule);
+    let ended = cycle::run(&loaded, &options, &progress, &stop);
+    progress.finish();
+    match ended {
+        Ok(ended) => {
+            if !arguments.quiet {
+                let seconds: f64 = ended.history.cycles.iter().flat_map(|cycle| cycle.seconds.values()).sum();
+                print(&format!(
+                    "{}: ended after {} s of work\n",
+                    ended.reason,
+                    figure(seconds + ended.history.start_seconds)
+                ));
+                print(&format!("mesh     {}\nsolution {}\n", ended.mesh.display(), ended.solution.display()));
+                print(&format!("report   {}\n", ended.page.display()));
+            }
+            Ok(ExitCode::SUCCESS)
+        }
+        Err(Error::Interrupted) => {
+            eprintln!("geo-adapt: interrupted; the same command goes on after the last finished step");
+            Ok(ExitCode::from(INTERRUPTED))
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Lets the first interrupt end the loop after the running child, and a second one end that too.
+fn stop_on_interrupt() -> Arc<Stop> {
+    let stop = Arc::new(Stop::default());
+    let seen = Arc::clone(&stop);
+    let handler = move || {
+        if seen.asked.swap(true, Relaxed) {
+            seen.now.store(true, Relaxed);
+        } else {
+            eprintln!("\ngeo-adapt: interrupted: ends after this step (again: ends it at once)");
+        }
+    };
+    // Where no handler can be set an interrupt ends the program, and the loop goes on from there all the same.
+    let _ = ctrlc::set_handler(handler);
+    stop
+}

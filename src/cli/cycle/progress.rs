@@ -1,0 +1,90 @@
+//! Progress over the whole loop: a bar over its cycles with the step that runs, and a row for each cycle that is done.
+use crate::cli::print;
+use crate::cli::table::figure;
+use crate::cycle::{Cycle, Observer, Schedule};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::Duration;
+
+/// Shows what the loop does.
+pub struct Progress {
+    wanted: bool,
+    bar: ProgressBar,
+    headed: AtomicBool,
+}
+
+impl Progress {
+    /// Draws a bar if `wanted` and standard error is a terminal; rows if `wanted`.
+    pub fn new(wanted: bool, schedule: &Schedule) -> Self {
+        let shown = wanted && std::io::IsTerminal::is_terminal(&std::io::stderr());
+        let bar = if shown {
+            let template = "cycle {pos:>2}{prefix} [{bar:16}] {elapsed_precise} {wide_msg}";
+            let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+            let length = schedule.last().map_or(0, |last| u64::from(last) + 1);
+            let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
+            bar.set_prefix(schedule.last().map_or_else(String::new, |last| format!(" of {}", last + 1)));
+            bar.set_style(style.progress_chars("=> "));
+            bar.enable_steady_tick(Duration::from_millis(500));
+            bar
+        } else {
+            ProgressBar::hidden()
+        };
+        Self { wanted, bar, headed: AtomicBool::new(false) }
+    }
+
+    /// The work is over.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    /// Something that stays above the bar.
+    fn tell(&self, line: &str) {
+        self.bar.suspend(|| print(&format!("{line}\n")));
+    }
+}
+
+impl Observer for Progress {
+    fn begin(&self, step: &str, _: &Path) {
+        let number = step.strip_prefix("cycle-").and_then(|rest| rest.split('/').next()).and_then(|n| n.parse().ok());
+        self.bar.set_position(number.unwrap_or(0));
+        self.bar.set_message(step.rsplit('/').next().unwrap_or(step).to_owned());
+    }
+
+    fn end(&self, _: &str, _: f64) {}
+
+    fn note(&self, text: &str) {
+        if self.wanted {
+            self.bar.suspend(|| eprintln!("geo-adapt: note: {text}"));
+        }
+    }
+
+    fn cycle(&self, cycle: &Cycle) {
+        if !self.wanted {
+            return;
+        }
+        if !self.headed.swap(true, Relaxed) {
+            let names: Vec<String> = cycle.functionals.keys().map(|name| format!("{name:>12}")).collect();
+            self.tell(&format!(
+                "{:>5} {:>11} {:>9} {:>10} {:>7}{}",
+                "cycle",
+                "complexity",
+                "vertices",
+                "tetrahedra",
+                "unit",
+                names.concat()
+            ));
+        }
+        let complexity = cycle.complexity.map_or_else(|| "-".into(), figure);
+        let unit = cycle.statistics.as_ref().and_then(|all| all["metric"]["unit_edges"].as_f64());
+        let unit = unit.map_or_else(|| "-".into(), |share| format!("{:.1} %", 100.0 * share));
+        let values: Vec<String> = cycle.functionals.values().map(|&value| format!("{:>12}", figure(value))).collect();
+        self.tell(&format!(
+            "{:>5} {complexity:>11} {:>9} {:>10} {unit:>7}{}",
+            cycle.cycle,
+            cycle.vertices,
+            cycle.tets,
+            values.concat()
+        ));
+    }
+}

@@ -1,0 +1,281 @@
+//! `geo-adapt transfer`.
+use super::Outcome;
+use super::metric::common::{self, Failure, OutputArgument, RunArguments};
+use super::table::{Table, figure};
+use crate::mesh::adjacency::MatchedFaces;
+use crate::mesh::io::{self, Solution, SolutionField};
+use crate::mesh::locate::Locator;
+use crate::metric::{Sym3, transfer as of_metric};
+use crate::tasks::{GRAIN, Plan, Team, stage};
+use crate::transfer::{Component, Conserved, Keep, Places, conservative, interpolate, measure};
+use clap::ValueEnum;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Arguments of `geo-adapt transfer`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The mesh that has the fields: .mesh or .meshb
+    old_mesh: PathBuf,
+    /// The fields at its vertices: .sol or .solb
+    old_fields: PathBuf,
+    /// The mesh that gets them: .mesh or .meshb
+    new_mesh: PathBuf,
+    #[command(flatten)]
+    to: OutputArgument,
+    /// Keep the integral of each value over the mesh, with no new extremum, instead of interpolating. Where the meshes differ in volume
+    /// (curved boundaries) `mean` keeps the integral by the volume, and a constant one; `mass` the integral, as far as no new extremum comes of it
+    #[arg(long, value_name = "KEEP", num_args = 0..=1, require_equals = true, default_missing_value = "mean")]
+    conservative: Option<Kept>,
+    /// The file is a metric: interpolate its logarithm, so that sizes between two are their geometric mean
+    #[arg(long, conflicts_with = "conservative")]
+    metric: bool,
+    /// Write the figures as JSON
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+/// What a conservative transfer keeps where the volumes differ.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kept {
+    /// The integral by the volume of the mesh
+    Mean,
+    /// The integral
+    Mass,
+}
+
+/// What was done.
+#[derive(Serialize)]
+struct Report {
+    method: &'static str,
+    vertices: [usize; 2],
+    tets: [usize; 2],
+    /// New vertices outside the old mesh.
+    outside: usize,
+    farthest: f64,
+    /// Volumes of the old and the new mesh.
+    volumes: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    overlap: Option<Overlap>,
+    values: Vec<Value>,
+    seconds: Seconds,
+}
+
+/// How far the meshes cover each other, of a conservative transfer.
+#[derive(Serialize)]
+struct Overlap {
+    common_volume: f64,
+    /// New tetrahedra of which a part lies outside the old mesh.
+    partly_outside: usize,
+    /// New tetrahedra outside the old mesh.
+    outside: usize,
+}
+
+/// One value of each vertex: a component of a field.
+#[derive(Serialize)]
+struct Value {
+    /// Of the field, from 1.
+    field: usize,
+    /// In the field, from 1.
+    component: usize,
+    before: Component,
+    after: Component,
+    /// By how much the last correction of a conservative transfer changed the integral.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    corrected: Option<f64>,
+}
+
+/// Wall times, s.
+#[derive(Default, Serialize)]
+struct Seconds {
+    read: f64,
+    transfer: f64,
+    total: f64,
+}
+
+/// Runs the subcommand.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let start = Instant::now();
+    let Arguments { run, to, .. } = arguments;
+    let inputs = [&arguments.old_mesh, &arguments.old_fields, &arguments.new_mesh].map(PathBuf::as_path);
+    to.check(&inputs)?;
+    if let Some(report) = &arguments.report {
+        common::check_output(report, &["json"], &inputs)?;
+    }
+    let pool = run.pool()?;
+    let team = Team::new(&pool, Plan::default());
+    let old = common::mesh(run, &arguments.old_mesh)?;
+    let fields = arguments.fields(team, old.vertices.len())?;
+    let new = common::mesh(run, &arguments.new_mesh)?;
+    let read = start.elapsed().as_secs_f64();
+    stage("read");
+    let faces = MatchedFaces::of(team, &old.tets.nodes);
+    let locator = Locator::on(team, Arc::new(old), faces);
+    let places = Places::of(team, &locator, &new.vertices);
+    stage("located");
+    let width = fields.fields.iter().map(|field| field.kind.values()).sum();
+    let rows = rows(team, &fields, width);
+    let (found, conserved) = match arguments.conservative {
+        Some(kept) => {
+            let keep = if kept == Kept::Mean { Keep::Mean } else { Keep::Mass };
+            let found = conservative(team, &locator, &new, &places, width, &rows, keep);
+            let Conserved { values, .. } = found.as_ref().map_err(|error| arguments.named(error))?;
+            (values.clone(), found.ok())
+        }
+        None if arguments.metric => (interpolated_metric(team, &locator, &places, &rows), None),
+        None => (interpolate(team, &locator, &places, width, &rows), None),
+    };
+    let transferred = start.elapsed().as_secs_f64();
+    stage("transferred");
+    io::write_solution_on(team, &to.output, &solution(team, &fields, width, &found))?;
+    stage("written");
+    let (old_volume, before) = measure(team, locator.mesh(), width, &rows);
+    let (new_volume, after) = measure(team, &new, width, &found);
+    let components =
+        fields.fields.iter().zip(1..).flat_map(|(field, number)| (1..=field.kind.values()).map(move |k| (number, k)));
+    let value = |(c, (field, component)): (usize, (usize, usize))| Value {
+        field,
+        component,
+        before: before[c],
+        after: after[c],
+        corrected: conserved.as_ref().map(|conserved| conserved.corrected[c]),
+    };
+    let report = Report {
+        method: arguments.method(),
+        vertices: [locator.vertices().len(), new.vertices.len()],
+        tets: [locator.tets().len(), new.tets.len()],
+        outside: places.outside,
+        farthest: places.farthest,
+        volumes: [old_volume, new_volume],
+        overlap: conserved.as_ref().map(|found| Overlap {
+            common_volume: found.common,
+            partly_outside: found.partly,
+            outside: found.outside,
+        }),
+        values: components.enumerate().map(value).collect(),
+        seconds: Seconds { read, transfer: transferred - read, total: start.elapsed().as_secs_f64() },
+    };
+    if let Some(path) = &arguments.report {
+        common::write_json(path, &report)?;
+    }
+    run.print(&report.text());
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Arguments {
+    /// Reads the fields, of a mesh of so many vertices.
+    fn fields(&self, team: Team<'_>, vertices: usize) -> Result<Solution, Failure> {
+        let name = self.old_fields.display();
+        if self.metric {
+            // Read as a metric to refuse what is none, in the words of all commands that read one.
+            let _ = common::logs(&self.run, team, &self.old_fields, vertices)?;
+        }
+        let read = io::read_solution(&self.old_fields)?;
+        if !self.metric {
+            self.run.note(&read.notices);
+        }
+        let solution = read.content;
+        if solution.vertices != vertices {
+            let (found, mesh) = (solution.vertices, self.old_mesh.display());
+            return Err(format!(
+                "{name}: values at {found} vertices, but {mesh} has {vertices}; give the mesh they belong to"
+            )
+            .into());
+        }
+        if solution.fields.is_empty() {
+            return Err(format!("{name}: no field at the vertices: there is nothing to transfer").into());
+        }
+        Ok(solution)
+    }
+
+    fn method(&self) -> &'static str {
+        match self.conservative {
+            Some(Kept::Mean) => "conservative, the mean kept",
+            Some(Kept::Mass) => "conservative, the integral kept",
+            None if self.metric => "log-Euclidean interpolation",
+            None => "linear interpolation",
+        }
+    }
+
+    /// An error of the transfer, with the file that it is about.
+    fn named(&self, error: &crate::transfer::Error) -> String {
+        use crate::transfer::{Error, Which};
+        let (Error::Inverted { mesh, .. } | Error::NoVolume(mesh)) = error;
+        let path: &Path = if *mesh == Which::Old { &self.old_mesh } else { &self.new_mesh };
+        format!("{}: {error}", path.display())
+    }
+}
+
+/// All fields in rows of `width` values a vertex.
+fn rows(team: Team<'_>, solution: &Solution, width: usize) -> Vec<f64> {
+    let mut rows = vec![0.0; width * solution.vertices];
+    team.fill(width * GRAIN, &mut rows, |start, rows| {
+        for (row, v) in rows.chunks_exact_mut(width).zip(start / width..) {
+            let mut to = row;
+            for field in &solution.fields {
+                let (here, rest) = to.split_at_mut(field.kind.values());
+                here.copy_from_slice(&field.values[v * here.len()..][..here.len()]);
+                to = rest;
+            }
+        }
+    });
+    rows
+}
+
+/// The fields of these kinds, from rows of `width` values a vertex.
+fn solution(team: Team<'_>, like: &Solution, width: usize, rows: &[f64]) -> Solution {
+    let mut first = 0;
+    let mut fields = Vec::with_capacity(like.fields.len());
+    for field in &like.fields {
+        let count = field.kind.values();
+        let from = first;
+        let value = |at: usize| rows[at / count * width + from + at % count];
+        fields.push(SolutionField { kind: field.kind, values: team.map(GRAIN, rows.len() / width * count, value) });
+        first += count;
+    }
+    Solution { vertices: rows.len() / width, fields }
+}
+
+/// The metric at places, from that at the vertices, which is positive definite.
+fn interpolated_metric(team: Team<'_>, locator: &Locator, places: &Places, rows: &[f64]) -> Vec<f64> {
+    let tensors = rows.as_chunks().0;
+    let logs = team.map(GRAIN, tensors.len(), |v| Sym3(tensors[v]).ln());
+    let logs = of_metric::at(team, locator, places, &logs);
+    team.map(GRAIN, logs.len(), |v| logs[v].exp().0).into_flattened()
+}
+
+impl Report {
+    /// The table for the terminal.
+    fn text(&self) -> String {
+        let mut table = Table::new();
+        let ([v, w], [t, u]) = (self.vertices, self.tets);
+        table.row("method", self.method);
+        table.row("vertices", format_args!("{v} -> {w}"));
+        table.row("tetrahedra", format_args!("{t} -> {u}"));
+        table.row("outside the old mesh", format_args!("{} vertices, which have its nearest values", self.outside));
+        table.row("farthest from it", figure(self.farthest));
+        let [v, w] = self.volumes;
+        table.row("volume", format_args!("{v:.12e} -> {w:.12e} ({:+.1e})", w / v - 1.0));
+        if let Some(Overlap { common_volume, partly_outside, outside }) = &self.overlap {
+            table.row("volume in common", format_args!("{common_volume:.12e}"));
+            table.row("tetrahedra outside", format_args!("{outside}, partly {partly_outside}"));
+        }
+        for value in &self.values {
+            let Value { field, component, before, after, .. } = value;
+            let name = |what: &str| format!("{field}.{component} {what}");
+            let change = (after.mass - before.mass) / before.mass;
+            let change = if change.is_finite() { format!(" ({change:+.1e})") } else { String::new() };
+            table.row(&name("integral"), format_args!("{:.12e} -> {:.12e}{change}", before.mass, after.mass));
+            let range = |found: &Component| format!("{} to {}", figure(found.least), figure(found.greatest));
+            table.row(&name("values"), format_args!("{} -> {}", range(before), range(after)));
+        }
+        let Seconds { read, transfer, total } = self.seconds;
+        table.row("seconds", format_args!("{total:.2} (read {read:.2}, transfer {transfer:.2})"));
+        table.text().into()
+    }
+}

@@ -1,0 +1,139 @@
+//! What a configuration may not say although each key alone could be: refused before the loop begins.
+use super::{Growth, Loaded, NormWord};
+use crate::metric::multiscale::Norm;
+use crate::view::cut::Plane;
+use std::path::Path;
+
+impl Loaded {
+    /// Refuses what would fail later; messages begin with the table and the key.
+    pub(super) fn check(&self) -> Result<(), String> {
+        self.check_mesh()?;
+        self.check_metric()?;
+        self.check_schedule()?;
+        let output = &self.config.output;
+        if let Some(cut) = &output.cut {
+            cut.parse::<Plane>().map_err(|error| format!("[output] cut: {error}"))?;
+        }
+        if output.view.is_some_and(|[_, elevation]| !(-90.0..=90.0).contains(&elevation)) {
+            return Err("[output] view: give azimuth and elevation in degrees, the elevation from -90 to 90".into());
+        }
+        positive("[output] zoom", output.zoom)
+    }
+
+    fn check_mesh(&self) -> Result<(), String> {
+        let mesh = &self.config.mesh;
+        let given = [mesh.file.is_some(), mesh.bootstrap.is_some(), mesh.cube.is_some()];
+        if given.iter().filter(|&&given| given).count() != 1 {
+            return Err(
+                "[mesh]: give one of file (a mesh), bootstrap (a model to make one of) and cube (cells along an edge)"
+                    .into(),
+            );
+        }
+        if mesh.bootstrap.is_none() && (mesh.far_field.is_some() || mesh.symmetry.is_some() || !mesh.options.is_empty())
+        {
+            return Err("[mesh] far_field, symmetry and options belong to bootstrap: leave them out without it".into());
+        }
+        if mesh.bootstrap.is_some() && mesh.cad.is_some() {
+            return Err("[mesh] cad belongs to file: bootstrap's own model is the model".into());
+        }
+        if mesh.cube.is_some_and(|cells| !(1..=100).contains(&cells)) {
+            return Err("[mesh] cube: give 1 to 100 cells along an edge".into());
+        }
+        for (key, path) in [("[mesh] file", &mesh.file), ("[mesh] bootstrap", &mesh.bootstrap)] {
+            path.as_deref().map_or(Ok(()), |path| self.check_file(key, path))?;
+        }
+        mesh.cad.as_deref().map_or(Ok(()), |cad| self.check_file("[mesh] cad", cad))
+    }
+
+    fn check_file(&self, key: &str, path: &Path) -> Result<(), String> {
+        let found = self.at(path);
+        if found.is_file() {
+            Ok(())
+        } else {
+            Err(format!("{key}: there is no file {}; relative paths begin at the folder of this file", found.display()))
+        }
+    }
+
+    fn check_metric(&self) -> Result<(), String> {
+        let metric = &self.config.metric;
+        if let Some(norm) = &metric.norm {
+            norm.to_string().parse::<Norm>().map_err(|error| format!("[metric] norm: {error}"))?;
+            if matches!(norm, NormWord::Word(word) if word != "inf") {
+                return Err("[metric] norm: give a number from 1 on, or \"inf\"".into());
+            }
+        }
+        match &metric.gradation {
+            Some(Growth::Number(ratio)) if !(ratio.is_finite() && *ratio > 1.0) => {
+                return Err(format!("[metric] gradation = {ratio}: give a number above 1, such as 1.5, or \"off\""));
+            }
+            Some(Growth::Word(word)) if word != "off" => {
+                return Err(format!("[metric] gradation = '{word}': give a number above 1, such as 1.5, or \"off\""));
+            }
+            _ => {}
+        }
+        for (key, value) in [
+            ("[metric] hmin", metric.hmin),
+            ("[metric] hmax", metric.hmax),
+            ("[metric] segments", metric.segments),
+            ("[metric] feature_cells", metric.feature_cells),
+        ] {
+            positive(key, value)?;
+        }
+        if let (Some(least), Some(greatest)) = (metric.hmin, metric.hmax)
+            && least > greatest
+        {
+            return Err(format!(
+                "[metric] hmin {least} is above hmax {greatest}: give a least size below the greatest"
+            ));
+        }
+        if metric.aspect_ratio.is_some_and(|ratio| !(ratio.is_finite() && ratio >= 1.0)) {
+            return Err("[metric] aspect_ratio: give 1 or more".into());
+        }
+        let mesh = &self.config.mesh;
+        if metric.geometry == Some(true) && mesh.cad.is_none() && mesh.bootstrap.is_none() {
+            return Err("[metric] geometry = true needs a model: give [mesh] cad, or bootstrap".into());
+        }
+        if metric.geometry == Some(false) && (metric.segments.is_some() || metric.feature_cells.is_some()) {
+            return Err(
+                "[metric] segments and feature_cells belong to the geometry, which geometry = false leaves out".into(),
+            );
+        }
+        Ok(())
+    }
+
+    fn check_schedule(&self) -> Result<(), String> {
+        let schedule = &self.config.schedule;
+        positive("[schedule] complexity", Some(schedule.complexity))?;
+        positive("[schedule] max_complexity", schedule.max_complexity)?;
+        if !(schedule.factor.is_finite() && schedule.factor >= 1.0) {
+            return Err(format!("[schedule] factor = {}: give 1 or more, such as 2", schedule.factor));
+        }
+        if schedule.every == 0 || schedule.cycles == Some(0) {
+            return Err("[schedule] every and cycles: give 1 or more".into());
+        }
+        if schedule.max_complexity.is_some_and(|most| most < schedule.complexity) {
+            return Err("[schedule] max_complexity is below complexity, with which the loop begins".into());
+        }
+        if let Some(converged) = &schedule.converged {
+            positive("[schedule.converged] change", Some(converged.change))?;
+            if converged.cycles == 0 {
+                return Err("[schedule.converged] cycles: give 1 or more".into());
+            }
+        }
+        let grows = schedule.factor > 1.0 && schedule.max_complexity.is_some();
+        if schedule.cycles.is_none() && !grows {
+            return Err(
+                "[schedule] nothing ends this loop for certain: give cycles, or max_complexity with a factor above 1"
+                    .into(),
+            );
+        }
+        Ok(())
+    }
+}
+
+fn positive(key: &str, value: Option<f64>) -> Result<(), String> {
+    match value {
+        Some(value) if !(value.is_finite() && value > 0.0) => Err(format!("{key} = {value}: give a positive number")),
+        _ => Ok(()),
+    }
+}

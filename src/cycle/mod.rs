@@ -1,0 +1,25 @@
+//! The loop: mesh → solver → metric → adaptation → transfer → solver, until it is fine enough or a functional does not change any more.
+//!
+//! Every step has a folder of its own and is a command that the user can type again (`step`, `process`). What is there on the disk is the
+//! whole state: a loop that was killed goes on after its last finished step.
+mod config;
+mod error;
+pub mod example;
+mod history;
+mod layout;
+mod picked;
+mod pipeline;
+mod probe;
+mod process;
+mod report;
+mod run;
+mod schedule;
+pub mod solver;
+mod step;
+
+pub use config::{Config, Loaded, Schedule, parse};
+pub use error::Error;
+pub use history::{Cycle, History, Seconds};
+pub use layout::Layout;
+pub use process::Stop;
+pub use run::{Ended, Observer, Options, run};

@@ -1,0 +1,258 @@
+//! The steps of a cycle, each by the commands that make it.
+use super::config::{Loaded, TransferMethod};
+use super::layout::Layout;
+use super::picked::{as_words, picked};
+use super::probe;
+use super::solver::{Before, FieldName, Job, Solver};
+use super::step::{Done, Steps, text};
+use super::{Error, Options};
+use crate::geometry::{Names, called, names};
+use crate::mesh::io::{Solution, SolutionField, read_mesh, write_mesh, write_solution};
+use crate::mesh::samples::cube;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Size of a picture, pixels: it goes into the report.
+const PICTURE: &str = "800x600";
+
+/// What makes steps.
+pub struct Pipeline<'a> {
+    /// The configuration.
+    pub loaded: &'a Loaded,
+    /// Where.
+    pub steps: Steps<'a>,
+    /// How.
+    pub options: &'a Options,
+    /// The words that say the threads, if the configuration does.
+    pub threads: Vec<String>,
+}
+
+/// The first step's result.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Begun {
+    /// The model that boundaries lie on, if any.
+    pub cad: Option<PathBuf>,
+}
+
+/// A solve's result.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SolveResult {
+    /// Vertices of its mesh.
+    pub vertices: usize,
+    /// Tetrahedra.
+    pub tets: usize,
+    /// The fields of solution.solb, in their order.
+    pub fields: Vec<FieldName>,
+    /// Functionals by name.
+    pub functionals: BTreeMap<String, f64>,
+}
+
+/// An adaptation's result.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Adapted {
+    /// The complexity that was asked for.
+    pub complexity: f64,
+}
+
+impl<'a> Pipeline<'a> {
+    fn layout(&self) -> &'a Layout {
+        self.steps.layout
+    }
+
+    fn solver(&self) -> &'a dyn Solver {
+        self.loaded.config.solver.solver()
+    }
+
+    /// The first mesh: bootstrapped, converted or copied.
+    pub fn start(&self) -> Result<Done<Begun>, Error> {
+        let mesh = &self.loaded.config.mesh;
+        self.steps.step(self.layout().start(), |running| {
+            let target = running.file("mesh.meshb");
+            if let Some(model) = &mesh.bootstrap {
+                let model = self.loaded.at(model);
+                let mut words = vec!["bootstrap".into(), text(&model), "-o".into(), text(&target)];
+                option(&mut words, "--far-field", mesh.far_field.as_ref());
+                option(&mut words, "--symmetry", mesh.symmetry.as_ref());
+                words.extend(mesh.options.iter().cloned().chain(self.threads.clone()));
+                running.geo_adapt(words)?;
+                let domain = target.with_extension("brep");
+                return Ok(Begun { cad: Some(if mesh.far_field.is_some() { domain } else { model }) });
+            }
+            if let Some(cells) = mesh.cube {
+                write_mesh(&target, &cube(cells))?;
+                return Ok(Begun { cad: mesh.cad.as_deref().map(|cad| self.loaded.at(cad)) });
+            }
+            let Some(file) = &mesh.file else {
+                return Err(Error::Failed("[mesh] names neither file nor bootstrap".into()));
+            };
+            let file = self.loaded.at(file);
+            if file.extension().is_some_and(|ending| ending == "meshb") {
+                copy(&file, &target)?;
+                names::write(&target, &names::read(&file)?, &[])?;
+            } else {
+                running.geo_adapt(vec!["convert".into(), text(&file), text(&target)])?;
+            }
+            Ok(Begun { cad: mesh.cad.as_deref().map(|cad| self.loaded.at(cad)) })
+        })
+    }
+
+    /// The solution on the mesh of a cycle; `before` are the fields of the last one, where it was brought here.
+    pub fn solve(&self, cycle: u32, before: Option<&[FieldName]>) -> Result<Done<SolveResult>, Error> {
+        let layout = self.layout();
+        self.steps.step(layout.step(cycle, "solve"), |running| {
+            let (mesh, folder) = (layout.mesh(cycle), running.folder.clone());
+            let path = before.map(|_| layout.transferred(cycle));
+            let before = path.as_deref().zip(before).map(|(path, fields)| Before { path, fields });
+            let base = &self.loaded.base;
+            let (threads, thread_words) = (self.options.threads, &self.threads[..]);
+            let job = Job { folder: &folder, base, cycle, mesh: &mesh, before, threads, thread_words };
+            for call in self.solver().prepare(&job)? {
+                running.call(&call)?;
+            }
+            let mut solved = self.solver().collect(&job)?;
+            let counted = read_mesh(&mesh)?.content;
+            solved.check(counted.vertices.len())?;
+            probe::add(&self.loaded.config.probes, &counted, &mut solved)?;
+            let fields: Vec<FieldName> = solved.fields.iter().map(FieldName::of).collect();
+            let called: Vec<String> = fields.iter().map(|field| field.name.clone()).collect();
+            let content =
+                solved.fields.into_iter().map(|field| SolutionField { kind: field.kind, values: field.values });
+            let solution = Solution { vertices: counted.vertices.len(), fields: content.collect() };
+            write_solution(&layout.solution(cycle), &solution)?;
+            names::write(&layout.solution(cycle), &Names::default(), &called)?;
+            let (vertices, tets) = (counted.vertices.len(), counted.tets.len());
+            Ok(SolveResult { vertices, tets, fields, functionals: solved.functionals })
+        })
+    }
+
+    /// Which values of the solution the metric is made from, as `field pick --take` has them.
+    fn sensors(&self, fields: &[FieldName]) -> Result<String, String> {
+        Ok(as_words(&picked(&self.loaded.config.metric.fields, fields)?))
+    }
+
+    /// Pictures of the mesh of a cycle: surface and cut.
+    pub fn picture(&self, cycle: u32, fields: &[FieldName]) -> Result<(), Error> {
+        let (layout, output) = (self.layout(), &self.loaded.config.output);
+        self.steps.step(layout.step(cycle, "picture"), |running| {
+            let (mesh, field) = (layout.mesh(cycle), running.file("field.solb"));
+            let sensors = self.sensors(fields)?;
+            let first = sensors.split(',').next().unwrap_or_default().to_owned();
+            let solution = text(&layout.solution(cycle));
+            running.geo_adapt(vec![
+                "field".into(),
+                "pick".into(),
+                solution,
+                "--take".into(),
+                first,
+                "-o".into(),
+                text(&field),
+            ])?;
+            let mut common =
+                vec!["view".into(), text(&mesh), "--field".into(), text(&field), "--color".into(), "field".into()];
+            common.extend(["--size".into(), PICTURE.into(), "-q".into()]);
+            option(&mut common, "--zoom", output.zoom.as_ref());
+            option(&mut common, "--view", output.view.map(|[a, e]| format!("{a},{e}")).as_ref());
+            option(&mut common, "--at", output.at.map(|[x, y, z]| format!("{x},{y},{z}")).as_ref());
+            let mut surface = common.clone();
+            let mut hidden = output.hide.clone();
+            hidden.extend(called(&names::read(&mesh)?.triangles, "farfield"));
+            if !hidden.is_empty() {
+                surface.extend(["--hide".into(), hidden.iter().map(i32::to_string).collect::<Vec<_>>().join(",")]);
+            }
+            surface.extend(["--png".into(), text(&running.file("surface.png"))]);
+            running.geo_adapt(surface)?;
+            let plane = output.cut.clone().map_or_else(|| middle(&mesh), Ok)?;
+            common.extend(["--cut".into(), plane, "--png".into(), text(&running.file("cut.png"))]);
+            running.geo_adapt(common)
+        })?;
+        Ok(())
+    }
+
+    /// What the metric is made from: the fields of the configuration, of the solution.
+    pub fn metric(&self, cycle: u32, fields: &[FieldName]) -> Result<(), Error> {
+        let layout = self.layout();
+        self.steps.step(layout.step(cycle, "metric"), |running| {
+            let sensors = self.sensors(fields)?;
+            let solution = text(&layout.solution(cycle));
+            let target = text(&running.file("sensors.solb"));
+            running.geo_adapt(vec![
+                "field".into(),
+                "pick".into(),
+                solution,
+                "--take".into(),
+                sensors,
+                "-o".into(),
+                target,
+            ])
+        })?;
+        Ok(())
+    }
+
+    /// The next mesh.
+    pub fn adapt(&self, cycle: u32, cad: Option<&Path>) -> Result<Done<Adapted>, Error> {
+        let (layout, config) = (self.layout(), &self.loaded.config);
+        let complexity = config.schedule.of_cycle(cycle);
+        self.steps.step(layout.step(cycle, "adapt"), |running| {
+            let mut words = vec!["adapt".into(), text(&layout.mesh(cycle))];
+            words.extend(["-o".into(), text(&running.file("mesh.meshb"))]);
+            words.extend(["--field".into(), text(&layout.step(cycle, "metric").join("sensors.solb"))]);
+            words.extend(["--complexity".into(), complexity.to_string()]);
+            words.extend(["--report".into(), text(&running.file("report.json"))]);
+            option(&mut words, "--cad", cad.map(text).as_ref());
+            let metric = &config.metric;
+            option(&mut words, "--norm", metric.norm.as_ref());
+            option(&mut words, "--hessian", metric.hessian.map(|word| word.name()).as_ref());
+            option(&mut words, "--gradation", metric.gradation.as_ref());
+            option(&mut words, "--hmin", metric.hmin.as_ref());
+            option(&mut words, "--hmax", metric.hmax.as_ref());
+            option(&mut words, "--aspect-ratio", metric.aspect_ratio.as_ref());
+            if !metric.local.is_empty() {
+                words.extend(["--local".into(), metric.local.join(",")]);
+            }
+            if cad.is_some() && metric.geometry == Some(false) {
+                words.push("--no-geometry".into());
+            }
+            option(&mut words, "--segments", metric.segments.as_ref());
+            option(&mut words, "--feature-cells", metric.feature_cells.as_ref());
+            words.extend(config.adapt.options.iter().cloned().chain(self.threads.clone()));
+            running.geo_adapt(words)?;
+            Ok(Adapted { complexity })
+        })
+    }
+
+    /// The solution on the next mesh.
+    pub fn transfer(&self, cycle: u32) -> Result<(), Error> {
+        let (layout, method) = (self.layout(), self.loaded.config.transfer.method);
+        self.steps.step(layout.step(cycle, "transfer"), |running| {
+            let mut words = vec!["transfer".into(), text(&layout.mesh(cycle)), text(&layout.solution(cycle))];
+            words.extend([text(&layout.mesh(cycle + 1)), "-o".into(), text(&running.file("solution.solb"))]);
+            if method == TransferMethod::Conservative {
+                words.push("--conservative".into());
+            }
+            words.extend(self.threads.clone());
+            running.geo_adapt(words)
+        })?;
+        Ok(())
+    }
+}
+
+/// Adds an option with its value, if there is one.
+fn option(words: &mut Vec<String>, name: &str, value: Option<&impl ToString>) {
+    if let Some(value) = value {
+        // In one word, so that a value may begin with a dash.
+        words.push(format!("{name}={}", value.to_string()));
+    }
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), Error> {
+    std::fs::copy(from, to).map(drop).map_err(|error| Error::Failed(format!("{}: {error}", from.display())))
+}
+
+/// The plane x = middle of the box.
+fn middle(mesh: &Path) -> Result<String, Error> {
+    let vertices = read_mesh(mesh)?.content.vertices;
+    let ends =
+        vertices.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[0]), high.max(p[0])]);
+    Ok(format!("x={}", (ends[0] + ends[1]) / 2.0))
+}

@@ -1,0 +1,175 @@
+//! The loop from its beginning, or from where it was left, to its end.
+use super::config::{Config, Loaded, TransferMethod, differences};
+use super::history::{Cycle, History};
+use super::layout::Layout;
+use super::pipeline::{Pipeline, SolveResult};
+use super::process::Stop;
+use super::step::{Steps, write_json};
+use super::{Error, report};
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File, TryLockError};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering::Relaxed;
+
+/// Who is told what happens.
+pub trait Observer {
+    /// A step begins; its log is written as it goes.
+    fn begin(&self, step: &str, log: &Path);
+    /// A step is done, after so many seconds.
+    fn end(&self, step: &str, seconds: f64);
+    /// Something that the user should know.
+    fn note(&self, text: &str);
+    /// A solve is done, by this run or one before.
+    fn cycle(&self, cycle: &Cycle);
+}
+
+/// How a run goes.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Threads that solvers are told.
+    pub threads: usize,
+    /// Whether to throw away what is there.
+    pub restart: bool,
+}
+
+/// How a loop ended.
+#[derive(Debug)]
+pub struct Ended {
+    /// Why.
+    pub reason: String,
+    /// All cycles.
+    pub history: History,
+    /// The report page.
+    pub page: PathBuf,
+    /// The last mesh.
+    pub mesh: PathBuf,
+    /// The solution on it.
+    pub solution: PathBuf,
+}
+
+/// What `loop.json` says.
+#[derive(Serialize, Deserialize)]
+struct State {
+    version: String,
+    config: Config,
+}
+
+/// Runs the loop to its end.
+///
+/// # Errors
+/// [`Error::Interrupted`] when the user ended it, [`Error::Failed`] with place and remedy. In both cases it goes on with the same call.
+pub fn run(loaded: &Loaded, options: &Options, observer: &dyn Observer, stop: &Stop) -> Result<Ended, Error> {
+    loaded.config.solver.solver().check(&loaded.base).map_err(|error| format!("{}: {error}", loaded.path.display()))?;
+    let folder = loaded.output();
+    let named = |error: std::io::Error| Error::Failed(format!("{}: {error}", folder.display()));
+    fs::create_dir_all(&folder).map_err(named)?;
+    // Without `..`: its files are named in commands.
+    let layout = Layout::new(folder.canonicalize().map_err(named)?);
+    let lock = File::create(layout.lock()).map_err(named)?;
+    if matches!(lock.try_lock(), Err(TryLockError::WouldBlock)) {
+        return Err(Error::Failed(format!(
+            "{}: another run of geo-adapt cycle works in this folder: wait for its end, or give another [output] folder",
+            layout.root().display()
+        )));
+    }
+    let steps = Steps { layout: &layout, observer, stop };
+    begin(loaded, options, steps)?;
+    let threads = loaded.config.threads.map_or_else(Vec::new, |threads| vec!["--threads".into(), threads.to_string()]);
+    let pipeline = Pipeline { loaded, steps, options, threads };
+    let outcome = go(&pipeline, observer, stop);
+    drop(lock);
+    outcome
+}
+
+/// Finds what is there: nothing, or a loop of the same configuration.
+fn begin(loaded: &Loaded, options: &Options, steps: Steps<'_>) -> Result<(), Error> {
+    let layout = steps.layout;
+    let state = State { version: env!("CARGO_PKG_VERSION").into(), config: loaded.config.clone() };
+    if options.restart {
+        // First what says that there is a loop: a kill on the way leaves one that asks for --restart again.
+        let _ = fs::remove_file(layout.state());
+        for folder in layout.present() {
+            for step in super::layout::STEPS {
+                steps.clear(&folder.join(step))?;
+            }
+            steps.clear(&folder)?;
+        }
+        return write_json(&layout.state(), &state);
+    }
+    let place = layout.state().display().to_string();
+    let bytes = match fs::read(layout.state()) {
+        Ok(bytes) => bytes,
+        Err(_) if layout.present().is_empty() => return write_json(&layout.state(), &state),
+        Err(error) => {
+            return Err(Error::Failed(format!(
+                "{place}: {error}; but there are steps of a loop beside it: --restart removes them and begins anew"
+            )));
+        }
+    };
+    let old: State = serde_json::from_slice(&bytes).map_err(|error| {
+        Error::Failed(format!(
+            "{place}: the loop in this folder cannot be read ({error}): --restart removes it and begins anew"
+        ))
+    })?;
+    let changed = differences(&old.config, &loaded.config);
+    if changed.is_empty() {
+        return write_json(&layout.state(), &state);
+    }
+    Err(Error::Failed(format!(
+        "{}: the loop in {} was begun with another configuration: {}. Change it back to go on, give another [output] folder, or \
+         --restart to throw away what is there",
+        loaded.path.display(),
+        layout.root().display(),
+        changed.join("; ")
+    )))
+}
+
+fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<Ended, Error> {
+    let (layout, config) = (pipeline.steps.layout, &pipeline.loaded.config);
+    let cad = pipeline.start()?.result.cad;
+    let transfers = config.transfer.method != TransferMethod::None;
+    let mut functional = Vec::new();
+    let mut before: Option<SolveResult> = None;
+    let mut cycle = 1;
+    let (reason, history) = loop {
+        let fields = before.as_ref().filter(|_| transfers);
+        let solved = pipeline.solve(cycle, fields.map(|solved| &solved.fields[..]))?.result;
+        if let Some(converged) = &config.schedule.converged {
+            let value = solved.functionals.get(&converged.functional).ok_or_else(|| {
+                let known: Vec<&str> = solved.functionals.keys().map(String::as_str).collect();
+                let known = if known.is_empty() { "none".into() } else { known.join(", ") };
+                format!(
+                    "[schedule.converged] functional: the solver tells no '{}'; it tells {known}",
+                    converged.functional
+                )
+            })?;
+            functional.push(*value);
+        }
+        let ends = config.schedule.ends(cycle - 1, &functional);
+        // The last mesh of a complexity is shown.
+        let last =
+            cycle > 1 && (ends.is_some() || config.schedule.of_cycle(cycle - 1) != config.schedule.of_cycle(cycle));
+        if config.output.pictures && last {
+            pipeline.picture(cycle, &solved.fields)?;
+        }
+        let mut history = History::of(layout, cycle);
+        history.cycles.last().into_iter().for_each(|last| observer.cycle(last));
+        history.ended = ends.clone();
+        write_json(&layout.figures(), &history)?;
+        report::write(layout, config, &history)?;
+        if let Some(reason) = ends {
+            break (reason, history);
+        }
+        pipeline.metric(cycle, &solved.fields)?;
+        pipeline.adapt(cycle, cad.as_deref())?;
+        if transfers {
+            pipeline.transfer(cycle)?;
+        }
+        if stop.asked.load(Relaxed) {
+            return Err(Error::Interrupted);
+        }
+        before = Some(solved);
+        cycle += 1;
+    };
+    Ok(Ended { reason, history, page: layout.page(), mesh: layout.mesh(cycle), solution: layout.solution(cycle) })
+}

@@ -1,0 +1,216 @@
+//! Runs a prepared case, some steps at a time, until it stands still; what blows up is repeated with smaller steps.
+use super::dictionaries::{Scheme, Stage, write_stage};
+use super::flow::Flow;
+use super::forces::{Coefficients, Walls};
+use super::programs::solve;
+use crate::formats::foam;
+use crate::mesh::TetMesh;
+use crate::mesh::vector::volume6;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// The file of the plan in the folder of the case.
+pub const PLAN: &str = "plan.json";
+
+/// The file of the results there.
+pub const RESULT: &str = "coefficients.json";
+
+/// How often the Courant number is halved at most before it is given up.
+const HALVINGS: i32 = 5;
+
+/// Blocks without trouble after which a halved Courant number is doubled again.
+const CALM: usize = 3;
+
+/// What is to be done with a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// The program, rhoCentralFoam.
+    pub program: String,
+    /// Processes of it; above 1 by mpirun.
+    pub processes: u32,
+    /// The flow.
+    pub flow: Flow,
+    /// References of the walls.
+    pub walls: Vec<i32>,
+    /// How.
+    pub stage: Stage,
+    /// Steps of first order before.
+    pub start_steps: usize,
+    /// Further steps at most.
+    pub steps: usize,
+    /// Steps between two looks.
+    pub block: usize,
+    /// It stands still when pressure and coefficients change by less than this over a block, relatively, twice in a row.
+    pub still: f64,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// Of the last cells.
+    pub coefficients: Coefficients,
+    /// Steps that were made and kept.
+    pub steps: usize,
+    /// Relative change of the pressure over the last block.
+    pub change: f64,
+    /// Whether it stood still before the steps were used up.
+    pub still: bool,
+    /// Blocks that blew up and were repeated.
+    pub repeated: usize,
+}
+
+/// Fields of the cells at a step.
+struct State {
+    pressure: Vec<f64>,
+    velocity: Vec<f64>,
+}
+
+/// Runs the case in the folder as its plan says; `tell` is given a line a block.
+///
+/// # Errors
+/// When a file is not there, or it blows up however small the steps are: with the last lines of its log.
+pub fn drive(case: &Path, tell: &mut dyn FnMut(&str)) -> Result<Outcome, String> {
+    let path = case.join(PLAN);
+    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let text = std::fs::read_to_string(&path).map_err(|error| named(&error))?;
+    let plan: Plan = serde_json::from_str(&text).map_err(|error| named(&error))?;
+    let (mesh, _) = foam::read_mesh(case).map_err(|error| error.to_string())?;
+    let mut run = Run::new(case, &plan, &mesh)?;
+    let first = Stage { scheme: Scheme::Upwind, ..plan.stage };
+    while run.at < plan.start_steps {
+        run.block(first, plan.start_steps, tell)?;
+    }
+    let end = plan.start_steps + plan.steps;
+    let mut calm = 0;
+    while run.at < end && calm < 2 {
+        let still = run.block(plan.stage, end, tell)?;
+        calm = if still { calm + 1 } else { 0 };
+    }
+    let outcome = Outcome {
+        coefficients: run.coefficients,
+        steps: run.at,
+        change: run.change,
+        still: calm >= 2,
+        repeated: run.repeated,
+    };
+    let text = serde_json::to_string_pretty(&outcome).map_err(|error| error.to_string())?;
+    std::fs::write(case.join(RESULT), text).map_err(|error| format!("{}: {error}", case.join(RESULT).display()))?;
+    Ok(outcome)
+}
+
+struct Run<'a> {
+    case: &'a Path,
+    plan: &'a Plan,
+    walls: Walls,
+    volumes: Vec<f64>,
+    /// The step whose fields are there.
+    at: usize,
+    state: State,
+    coefficients: Coefficients,
+    change: f64,
+    halvings: i32,
+    /// Blocks since the last trouble.
+    calm: usize,
+    repeated: usize,
+}
+
+impl<'a> Run<'a> {
+    fn new(case: &'a Path, plan: &'a Plan, mesh: &TetMesh) -> Result<Self, String> {
+        let volume = |nodes: &[u32; 4]| {
+            let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
+            volume6(a, b, c, d).abs()
+        };
+        let volumes: Vec<f64> = mesh.tets.nodes.iter().map(volume).collect();
+        let state = state(&case.join("0"), volumes.len())?;
+        let walls = Walls::of(mesh, &plan.walls);
+        let (coefficients, change) = (Coefficients::default(), f64::INFINITY);
+        Ok(Self { case, plan, walls, volumes, at: 0, state, coefficients, change, halvings: 0, calm: 0, repeated: 0 })
+    }
+
+    /// Makes the next block of steps, at most to step `end`; whether the flow stood still over it.
+    fn block(&mut self, stage: Stage, end: usize, tell: &mut dyn FnMut(&str)) -> Result<bool, String> {
+        let next = (self.at + self.plan.block).min(end);
+        loop {
+            let courant = stage.courant * 0.5f64.powi(self.halvings);
+            write_stage(self.case, Stage { courant, ..stage }, self.at, next)?;
+            let ended = self.start(next).and_then(|()| state(&self.case.join(next.to_string()), self.volumes.len()));
+            match ended {
+                Ok(state) => {
+                    self.take(next, state)?;
+                    let Coefficients { lift, drag } = self.coefficients;
+                    tell(&format!(
+                        "step {next:>6}  CL {lift:>10.6}  CD {drag:>10.6}  change {:>9.2e}  Courant {courant} {:?}",
+                        self.change, stage.scheme
+                    ));
+                    return Ok(self.change < self.plan.still);
+                }
+                Err(error) if self.halvings >= HALVINGS => {
+                    return Err(format!("however small the time steps, {error}"));
+                }
+                Err(_) => {
+                    (self.halvings, self.calm, self.repeated) = (self.halvings + 1, 0, self.repeated + 1);
+                    tell(&format!("step {next:>6}  blew up at Courant {courant}: half of that from step {}", self.at));
+                    remove(&self.case.join(next.to_string()));
+                }
+            }
+        }
+    }
+
+    /// Starts the solver for the steps up to `next`.
+    fn start(&self, next: usize) -> Result<(), String> {
+        let log = self.case.join(format!("log.{next}"));
+        solve(self.case, self.plan, &log)?;
+        let _ = std::fs::remove_file(&log); // of no use any more
+        Ok(())
+    }
+
+    /// Takes over a block that ended well, and drops the one before.
+    fn take(&mut self, next: usize, state: State) -> Result<(), String> {
+        let coefficients = self.walls.coefficients(&self.plan.flow, &state.pressure, &state.velocity);
+        let size = |f: &dyn Fn(usize) -> f64| {
+            (0..self.volumes.len()).map(|cell| self.volumes[cell] * f(cell).abs()).sum::<f64>()
+        };
+        let away = size(&|cell| state.pressure[cell] - self.plan.flow.pressure);
+        let moved = size(&|cell| state.pressure[cell] - self.state.pressure[cell]);
+        let Coefficients { lift, drag } = self.coefficients;
+        let forces = (coefficients.lift - lift).abs().max((coefficients.drag - drag).abs())
+            / coefficients.lift.abs().max(coefficients.drag.abs()).max(1e-6);
+        self.change = if away > 0.0 { moved / away } else { moved };
+        if !self.walls.is_empty() {
+            self.change = self.change.max(forces);
+        }
+        if self.at > 0 {
+            remove(&self.case.join(self.at.to_string()));
+        }
+        (self.at, self.state, self.coefficients) = (next, state, coefficients);
+        self.calm += 1;
+        if self.calm > CALM && self.halvings > 0 {
+            (self.halvings, self.calm) = (self.halvings - 1, 0);
+        }
+        Ok(())
+    }
+}
+
+/// Removes a folder of a time, which another will replace.
+fn remove(folder: &Path) {
+    let _ = std::fs::remove_dir_all(folder); // it may not have been written
+}
+
+/// The fields of a time; an error where it is not whole.
+fn state(time: &Path, cells: usize) -> Result<State, String> {
+    let read = |name: &str| match foam::read_cell_field(&time.join(name), cells) {
+        Ok(Ok(field)) => Ok(field.values),
+        Ok(Err(class)) => Err(format!("{}: a {class} where a field of cells should be", time.join(name).display())),
+        Err(error) => Err(error.to_string()),
+    };
+    let temperature = read("T")?;
+    if let Some(value) = temperature.iter().find(|value| **value <= 0.0) {
+        return Err(format!("{}: a temperature is {value}", time.display()));
+    }
+    Ok(State { pressure: read("p")?, velocity: read("U")? })
+}
+
+/// The folder of the last step.
+pub fn last_time(case: &Path) -> Result<PathBuf, String> {
+    foam::newest_time(case).ok_or_else(|| format!("{}: there is no time folder", case.display()))
+}

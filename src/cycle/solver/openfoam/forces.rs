@@ -1,0 +1,106 @@
+//! Forces of the flow on walls, from the values of the cells at them.
+use super::flow::Flow;
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::{FACES, TriangleIndex};
+use crate::mesh::vector::{Vec3, add, cross, dot, norm, scale, sub};
+use crate::tasks::Team;
+
+/// A triangle of a wall.
+struct Piece {
+    /// The tetrahedron at it.
+    tet: u32,
+    /// Its area times the normal that points out of the flow, into the body.
+    area: Vec3,
+    /// The distance of the tetrahedron's centroid.
+    height: f64,
+}
+
+/// The walls of a mesh.
+pub struct Walls {
+    pieces: Vec<Piece>,
+}
+
+impl Walls {
+    /// The triangles of these references that lie on one tetrahedron.
+    pub fn of(mesh: &TetMesh, references: &[i32]) -> Self {
+        let team = Team::alone();
+        let sides = TriangleIndex::new(team, &mesh.triangles.nodes, mesh.vertices.len()).sides(team, &mesh.tets.nodes);
+        let wall = sides.into_iter().filter(|side| references.contains(&mesh.triangles.refs[side.triangle as usize]));
+        let piece = |tet: u32, face: u32| {
+            let nodes = mesh.tets.nodes[tet as usize];
+            let [a, b, c] = FACES[face as usize].map(|i| mesh.vertices[nodes[i] as usize]);
+            let area = scale(cross(sub(b, a), sub(c, a)), 0.5);
+            let apex = mesh.vertices[nodes[face as usize] as usize];
+            // The centroid is a quarter of the way to the apex.
+            let height = (0.25 * dot(sub(apex, a), area) / norm(area)).abs();
+            Piece { tet, area, height }
+        };
+        Self { pieces: wall.map(|side| piece(side.tet, side.face)).collect() }
+    }
+
+    /// Lift and drag coefficients of pressures and velocities of the cells: the pressure is that of the cell at the wall, the shear the slope
+    /// between its centroid and the wall.
+    pub fn coefficients(&self, flow: &Flow, pressure: &[f64], velocity: &[f64]) -> Coefficients {
+        let mut force = [0.0; 3];
+        let viscosity = flow.viscosity();
+        for Piece { tet, area, height } in &self.pieces {
+            let cell = *tet as usize;
+            force = add(force, scale(*area, pressure[cell] - flow.pressure));
+            if viscosity > 0.0 {
+                let size = norm(*area);
+                let normal = scale(*area, 1.0 / size);
+                let moving: Vec3 = std::array::from_fn(|k| velocity[3 * cell + k]);
+                let along = sub(moving, scale(normal, dot(moving, normal)));
+                force = add(force, scale(along, viscosity * size / height));
+            }
+        }
+        let unit = flow.dynamic_pressure() * flow.area;
+        Coefficients { lift: dot(force, flow.upwards()) / unit, drag: dot(force, flow.downstream()) / unit }
+    }
+
+    /// Whether there is no wall.
+    pub fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+}
+
+/// What acts on the walls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Coefficients {
+    /// C_L.
+    pub lift: f64,
+    /// C_D.
+    pub drag: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::cube;
+
+    #[test]
+    fn a_constant_pressure_pushes_on_one_side_of_a_cube() {
+        let mesh = cube(2);
+        let flow: Flow =
+            toml::from_str("mach = 1.0\narea = 2.0\nangle_of_attack = 90.0\nwalls = ['a']\nreynolds = 10.0").unwrap();
+        let side = |axis: usize| {
+            let on = |nodes: &[u32; 3]| nodes.iter().all(|&v| mesh.vertices[v as usize][axis] == 1.0);
+            mesh.triangles.refs[mesh.triangles.nodes.iter().position(on).unwrap()]
+        };
+        let cells = mesh.tets.len();
+        // Upwards is −x, downstream z: 2 more than outside on the side x = 1 of area 1 pushes to +x.
+        let rest = vec![0.0; 3 * cells];
+        let found = Walls::of(&mesh, &[side(0)]).coefficients(&flow, &vec![3.0; cells], &rest);
+        assert!((found.lift + 2.0 / (0.7 * 2.0)).abs() < 1e-12 && found.drag.abs() < 1e-12, "{found:?}");
+        // Where all sides are walls nothing is left.
+        let found = Walls::of(&mesh, &[1, 2, 3, 4, 5, 6]).coefficients(&flow, &vec![3.0; cells], &rest);
+        assert!(found.lift.abs() < 1e-12 && found.drag.abs() < 1e-12, "{found:?}");
+        // A flow along z above x = 0 drags it along; through the wall it does not.
+        let velocity: Vec<f64> = (0..cells).flat_map(|_| [5.0, 0.0, 1.0]).collect();
+        let walls = Walls::of(&mesh, &[side(0)]);
+        let found = walls.coefficients(&flow, &vec![1.0; cells], &velocity);
+        let slope: f64 = walls.pieces.iter().map(|piece| norm(piece.area) / piece.height).sum();
+        assert!((found.drag - flow.viscosity() * slope / 1.4).abs() < 1e-12 && found.lift.abs() < 1e-12, "{found:?}");
+        assert!(walls.pieces.iter().all(|piece| (piece.height - 0.125).abs() < 1e-12));
+    }
+}

@@ -1,0 +1,247 @@
+//! OpenFOAM's rhoCentralFoam: a case is made of a few flow conditions, run with local time steps until it stands still, and read.
+//!
+//! `flow` says what holds where, `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
+//! `programs`, and `forces` sums up what acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
+mod dictionaries;
+pub mod drive;
+mod flow;
+mod forces;
+mod programs;
+
+pub use dictionaries::{Scheme, Stage};
+pub use flow::{Flow, Kind};
+pub use forces::{Coefficients, Walls};
+
+use super::{Call, Job, Solved, Solver, find_program};
+use crate::formats::foam::{self, CellField};
+use crate::formats::{Dataset, NamedField};
+use crate::mesh::io::FieldKind;
+use crate::tasks::Team;
+use drive::{Outcome, PLAN, Plan, RESULT};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// `[solver.openfoam]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// The program, on the PATH or with its folder.
+    #[serde(default = "program")]
+    pub program: String,
+    /// Processes: above 1 the mesh is cut into as many parts, and mpirun starts them.
+    #[serde(default = "single")]
+    pub processes: u32,
+    /// The flow.
+    pub flow: Flow,
+    /// Steps of a solve at most.
+    #[serde(default = "thousand")]
+    pub steps: usize,
+    /// Steps of first order before those of the first solve.
+    #[serde(default = "start")]
+    pub start_steps: usize,
+    /// Steps between two looks at it.
+    #[serde(default = "hundred")]
+    pub block: usize,
+    /// A solve ends when pressure and coefficients change by less over two blocks in a row, relatively.
+    #[serde(default = "still")]
+    pub still: f64,
+    /// How values at faces are found.
+    #[serde(default)]
+    pub scheme: Scheme,
+    /// Greatest Courant number; it is halved where a solve blows up.
+    #[serde(default = "courant")]
+    pub courant: f64,
+    /// Greatest growth of the local time step from a cell to the next, less 1.
+    #[serde(default = "courant")]
+    pub smoothing: f64,
+}
+
+fn program() -> String {
+    "rhoCentralFoam".into()
+}
+
+fn single() -> u32 {
+    1
+}
+
+fn thousand() -> usize {
+    1000
+}
+
+fn start() -> usize {
+    300
+}
+
+fn hundred() -> usize {
+    100
+}
+
+fn still() -> f64 {
+    1e-4
+}
+
+fn courant() -> f64 {
+    0.3
+}
+
+/// The folder of the case in that of a step.
+const CASE: &str = "case";
+
+impl Config {
+    /// What holds at each surface of a mesh.
+    fn kinds(&self, data: &Dataset) -> Result<BTreeMap<i32, Kind>, String> {
+        let references: BTreeSet<i32> = data.mesh.triangles.refs.iter().copied().collect();
+        let name = |reference: i32| data.names.triangles.get(&reference).and_then(|label| label.name.as_deref());
+        let shown = |reference: i32| {
+            name(reference).map_or_else(|| reference.to_string(), |name| format!("{name} ({reference})"))
+        };
+        let (mut kinds, mut missing) = (BTreeMap::new(), Vec::new());
+        for &reference in &references {
+            match self.flow.kind(reference, name(reference)) {
+                Some(kind) => drop(kinds.insert(reference, kind)),
+                None => missing.push(shown(reference)),
+            }
+        }
+        if !missing.is_empty() {
+            return Err(format!(
+                "[solver.openfoam.flow] says nothing of the surfaces {}: put each in one of walls, symmetry, farfield, inflow, outflow",
+                missing.join(", ")
+            ));
+        }
+        let flow = &self.flow;
+        let lists = [&flow.walls, &flow.symmetry, &flow.farfield, &flow.inflow, &flow.outflow];
+        let known = |word: &str| {
+            references.iter().any(|&reference| name(reference) == Some(word) || reference.to_string() == word)
+        };
+        if let Some(word) = lists.into_iter().flatten().find(|word| !known(word)) {
+            let all: Vec<String> = references.iter().map(|&reference| shown(reference)).collect();
+            return Err(format!("[solver.openfoam.flow] names a surface {word}, but the mesh has {}", all.join(", ")));
+        }
+        Ok(kinds)
+    }
+
+    /// The fields to begin with: those before, or the free stream.
+    fn initial(&self, data: &Dataset) -> Result<[CellField; 3], String> {
+        let (flow, team) = (&self.flow, Team::alone());
+        let uniform = |kind, values: &[f64]| CellField { kind, values: values.to_vec() };
+        if data.fields.is_empty() {
+            return Ok([
+                uniform(FieldKind::Scalar, &[flow.pressure]),
+                uniform(FieldKind::Scalar, &[flow.temperature]),
+                uniform(FieldKind::Vector, &flow.velocity()),
+            ]);
+        }
+        let cells = |name: &str, kind: FieldKind| {
+            let field = data.fields.iter().find(|field| field.name == name && field.kind == kind);
+            let field = field.ok_or_else(|| format!("the solution before has no field {name}: begin the loop anew"))?;
+            let values = foam::vertices_to_cells(team, &data.mesh, &field.values, kind.values());
+            Ok::<_, String>(CellField { kind, values })
+        };
+        let (mut p, mut t) = (cells("p", FieldKind::Scalar)?, cells("T", FieldKind::Scalar)?);
+        // What a transfer that keeps integrals may have overshot.
+        p.values.iter_mut().for_each(|value| *value = value.max(0.02 * flow.pressure));
+        t.values.iter_mut().for_each(|value| *value = value.max(0.05 * flow.temperature));
+        Ok([p, t, cells("U", FieldKind::Vector)?])
+    }
+
+    fn plan(&self, kinds: &BTreeMap<i32, Kind>, begins: bool) -> Plan {
+        let walls = kinds.iter().filter(|(_, kind)| **kind == Kind::Wall).map(|(&reference, _)| reference);
+        Plan {
+            program: self.program.clone(),
+            processes: self.processes,
+            flow: self.flow.clone(),
+            walls: walls.collect(),
+            stage: Stage { scheme: self.scheme, courant: self.courant, smoothing: self.smoothing },
+            start_steps: if begins { self.start_steps } else { 0 },
+            steps: self.steps,
+            block: self.block,
+            still: self.still,
+        }
+    }
+}
+
+impl Solver for Config {
+    fn check(&self, base: &Path) -> Result<(), String> {
+        self.flow.check()?;
+        if self.block == 0 || self.steps == 0 || self.processes == 0 {
+            return Err("[solver.openfoam] steps, block and processes: give 1 or more".into());
+        }
+        if self.processes > 1 && find_program("mpirun", base).is_none() {
+            return Err("[solver.openfoam] processes is above 1, but there is no mpirun on the PATH".into());
+        }
+        if !(self.courant > 0.0 && self.courant < 1.0 && self.smoothing > 0.0 && self.smoothing.is_finite()) {
+            return Err(
+                "[solver.openfoam] courant: give a number between 0 and 1 (0.2 to 0.45 is usual); smoothing: above 0"
+                    .into(),
+            );
+        }
+        if find_program(&self.program, base).is_none() {
+            return Err(format!(
+                "[solver.openfoam] {} is not there: install OpenFOAM (sudo apt install openfoam), or give program with its folder",
+                self.program
+            ));
+        }
+        Ok(())
+    }
+
+    fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {
+        let data = job.dataset()?;
+        let (kinds, initial) = (self.kinds(&data)?, self.initial(&data)?);
+        let case = job.folder.join(CASE);
+        let kind_of = |reference: i32, _: &str| kinds.get(&reference).map_or("patch", |kind| kind.patch()).to_owned();
+        let folder = case.join("constant/polyMesh");
+        let patches = foam::write_poly_mesh(Team::alone(), &folder, &data.mesh, &data.names, &kind_of, false);
+        let patches = patches.map_err(|error| error.to_string())?;
+        let time = case.join("0");
+        std::fs::create_dir_all(&time).map_err(|error| format!("{}: {error}", time.display()))?;
+        for (name, field) in ["p", "T", "U"].into_iter().zip(&initial) {
+            let entries = |patch: &foam::Patch| (patch.name.clone(), self.flow.entries(name, kinds[&patch.reference]));
+            let entries: Vec<_> = patches.iter().map(entries).collect();
+            foam::write_cell_field(&time.join(name), field, data.mesh.tets.len(), &entries, false)
+                .map_err(|error| error.to_string())?;
+        }
+        dictionaries::write_constant(&case, &self.flow)?;
+        let mut plan = self.plan(&kinds, data.fields.is_empty());
+        if let Some(program) = find_program(&self.program, job.base) {
+            plan.program = program.to_string_lossy().into_owned();
+        }
+        let text = serde_json::to_string_pretty(&plan).map_err(|error| error.to_string())?;
+        std::fs::write(case.join(PLAN), text).map_err(|error| format!("{}: {error}", case.join(PLAN).display()))?;
+        let own = std::env::current_exe().map_err(|error| format!("this program's own file: {error}"))?;
+        let words = vec![own.to_string_lossy().into_owned(), "openfoam".into(), case.to_string_lossy().into_owned()];
+        Ok(vec![Call { words, env: Vec::new(), folder: job.folder.to_owned() }])
+    }
+
+    fn collect(&self, job: &Job<'_>) -> Result<Solved, String> {
+        let case = job.folder.join(CASE);
+        let path = case.join(RESULT);
+        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        let text = std::fs::read_to_string(&path).map_err(|error| named(&error))?;
+        let outcome: Outcome = serde_json::from_str(&text).map_err(|error| named(&error))?;
+        let mesh = job.mesh()?;
+        let fields = fields(&self.flow, &mesh, &drive::last_time(&case)?)?;
+        let Coefficients { lift, drag } = outcome.coefficients;
+        let steps = outcome.steps as f64;
+        let functionals = [("CL", lift), ("CD", drag), ("steps", steps), ("change", outcome.change)];
+        Ok(Solved { fields, functionals: functionals.map(|(name, value)| (name.to_owned(), value)).into() })
+    }
+}
+
+/// Pressure, temperature, velocity, density and Mach number at the vertices.
+fn fields(flow: &Flow, mesh: &crate::mesh::TetMesh, time: &Path) -> Result<Vec<NamedField>, String> {
+    let read = |name: &str| -> Result<NamedField, String> {
+        let path = time.join(name);
+        let read = foam::read_cell_field(&path, mesh.tets.len()).map_err(|error| error.to_string())?;
+        let CellField { kind, values } = read.map_err(|class| format!("{}: a {class}", path.display()))?;
+        let values = foam::cells_to_vertices(Team::alone(), mesh, &values, kind.values());
+        Ok(NamedField { name: name.to_owned(), kind, values })
+    };
+    let (p, t, u) = (read("p")?, read("T")?, read("U")?);
+    let scalar = |name: &str, values| NamedField { name: name.to_owned(), kind: FieldKind::Scalar, values };
+    let density = p.values.iter().zip(&t.values).map(|(p, t)| p / (flow.r() * t)).collect();
+    let speed = u.values.chunks_exact(3).map(|u| (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt());
+    let mach = speed.zip(&t.values).map(|(speed, t)| speed / (flow.gamma * flow.r() * t).sqrt()).collect();
+    let (rho, mach) = (scalar("rho", density), scalar("Mach", mach));
+    Ok(vec![p, t, u, rho, mach])
+}

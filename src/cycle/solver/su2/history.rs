@@ -1,0 +1,50 @@
+//! The history of convergence: a table with names in quotes, padded with spaces.
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The values of some columns in the last row.
+///
+/// # Errors
+/// When the file or a column is not there, or a value is no number.
+pub fn last(path: &Path, wanted: &[String]) -> Result<BTreeMap<String, f64>, String> {
+    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let text = std::fs::read_to_string(path).map_err(|error| named(&error))?;
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let clean = |word: &str| word.trim().trim_matches('"').trim().to_owned();
+    let head: Vec<String> = lines.next().unwrap_or_default().split(',').map(clean).collect();
+    let row: Vec<String> =
+        lines.next_back().ok_or_else(|| named(&"no row: SU2 made no iteration"))?.split(',').map(clean).collect();
+    let find = |name: &String| {
+        let at = head.iter().position(|column| column == name).ok_or_else(|| {
+            named(&format!(
+                "no column '{name}': mend [solver.su2] functionals or HISTORY_OUTPUT; there are {}",
+                head.join(", ")
+            ))
+        })?;
+        let value = row.get(at).and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
+        let value = value
+            .ok_or_else(|| named(&format!("{name} is no number in the last row: did SU2 diverge? Its log tells")))?;
+        Ok((name.clone(), value))
+    };
+    wanted.iter().map(find).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_row_by_the_names_of_columns() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let text = "\"Time_Iter\",\"Inner_Iter\",     \"rms[Rho]\"    ,        \"CL\"       ,        \"CD\"       \n          0,          0,     -2.1,  0.1, 0.02\n          0,          1,     -3.1,  0.288, 1.5e-02\n";
+        std::fs::write(&path, text).unwrap();
+        let found = last(&path, &["CL".into(), "CD".into()]).unwrap();
+        assert_eq!(found, BTreeMap::from([("CL".into(), 0.288), ("CD".into(), 0.015)]));
+        assert!(
+            last(&path, &["CMz".into()]).unwrap_err().contains("there are Time_Iter, Inner_Iter, rms[Rho], CL, CD")
+        );
+        std::fs::write(&path, text.replace("0.288", "-nan")).unwrap();
+        assert!(last(&path, &["CL".into()]).unwrap_err().contains("diverge"));
+    }
+}

@@ -1,0 +1,198 @@
+//! Cases of OpenFOAM: the mesh (polyMesh) and fields at its cells, as text or raw bytes, plain or gzip.
+//! Source: OpenFOAM user guide, "Mesh description" and "Field files" (v1912); only what is a mesh of tetrahedra.
+//!
+//! Reading goes bytes → `file` (head) → `scan` (words) → `list`, `boundary` → `poly_mesh`; fields go from cells to vertices by `average`.
+mod average;
+mod boundary;
+mod field;
+mod file;
+mod list;
+mod poly_mesh;
+mod scan;
+mod write;
+
+pub use average::{cells_to_vertices, vertices_to_cells};
+pub use boundary::Patch;
+pub use field::{CellField, read_cell_field, write_cell_field};
+pub use write::write_poly_mesh;
+
+use super::{Dataset, NamedField};
+use crate::geometry::Names;
+use crate::mesh::TetMesh;
+use crate::mesh::io::{Error, Read, write_beside};
+use crate::tasks::Team;
+use std::path::{Path, PathBuf};
+
+/// The name of a patch of triangles without one.
+fn unnamed_surface(reference: i32) -> String {
+    format!("surface_{reference}")
+}
+
+/// The name of a zone of tetrahedra without one.
+fn unnamed_region(reference: i32) -> String {
+    format!("region_{reference}")
+}
+
+/// Whether this is a case, or its polyMesh.
+pub fn is_case(path: &Path) -> bool {
+    file::find(&poly_mesh_of(path), "faces").is_some()
+}
+
+/// The polyMesh of a case, or of itself.
+fn poly_mesh_of(path: &Path) -> PathBuf {
+    let is_itself = path.file_name().is_some_and(|name| name == "polyMesh");
+    if is_itself { path.to_owned() } else { path.join("constant/polyMesh") }
+}
+
+/// The case of a polyMesh, or itself.
+fn case_of(path: &Path) -> PathBuf {
+    let is_itself = path.file_name().is_some_and(|name| name == "polyMesh");
+    let case = path.parent().and_then(Path::parent).filter(|_| is_itself);
+    case.unwrap_or(path).to_owned()
+}
+
+/// Reads the mesh of a case and the names of its references, without fields.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_mesh(path: &Path) -> Result<(TetMesh, Names), Error> {
+    poly_mesh::read(&poly_mesh_of(path))
+}
+
+/// Reads a case, or its polyMesh: the mesh, and the fields of the newest time folder, averaged to the vertices.
+///
+/// # Errors
+/// [`Error::System`] when a file is not there or cannot be read, [`Error::Content`] when what it says cannot be true, or the mesh has
+/// cells that are no tetrahedra.
+pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
+    read_on(Team::alone(), path)
+}
+
+/// As [`read`], on the threads of a team.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_on(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, Error> {
+    let (mesh, names) = read_mesh(path)?;
+    let (mut fields, mut notices, mut passed) = (Vec::new(), Vec::new(), Vec::new());
+    if let Some(time) = newest_time(&case_of(path)) {
+        for file in files_of(&time)? {
+            let name =
+                file.file_stem().filter(|_| file.extension().is_some_and(|end| end == "gz")).or(file.file_name());
+            let name = name.unwrap_or_default().to_string_lossy().into_owned();
+            match read_cell_field(&file, mesh.tets.len())? {
+                Ok(CellField { kind, values }) => {
+                    let values = cells_to_vertices(team, &mesh, &values, kind.values());
+                    fields.push(NamedField { name, kind, values });
+                }
+                Err(class) => passed.push(format!("{name} ({class})")),
+            }
+        }
+        if !passed.is_empty() {
+            notices.push(format!(
+                "{}: passed over, since these are no fields at cells: {}",
+                time.display(),
+                passed.join(", ")
+            ));
+        }
+    }
+    Ok(Read { content: Dataset { mesh, names, fields }, notices })
+}
+
+/// The time folder of the greatest time.
+pub fn newest_time(case: &Path) -> Option<PathBuf> {
+    let entries = std::fs::read_dir(case).ok()?.flatten().map(|entry| entry.path());
+    let timed = entries.filter_map(|path| {
+        Some((path.file_name()?.to_str()?.parse::<f64>().ok().filter(|time| time.is_finite())?, path))
+    });
+    timed.filter(|(_, path)| path.is_dir()).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, path)| path)
+}
+
+/// The files of a folder that are OpenFOAM's, by name.
+fn files_of(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let system = |source| Error::System { path: folder.to_owned(), source };
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(system)? {
+        let path = entry.map_err(system)?.path();
+        let is_hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        if path.is_file() && !is_hidden {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Writes a case, or its polyMesh alone where the path says so: the mesh with a patch a reference, named as it is, and the fields at the
+/// cells (the means of the values at their vertices) in the time folder `0`, with gradient zero at all patches; and a `system` folder
+/// where there is none, so that OpenFOAM's tools take the case. Returns what a case cannot carry, a line each.
+///
+/// # Errors
+/// [`Error::Content`] when the mesh is not whole or a value is not finite, [`Error::System`] when a file cannot be written.
+pub fn write(path: &Path, data: &Dataset, text: bool) -> Result<Vec<String>, Error> {
+    write_on(Team::alone(), path, data, text)
+}
+
+/// As [`write`], on the threads of a team: the same files to the last byte.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Result<Vec<String>, Error> {
+    let mesh = &data.mesh;
+    let folder = poly_mesh_of(path);
+    let patches = write_poly_mesh(team, &folder, mesh, &data.names, &|_, _| "patch".to_owned(), text)?;
+    let mut notices = Vec::new();
+    let lost = [
+        ("edges", mesh.edges.len()),
+        ("corners", mesh.corners.len()),
+        ("required entities", mesh.required_vertices.len() + mesh.required_edges.len() + mesh.required_triangles.len()),
+        ("the association with a model", usize::from(!mesh.association.is_empty())),
+    ];
+    let lost: Vec<_> = lost.iter().filter(|(_, count)| *count > 0).map(|(what, _)| *what).collect();
+    if !lost.is_empty() {
+        notices.push(format!("{}: OpenFOAM has no place for {}: these are left out", path.display(), lost.join(", ")));
+    }
+    if folder == path {
+        if !data.fields.is_empty() {
+            notices.push(format!("{}: a polyMesh has no fields; name the case to write them", path.display()));
+        }
+        return Ok(notices);
+    }
+    write_system(path)?;
+    if data.fields.is_empty() {
+        return Ok(notices);
+    }
+    let time = path.join("0");
+    std::fs::create_dir_all(&time).map_err(|source| Error::System { path: time.clone(), source })?;
+    let entries: Vec<_> = patches.into_iter().map(|patch| (patch.name, "type zeroGradient;".to_owned())).collect();
+    for NamedField { name, kind, values } in &data.fields {
+        let values = vertices_to_cells(team, mesh, values, kind.values());
+        let file = name.replace(|c: char| !c.is_ascii_alphanumeric() && !"_.-".contains(c), "_");
+        if file != *name {
+            notices.push(format!("{}: the field {name} is called {file} there", path.display()));
+        }
+        write_cell_field(&time.join(file), &CellField { kind: *kind, values }, mesh.tets.len(), &entries, text)?;
+    }
+    Ok(notices)
+}
+
+/// The least that OpenFOAM's tools ask for; files that are there stay.
+fn write_system(case: &Path) -> Result<(), Error> {
+    let folder = case.join("system");
+    std::fs::create_dir_all(&folder).map_err(|source| Error::System { path: folder.clone(), source })?;
+    let files = [
+        (
+            "controlDict",
+            "application none;\nstartFrom latestTime;\nstopAt endTime;\nendTime 0;\ndeltaT 1;\nwriteInterval 1;\n",
+        ),
+        ("fvSchemes", "ddtSchemes {}\ngradSchemes {}\ndivSchemes {}\nlaplacianSchemes {}\n"),
+        ("fvSolution", ""),
+    ];
+    for (name, body) in files {
+        let path = folder.join(name);
+        if !path.is_file() {
+            write_beside(&path, |w| write!(w, "{}{body}", file::head_text("dictionary", "system", name, true)))?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,251 @@
+//! From tetrahedra to faces with the cells on both sides (polyMesh).
+use super::boundary::Patch;
+use super::field::{write_labels, write_reals};
+use super::file::head_text;
+use super::{unnamed_region, unnamed_surface};
+use crate::geometry::{Label, Names};
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, Side, TriangleIndex};
+use crate::mesh::io::{Error, write_beside};
+use crate::tasks::Team;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
+use std::path::Path;
+
+/// The faces of a mesh in OpenFOAM's order: inner ones by owner, then neighbour ("upper triangular"), then those of each patch.
+struct Ordered {
+    nodes: Vec<[u32; 3]>,
+    owner: Vec<u32>,
+    neighbour: Vec<u32>,
+    patches: Vec<Patch>,
+    /// Inner faces that are triangles of the mesh, with what triangle, ascending.
+    inside: Vec<(u32, u32)>,
+}
+
+/// Writes the polyMesh `folder`, which is made where it is not there; `kind` says of which type the patch of a reference with a name is.
+/// Returns the patches, in their order: by reference.
+///
+/// # Errors
+/// [`Error::Content`] when the mesh has a boundary face without a triangle, or a face of more than two tetrahedra; [`Error::System`]
+/// when a file cannot be written.
+pub fn write_poly_mesh(
+    team: Team<'_>,
+    folder: &Path,
+    mesh: &TetMesh,
+    names: &Names,
+    kind: &dyn Fn(i32, &str) -> String,
+    text: bool,
+) -> Result<Vec<Patch>, Error> {
+    let faces = Ordered::of(team, folder, mesh, names, kind)?;
+    std::fs::create_dir_all(folder).map_err(|source| Error::System { path: folder.to_owned(), source })?;
+    remove_old(folder)?;
+    let file = |name: &str, class: &str, text, body: &dyn Fn(&mut dyn Write) -> std::io::Result<()>| {
+        write_beside(&folder.join(name), |w| {
+            w.write_all(head_text(class, "constant/polyMesh", name, text).as_bytes())?;
+            body(w)
+        })
+    };
+    file("points", "vectorField", text, &|w| write_reals(w, mesh.vertices.as_flattened(), 3, text))?;
+    if text {
+        file("faces", "faceList", text, &|w| {
+            write!(w, "\n{}\n(", faces.nodes.len())?;
+            faces.nodes.iter().try_for_each(|[a, b, c]| write!(w, "\n3({a} {b} {c})"))?;
+            w.write_all(b"\n)\n")
+        })?;
+    } else {
+        let starts: Vec<u32> = (0..=faces.nodes.len() as u32).map(|face| 3 * face).collect();
+        file("faces", "faceCompactList", text, &|w| {
+            write_labels(w, &starts, text)?;
+            write_labels(w, faces.nodes.as_flattened(), text)
+        })?;
+    }
+    file("owner", "labelList", text, &|w| write_labels(w, &faces.owner, text))?;
+    file("neighbour", "labelList", text, &|w| write_labels(w, &faces.neighbour, text))?;
+    write_zones(folder, mesh, names, &faces)?;
+    file("boundary", "polyBoundaryMesh", true, &|w| {
+        write!(w, "\n{}\n(\n", faces.patches.len())?;
+        for patch in &faces.patches {
+            let Patch { name, reference, kind, faces } = patch;
+            writeln!(
+                w,
+                "    {name}\n    {{\n        type {kind};\n        nFaces {};\n        startFace {};",
+                faces.len(),
+                faces.start
+            )?;
+            writeln!(w, "        reference {reference};\n{}    }}", label_entry(names.triangles.get(reference), name))?;
+        }
+        w.write_all(b")\n")
+    })?;
+    Ok(faces.patches)
+}
+
+/// What another mesh may have left, and would be read with this one.
+fn remove_old(folder: &Path) -> Result<(), Error> {
+    for name in ["points", "faces", "owner", "neighbour", "boundary", "cellZones", "faceZones", "pointZones"] {
+        for path in [folder.join(format!("{name}.gz")), folder.join(name)] {
+            let keeps = path.extension().is_none() && !name.ends_with("Zones");
+            if !keeps && path.is_file() {
+                std::fs::remove_file(&path).map_err(|source| Error::System { path, source })?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Keeps a name that OpenFOAM would not take as it is.
+fn label_entry(label: Option<&Label>, word: &str) -> String {
+    match label.and_then(|label| label.name.as_deref()) {
+        Some(name) if name != word && !name.contains(['"', '\n']) => format!("        label \"{name}\";\n"),
+        _ => String::new(),
+    }
+}
+
+/// A word for each reference, by its name where it has one; no two are the same.
+fn words(
+    references: &BTreeSet<i32>,
+    labels: &BTreeMap<i32, Label>,
+    unnamed: fn(i32) -> String,
+) -> BTreeMap<i32, String> {
+    let mut taken = BTreeSet::new();
+    let mut words = BTreeMap::new();
+    for &reference in references {
+        let name = labels.get(&reference).and_then(|label| label.name.as_deref());
+        let mut word = name.map_or_else(|| unnamed(reference), word);
+        if !taken.insert(word.clone()) {
+            word = format!("{word}_{reference}");
+            while !taken.insert(word.clone()) {
+                word.push('_');
+            }
+        }
+        words.insert(reference, word);
+    }
+    words
+}
+
+/// A name as OpenFOAM's words are: of letters, digits and few other signs, not beginning like a number.
+fn word(name: &str) -> String {
+    let fits = |c: char| if c.is_ascii_alphanumeric() || c == '_' || c == '.' { c } else { '_' };
+    let word: String = name.chars().map(fits).collect();
+    if word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') { word } else { format!("_{word}") }
+}
+
+impl Ordered {
+    fn of(
+        team: Team<'_>,
+        folder: &Path,
+        mesh: &TetMesh,
+        names: &Names,
+        kind: &dyn Fn(i32, &str) -> String,
+    ) -> Result<Self, Error> {
+        let wrong =
+            |message: String| Error::Content { path: folder.to_owned(), place: "mesh to write".to_owned(), message };
+        let matched = MatchedFaces::of(team, &mesh.tets.nodes);
+        if let Some(crowd) = matched.crowded {
+            return Err(wrong(format!(
+                "{} tetrahedra share the face of the nodes {:?} (from 0): `geo-adapt inspect` has more",
+                crowd.tets, crowd.nodes
+            )));
+        }
+        let tets = &mesh.tets.nodes;
+        let around = &matched.neighbours;
+        let sides = TriangleIndex::new(team, &mesh.triangles.nodes, mesh.vertices.len()).sides(team, tets);
+        // In the order of the tetrahedra, and so are the sides.
+        let mut sides = sides.into_iter().peekable();
+        let (mut nodes, mut owner, mut neighbour, mut inside) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut boundary: BTreeMap<i32, Vec<Side>> = BTreeMap::new();
+        for (tet, around) in around.iter().enumerate() {
+            let mut of_face = [NONE; 4];
+            while let Some(side) = sides.next_if(|side| side.tet as usize == tet) {
+                of_face[side.face as usize] = side.triangle;
+            }
+            let mut upper: Vec<_> =
+                (0..4).filter(|&face| around[face] != NONE && around[face] as usize > tet).collect();
+            upper.sort_unstable_by_key(|&face| around[face]);
+            for face in upper {
+                if of_face[face] != NONE {
+                    inside.push((nodes.len() as u32, of_face[face]));
+                }
+                nodes.push(FACES[face].map(|i| tets[tet][i]));
+                owner.push(tet as u32);
+                neighbour.push(around[face]);
+            }
+            for face in (0..4).filter(|&face| around[face] == NONE) {
+                if of_face[face] == NONE {
+                    return Err(wrong(format!(
+                        "face {face} of tetrahedron {} has no neighbour and no triangle: `geo-adapt inspect` has more",
+                        tet + 1
+                    )));
+                }
+                let side = Side { triangle: of_face[face], tet: tet as u32, face: face as u32 };
+                boundary.entry(mesh.triangles.refs[side.triangle as usize]).or_default().push(side);
+            }
+        }
+        let words = words(&boundary.keys().copied().collect(), &names.triangles, unnamed_surface);
+        let mut patches = Vec::new();
+        for (reference, sides) in &boundary {
+            let start = nodes.len();
+            for side in sides {
+                nodes.push(FACES[side.face as usize].map(|i| tets[side.tet as usize][i]));
+                owner.push(side.tet);
+            }
+            let name = words[reference].clone();
+            let kind = kind(*reference, &name);
+            patches.push(Patch { name, reference: *reference, kind, faces: start..nodes.len() });
+        }
+        Ok(Self { nodes, owner, neighbour, patches, inside })
+    }
+}
+
+/// Regions as zones of cells, unless there is but the one of reference 1 without a name; triangles inside as zones of faces.
+fn write_zones(folder: &Path, mesh: &TetMesh, names: &Names, faces: &Ordered) -> Result<(), Error> {
+    let mut cells: BTreeMap<i32, Vec<u32>> = BTreeMap::new();
+    mesh.tets.refs.iter().zip(0..).for_each(|(&reference, cell)| cells.entry(reference).or_default().push(cell));
+    let plain =
+        cells.len() < 2 && cells.keys().all(|reference| *reference == 1 && !names.tetrahedra.contains_key(reference));
+    if !plain {
+        write_zone_file(
+            folder,
+            "cellZone",
+            "cellLabels",
+            &cells,
+            words(&cells.keys().copied().collect(), &names.tetrahedra, unnamed_region),
+            &names.tetrahedra,
+        )?;
+    }
+    let mut inside: BTreeMap<i32, Vec<u32>> = BTreeMap::new();
+    for &(face, triangle) in &faces.inside {
+        inside.entry(mesh.triangles.refs[triangle as usize]).or_default().push(face);
+    }
+    if inside.is_empty() {
+        return Ok(());
+    }
+    // A patch may have the same name: zones have names of their own.
+    let words = words(&inside.keys().copied().collect(), &names.triangles, unnamed_surface);
+    write_zone_file(folder, "faceZone", "faceLabels", &inside, words, &names.triangles)
+}
+
+fn write_zone_file(
+    folder: &Path,
+    kind: &str,
+    list: &str,
+    zones: &BTreeMap<i32, Vec<u32>>,
+    words: BTreeMap<i32, String>,
+    labels: &BTreeMap<i32, Label>,
+) -> Result<(), Error> {
+    let name = format!("{kind}s");
+    write_beside(&folder.join(&name), |w| {
+        w.write_all(head_text("regIOobject", "constant/polyMesh", &name, true).as_bytes())?;
+        write!(w, "\n{}\n(\n", zones.len())?;
+        for (reference, members) in zones {
+            let word = &words[reference];
+            write!(w, "    {word}\n    {{\n        type {kind};\n        {list} List<label>")?;
+            write_labels(w, members, true)?;
+            w.write_all(b";\n")?;
+            if kind == "faceZone" {
+                writeln!(w, "        flipMap List<bool> {}{{0}};", members.len())?;
+            }
+            writeln!(w, "        reference {reference};\n{}    }}", label_entry(labels.get(reference), word))?;
+        }
+        w.write_all(b")\n")
+    })
+}

@@ -1,0 +1,228 @@
+//! Analytic scalar fields to try adaptation on, and how far their linear interpolation on a mesh is from them.
+//!
+//! The three functions of Tsolakis 2021 (equations 21 to 23), on the unit cube.
+use crate::mesh::TetMesh;
+use crate::mesh::vector::{Vec3, volume6};
+use crate::tasks::Team;
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// An analytic scalar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scalar {
+    /// Waves of two amplitudes; continuous, with kinks where the amplitude changes.
+    Sinfun3,
+    /// Two fronts beside y = 0.3, and at z = 0 a layer that is 1e-6 thin at its thinnest.
+    Tanh3,
+    /// Small waves, and a jump of π where sin 5y = 2xz.
+    Sinatan3,
+}
+
+impl Scalar {
+    /// The value at p.
+    pub fn at(self, [x, y, z]: Vec3) -> f64 {
+        match self {
+            Self::Sinfun3 => {
+                let s = (x - 0.4) * (y - 0.4) * (z - 0.4);
+                let wide = s > -PI / 50.0 && s <= 2.0 * PI / 50.0;
+                (if wide { 1.0 } else { 0.1 }) * (50.0 * s).sin()
+            }
+            Self::Tanh3 => ((x + 1.3).powi(20) * (y - 0.3).powi(9) * z).tanh(),
+            Self::Sinatan3 => 0.1 * (50.0 * x * z).sin() + (0.1 / ((5.0 * y).sin() - 2.0 * x * z)).atan(),
+        }
+    }
+
+    /// Values at the vertices of a mesh, shape (n,).
+    pub fn on(self, team: Team<'_>, mesh: &TetMesh) -> Vec<f64> {
+        team.map(GRAIN, mesh.vertices.len(), |v| self.at(mesh.vertices[v]))
+    }
+
+    /// The L2 norm of the difference between this function and the piecewise linear one with these values at the vertices, shape (n,).
+    ///
+    /// Each tetrahedron is integrated by two rules of degree 5, which differ from degree 6 on. One whose rules differ by more than a tenth of
+    /// its integral (or of the mean integral, where that is more) is halved in all directions, [`HALVINGS`] times at most.
+    pub fn error(self, team: Team<'_>, mesh: &TetMesh, values: &[f64]) -> f64 {
+        let tets = &mesh.tets.nodes;
+        let piece = |tet: [u32; 4]| Piece {
+            corners: tet.map(|v| mesh.vertices[v as usize]),
+            values: tet.map(|v| values[v as usize]),
+        };
+        let rough =
+            team.sum(GRAIN, tets.len(), |range| tets[range].iter().map(|&tet| piece(tet).squares(self)[0]).sum());
+        let mean = rough / tets.len().max(1) as f64;
+        let all = team.sum(GRAIN, tets.len(), |range| {
+            tets[range].iter().map(|&tet| piece(tet).integral(self, mean, HALVINGS)).sum()
+        });
+        all.sqrt()
+    }
+}
+
+/// Tetrahedra a task: each takes some microseconds.
+const GRAIN: usize = 256;
+
+/// Halvings of a tetrahedron at most; a jump is within a 32nd of it then.
+const HALVINGS: u32 = 5;
+
+/// Part of an integral that its rules may differ by.
+const DOUBT: f64 = 0.1;
+
+/// A rule: weights of sum 1 with barycentric coordinates, the points of an orbit having one weight.
+type Rule = [([f64; 4], f64)];
+
+const A1: f64 = 0.310_885_919_263_300_6;
+const A2: f64 = 0.092_735_250_310_891_23;
+const A3: f64 = 0.045_503_704_125_649_65;
+const WA1: f64 = 0.112_687_925_718_015_85;
+const WA2: f64 = 0.073_493_043_116_361_95;
+const WA3: f64 = 0.042_546_020_777_081_466;
+
+/// Walkington 2000, 14 points.
+const FIRST: [([f64; 4], f64); 14] = {
+    let (r1, r2, h) = (1.0 - 3.0 * A1, 1.0 - 3.0 * A2, 0.5 - A3);
+    [
+        ([r1, A1, A1, A1], WA1),
+        ([A1, r1, A1, A1], WA1),
+        ([A1, A1, r1, A1], WA1),
+        ([A1, A1, A1, r1], WA1),
+        ([r2, A2, A2, A2], WA2),
+        ([A2, r2, A2, A2], WA2),
+        ([A2, A2, r2, A2], WA2),
+        ([A2, A2, A2, r2], WA2),
+        ([A3, A3, h, h], WA3),
+        ([A3, h, A3, h], WA3),
+        ([A3, h, h, A3], WA3),
+        ([h, A3, A3, h], WA3),
+        ([h, A3, h, A3], WA3),
+        ([h, h, A3, A3], WA3),
+    ]
+};
+
+/// (13 - √91)/52.
+const B: f64 = 0.066_550_153_573_664_28;
+
+/// Keast 1986, 15 points.
+const SECOND: [([f64; 4], f64); 15] = {
+    let (t, w1) = (1.0 / 3.0, 81.0 / 2240.0);
+    let (e, f, w2) = (1.0 / 11.0, 8.0 / 11.0, 161_051.0 / 2_304_960.0);
+    let (h, w3) = (0.5 - B, 338.0 / 5145.0);
+    [
+        ([0.25; 4], 6544.0 / 36015.0),
+        ([0.0, t, t, t], w1),
+        ([t, 0.0, t, t], w1),
+        ([t, t, 0.0, t], w1),
+        ([t, t, t, 0.0], w1),
+        ([f, e, e, e], w2),
+        ([e, f, e, e], w2),
+        ([e, e, f, e], w2),
+        ([e, e, e, f], w2),
+        ([B, B, h, h], w3),
+        ([B, h, B, h], w3),
+        ([B, h, h, B], w3),
+        ([h, B, B, h], w3),
+        ([h, B, h, B], w3),
+        ([h, h, B, B], w3),
+    ]
+};
+
+/// The pairs of corners whose middles are the corners of the eight halves: four at the corners, four about a diagonal of the octahedron between.
+const HALVES: [[[usize; 2]; 4]; 8] = [
+    [[0, 0], [0, 1], [0, 2], [0, 3]],
+    [[1, 0], [1, 1], [1, 2], [1, 3]],
+    [[2, 0], [2, 1], [2, 2], [2, 3]],
+    [[3, 0], [3, 1], [3, 2], [3, 3]],
+    [[0, 1], [2, 3], [0, 2], [0, 3]],
+    [[0, 1], [2, 3], [0, 3], [1, 3]],
+    [[0, 1], [2, 3], [1, 3], [1, 2]],
+    [[0, 1], [2, 3], [1, 2], [0, 2]],
+];
+
+/// A tetrahedron with a linear function.
+#[derive(Clone, Copy)]
+struct Piece {
+    corners: [Vec3; 4],
+    values: [f64; 4],
+}
+
+impl Piece {
+    /// ∫ (function - linear)² by both rules.
+    fn squares(&self, function: Scalar) -> [f64; 2] {
+        let [a, b, c, d] = self.corners;
+        let volume = volume6(a, b, c, d).abs() / 6.0;
+        [&FIRST[..], &SECOND[..]].map(|rule| volume * self.mean_square(function, rule))
+    }
+
+    fn mean_square(&self, function: Scalar, rule: &Rule) -> f64 {
+        let at = |place: &[f64; 4]| {
+            let point = std::array::from_fn(|axis| (0..4).map(|i| place[i] * self.corners[i][axis]).sum());
+            let linear: f64 = (0..4).map(|i| place[i] * self.values[i]).sum();
+            function.at(point) - linear
+        };
+        rule.iter().map(|(place, weight)| weight * at(place).powi(2)).sum()
+    }
+
+    /// The integral, to a tenth of itself or of `mean`.
+    fn integral(&self, function: Scalar, mean: f64, halvings: u32) -> f64 {
+        let [first, second] = self.squares(function);
+        let found = (first + second) / 2.0;
+        if halvings == 0 || (first - second).abs() <= DOUBT * found.max(mean) {
+            return found;
+        }
+        HALVES.iter().map(|pairs| self.half(pairs).integral(function, mean / 8.0, halvings - 1)).sum()
+    }
+
+    fn half(&self, pairs: &[[usize; 2]; 4]) -> Self {
+        let middle =
+            |[i, j]: [usize; 2]| std::array::from_fn(|axis| (self.corners[i][axis] + self.corners[j][axis]) / 2.0);
+        Self { corners: pairs.map(middle), values: pairs.map(|[i, j]| (self.values[i] + self.values[j]) / 2.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::cube;
+
+    #[test]
+    fn values_of_the_dissertations_functions() {
+        // Computed by cases/convergence_study/scalars.py.
+        let p = [0.3, 0.7, 0.9];
+        let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        close(Scalar::Sinfun3.at(p), -0.681_638_760_023_334_2);
+        close(Scalar::Tanh3.at(p), 0.993_359_753_333_667_1);
+        close(Scalar::Sinatan3.at(p), -0.031_414_261_166_846_31);
+    }
+
+    #[test]
+    fn rules_are_exact_to_degree_five() {
+        // ∫ of λ0^a λ1^b λ2^c λ3^d over its mean: 3! a! b! c! d! / (a+b+c+d+3)!.
+        let factorial = |n: u32| (1..=n).map(f64::from).product::<f64>();
+        for rule in [&FIRST[..], &SECOND[..]] {
+            for powers in
+                [[0, 0, 0, 0], [1, 0, 0, 0], [2, 1, 0, 0], [1, 1, 1, 1], [2, 1, 1, 1], [5, 0, 0, 0], [3, 2, 0, 0]]
+            {
+                let term = |place: &[f64; 4]| (0..4).map(|i| place[i].powi(powers[i] as i32)).product::<f64>();
+                let found: f64 = rule.iter().map(|(place, weight)| weight * term(place)).sum();
+                let exact = 6.0 * powers.iter().map(|&n| factorial(n)).product::<f64>()
+                    / factorial(powers.iter().sum::<u32>() + 3);
+                assert!((found - exact).abs() < 1e-14, "{powers:?}: {found} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_error_is_that_of_the_study_and_falls_with_the_square_of_the_size() {
+        let error = |n: u32| {
+            let mesh = cube(n);
+            Scalar::Sinfun3.error(Team::alone(), &mesh, &Scalar::Sinfun3.on(Team::alone(), &mesh))
+        };
+        let (coarse, fine) = (error(16), error(32));
+        assert!((coarse / fine - 4.0).abs() < 1.0, "{coarse} {fine}");
+        // cases/convergence_study/quadrature.py on the same mesh; its second function jumps.
+        assert!((coarse - 0.033_345).abs() < 2e-4, "{coarse}");
+        let mesh = cube(16);
+        let jump = Scalar::Sinatan3.error(Team::alone(), &mesh, &Scalar::Sinatan3.on(Team::alone(), &mesh));
+        assert!((jump - 0.3555).abs() < 0.02 * 0.3555, "{jump}");
+    }
+}

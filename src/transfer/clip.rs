@@ -1,0 +1,403 @@
+//! The part of a tetrahedron that lies in another one.
+//!
+//! The tetrahedron is written in the barycentric coordinates λ of the other, where the four planes are λ_k = 0, and is cut by them one after
+//! the other. What lies inside a plane is cut into tetrahedra again, and the volume of each is that of the one it comes from times
+//! ratios in which the plane cuts its edges: products of numbers in [0, 1], never differences. So no volume is negative, each is as exact as
+//! the ratios are, and flat or coincident tetrahedra need no care.
+use crate::mesh::vector::{Vec3, cross, dot, sub};
+
+/// A point by its barycentric coordinates.
+type Lambda = [f64; 4];
+
+/// What comes of rounding in a barycentric coordinate, in units of the sum of the terms.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// The planes of a tetrahedron.
+pub struct Planes {
+    /// ∇λ_k, shape (4, 3), in 1/length.
+    pub gradients: [Vec3; 4],
+    /// A point on each plane.
+    on: [Vec3; 4],
+}
+
+impl Planes {
+    /// Of a tetrahedron; none of a flat or inverted one.
+    pub fn of(x: [Vec3; 4]) -> Option<Self> {
+        let [a, b, c] = [sub(x[1], x[0]), sub(x[2], x[0]), sub(x[3], x[0])];
+        let normals = [cross(b, c), cross(c, a), cross(a, b)];
+        let six_volumes = dot(a, normals[0]);
+        let scale = 1.0 / six_volumes;
+        if !(six_volumes > 0.0 && scale.is_finite()) {
+            return None;
+        }
+        let [g1, g2, g3] = normals.map(|normal| normal.map(|n| n * scale));
+        let g0 = cross(sub(x[3], x[1]), sub(x[2], x[1])).map(|n| n * scale);
+        Some(Self { gradients: [g0, g1, g2, g3], on: [x[1], x[0], x[0], x[0]] })
+    }
+
+    /// A point; of its coordinates what may be rounding alone is 0.
+    #[inline(always)]
+    fn point(&self, p: Vec3) -> Point {
+        let mut at = [0.0; 4];
+        for k in 0..4 {
+            let (g, on) = (&self.gradients[k], &self.on[k]);
+            let [x, y, z] = [g[0] * (p[0] - on[0]), g[1] * (p[1] - on[1]), g[2] * (p[2] - on[2])];
+            let (value, size) = (x + y + z, x.abs() + y.abs() + z.abs());
+            at[k] = if value.abs() <= ROUNDING * size { 0.0 } else { value };
+        }
+        Point::new(at)
+    }
+
+    /// The part of a tetrahedron that lies in this one.
+    #[inline]
+    pub fn clip(&self, x: &[Vec3; 4]) -> Piece {
+        let [a, b, c, d] = [self.point(x[0]), self.point(x[1]), self.point(x[2]), self.point(x[3])];
+        let mut piece = Piece::default();
+        // Not above a plane with any corner: what touches it only.
+        if (a.out | a.on) & (b.out | b.on) & (c.out | c.on) & (d.out | d.on) == 0 {
+            cut([&a, &b, &c, &d], 1.0, &mut piece);
+            piece.beyond &= a.out | b.out | c.out | d.out;
+        }
+        piece
+    }
+}
+
+/// A point with what is often asked.
+#[derive(Clone, Copy)]
+struct Point {
+    at: Lambda,
+    /// Bit k: λ_k < 0.
+    out: u8,
+    /// Bit k: λ_k = 0.
+    on: u8,
+}
+
+impl Point {
+    #[inline(always)]
+    fn new(at: Lambda) -> Self {
+        let (mut out, mut on) = (0, 0);
+        for k in 0..4 {
+            out |= u8::from(at[k] < 0.0) << k;
+            on |= u8::from(at[k] == 0.0) << k;
+        }
+        Self { at, out, on }
+    }
+}
+
+/// The bits that at least three of four have.
+#[inline(always)]
+fn three(a: u8, b: u8, c: u8, d: u8) -> u8 {
+    a & b & (c | d) | c & d & (a | b)
+}
+
+/// A part of a tetrahedron.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Piece {
+    /// Its share of the volume of the tetrahedron, 0 to 1.
+    pub share: f64,
+    /// Four times `share` times the barycentric coordinates of its centroid in the other.
+    moments: Lambda,
+    /// Bit k: the tetrahedron goes on beyond face k of the other.
+    pub beyond: u8,
+}
+
+impl Piece {
+    /// Barycentric coordinates of the centroid in the other tetrahedron, ≥ 0, sum 1; of a piece with a share.
+    pub fn centroid(&self) -> Lambda {
+        let moments = self.moments.map(|moment| moment.max(0.0));
+        let sum = (moments[0] + moments[1]) + (moments[2] + moments[3]);
+        moments.map(|moment| moment / sum)
+    }
+
+    #[inline(always)]
+    fn add(&mut self, [a, b, c, d]: [&Point; 4], share: f64) {
+        self.share += share;
+        for k in 0..4 {
+            self.moments[k] += share * ((a.at[k] + b.at[k]) + (c.at[k] + d.at[k]));
+        }
+        // Three corners on a plane: a piece of that face.
+        self.beyond |= three(a.on, b.on, c.on, d.on);
+    }
+}
+
+/// Which corners are inside, then those outside, by the bits of those that are outside.
+const ORDER: [[u8; 4]; 16] = order();
+
+const fn order() -> [[u8; 4]; 16] {
+    let mut all = [[0; 4]; 16];
+    let mut mask = 0;
+    while mask < 16 {
+        let (mut at, mut side) = (0, 0);
+        while side < 2 {
+            let mut i = 0;
+            while i < 4 {
+                if (mask >> i) & 1 == side {
+                    all[mask][at] = i as u8;
+                    at += 1;
+                }
+                i += 1;
+            }
+            side += 1;
+        }
+        mask += 1;
+    }
+    all
+}
+
+/// Adds the part of a tetrahedron, which is so much of the whole, that lies inside all planes.
+fn cut(corners: [&Point; 4], share: f64, piece: &mut Piece) {
+    let [a, b, c, d] = corners.map(|corner| corner.out);
+    if a & b & c & d != 0 {
+        return;
+    }
+    let some = a | b | c | d;
+    if some == 0 {
+        return piece.add(corners, share);
+    }
+    // First the plane that leaves least: fewer parts come of it.
+    let most = three(a, b, c, d);
+    let two = (a & b) | (c & d) | (a | b) & (c | d);
+    let first = if most != 0 {
+        most
+    } else if two != 0 {
+        two
+    } else {
+        some
+    };
+    let k = first.trailing_zeros() as usize & 3;
+    let bit = |out: u8| out >> k & 1;
+    let outside = bit(a) | bit(b) << 1 | bit(c) << 2 | bit(d) << 3;
+    let [a, b, c, d] = ORDER[outside as usize].map(|i| corners[i as usize & 3]);
+    match outside.count_ones() {
+        1 => without_one([a, b, c], d, k, share, piece),
+        2 => halved([a, b], [c, d], k, share, piece),
+        _ => only_one(a, [b, c, d], k, share, piece),
+    }
+}
+
+/// Where the plane λ_k = 0 cuts the edge from an inner to an outer corner: the shares of the edge inside and outside, and the point.
+#[inline(always)]
+fn crossing(inner: &Point, outer: &Point, k: usize) -> (f64, f64, Point) {
+    let per_length = 1.0 / (inner.at[k] - outer.at[k]);
+    let (inside, outside) = (inner.at[k] * per_length, -outer.at[k] * per_length);
+    let mut at = [0.0; 4];
+    for i in 0..4 {
+        at[i] = outside * inner.at[i] + inside * outer.at[i];
+    }
+    at[k] = 0.0;
+    (inside, outside, Point::new(at))
+}
+
+/// Goes on with a part that has a volume.
+#[inline(always)]
+fn go_on(corners: [&Point; 4], share: f64, piece: &mut Piece) {
+    if share > 0.0 {
+        cut(corners, share, piece);
+    }
+}
+
+/// One corner is inside.
+#[inline]
+fn only_one(a: &Point, [b, c, d]: [&Point; 3], k: usize, share: f64, piece: &mut Piece) {
+    let (ab, _, at_b) = crossing(a, b, k);
+    let (ac, _, at_c) = crossing(a, c, k);
+    let (ad, _, at_d) = crossing(a, d, k);
+    go_on([a, &at_b, &at_c, &at_d], share * (ab * ac * ad), piece);
+}
+
+/// Two corners are inside: a wedge, in three parts.
+#[inline]
+fn halved([a, b]: [&Point; 2], [c, d]: [&Point; 2], k: usize, share: f64, piece: &mut Piece) {
+    let (ac, not_ac, at_ac) = crossing(a, c, k);
+    let (ad, not_ad, at_ad) = crossing(a, d, k);
+    let (bc, _, at_bc) = crossing(b, c, k);
+    let (bd, _, at_bd) = crossing(b, d, k);
+    go_on([a, &at_ac, &at_ad, b], share * (ac * ad), piece);
+    go_on([&at_ac, &at_ad, b, &at_bc], share * (ad * bc * not_ac), piece);
+    go_on([&at_ad, b, &at_bc, &at_bd], share * (bc * bd * not_ad), piece);
+}
+
+/// One corner is outside: a frustum, in three parts.
+#[inline]
+fn without_one([a, b, c]: [&Point; 3], d: &Point, k: usize, share: f64, piece: &mut Piece) {
+    let (ad, _, at_a) = crossing(a, d, k);
+    let (bd, not_bd, at_b) = crossing(b, d, k);
+    let (cd, not_cd, at_c) = crossing(c, d, k);
+    go_on([a, b, c, &at_c], share * cd, piece);
+    go_on([a, b, &at_c, &at_b], share * (not_cd * bd), piece);
+    go_on([a, &at_b, &at_c, &at_a], share * (not_cd * not_bd * ad), piece);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::adjacency::FACES;
+    use crate::mesh::vector::{add, lerp, scale, volume6};
+    use proptest::prelude::*;
+
+    fn point(x: &[Vec3; 4], weights: Lambda) -> Vec3 {
+        x.iter().zip(weights).fold([0.0; 3], |sum, (&p, w)| add(sum, scale(p, w)))
+    }
+
+    fn turned(mut x: [Vec3; 4]) -> [Vec3; 4] {
+        if volume6(x[0], x[1], x[2], x[3]) < 0.0 {
+            x.swap(0, 1);
+        }
+        x
+    }
+
+    fn tet(c: [f64; 12]) -> [Vec3; 4] {
+        turned([[c[0], c[1], c[2]], [c[3], c[4], c[5]], [c[6], c[7], c[8]], [c[9], c[10], c[11]]])
+    }
+
+    /// Volume by cutting polygons: each face of either is cut by the planes of the other and made a pyramid over a point.
+    fn volume_by_faces(x: &[Vec3; 4], y: &[Vec3; 4]) -> f64 {
+        let mut six = 0.0;
+        for (of, by) in [(x, y), (y, x)] {
+            for face in FACES {
+                let mut polygon: Vec<Vec3> = face.iter().map(|&i| of[i]).collect();
+                for plane in FACES {
+                    let [p, q, r] = plane.map(|i| by[i]);
+                    let height = |v: Vec3| -volume6(p, q, r, v);
+                    let mut kept = Vec::new();
+                    for (i, &v) in polygon.iter().enumerate() {
+                        let w = polygon[(i + 1) % polygon.len()];
+                        let (at_v, at_w) = (height(v), height(w));
+                        if at_v >= 0.0 {
+                            kept.push(v);
+                        }
+                        if (at_v < 0.0) != (at_w < 0.0) {
+                            kept.push(lerp(v, w, at_v / (at_v - at_w)));
+                        }
+                    }
+                    polygon = kept;
+                    if polygon.is_empty() {
+                        break;
+                    }
+                }
+                for i in 1..polygon.len().saturating_sub(1) {
+                    six -= volume6(polygon[0], polygon[i], polygon[i + 1], x[0]);
+                }
+            }
+        }
+        six / 6.0
+    }
+
+    fn volume(x: &[Vec3; 4]) -> f64 {
+        volume6(x[0], x[1], x[2], x[3]) / 6.0
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(512))]
+
+        #[test]
+        fn the_volume_is_that_of_the_polygons(
+            x in prop::array::uniform12(-1.0..1.0f64),
+            y in prop::array::uniform12(-1.0..1.0f64),
+            flat in 0.001..1.0f64,
+        ) {
+            let thin = |x: [Vec3; 4]| x.map(|p| [p[0], p[1], flat * p[2]]);
+            let (x, y) = (thin(tet(x)), thin(tet(y)));
+            let (Some(planes), true) = (Planes::of(y), volume(&x) > 0.0) else { return Ok(()) };
+            let piece = planes.clip(&x);
+            let expected = volume_by_faces(&x, &y);
+            prop_assert!((piece.share * volume(&x) - expected).abs() < 1e-13 * flat, "{} {expected}", piece.share * volume(&x));
+            if piece.share > 1e-9 {
+                // The piece of y in x has the same centroid.
+                let Some(other) = Planes::of(x) else { return Ok(()) };
+                let back = other.clip(&y);
+                let (p, q) = (point(&y, piece.centroid()), point(&x, back.centroid()));
+                prop_assert!((0..3).all(|i| (p[i] - q[i]).abs() < 1e-9), "{p:?} {q:?}");
+            }
+        }
+
+        #[test]
+        fn pieces_of_the_parts_sum_up(
+            x in prop::array::uniform12(-1.0..1.0f64),
+            y in prop::array::uniform12(-1.0..1.0f64),
+            w in prop::array::uniform4(0.01..1.0f64),
+        ) {
+            let (x, y) = (tet(x), tet(y));
+            prop_assume!(volume(&x) > 1e-4 && volume(&y) > 1e-4);
+            let Some(planes) = Planes::of(y) else { return Ok(()) };
+            let whole = planes.clip(&x);
+            // Four tetrahedra about a point inside x.
+            let sum: f64 = w.iter().sum();
+            let middle = point(&x, w.map(|w| w / sum));
+            let (mut parts, mut beyond) = (0.0, 0);
+            for i in 0..4 {
+                let mut part = x;
+                part[i] = middle;
+                let piece = planes.clip(&part);
+                parts += piece.share * volume(&part);
+                beyond |= piece.beyond;
+            }
+            prop_assert!((parts - whole.share * volume(&x)).abs() < 1e-13);
+            prop_assert!(whole.share < 1e-9 || beyond == whole.beyond, "{beyond:b} {:b}", whole.beyond);
+            // And four about one inside y.
+            let middle = point(&y, w.map(|w| w / sum));
+            let mut parts = 0.0;
+            for i in 0..4 {
+                let mut part = y;
+                part[i] = middle;
+                parts += Planes::of(part).expect("it has a volume").clip(&x).share;
+            }
+            prop_assert!((parts - whole.share).abs() < 1e-11, "{parts} {}", whole.share);
+        }
+    }
+
+    const UNIT: [Vec3; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+    fn shifted(by: Vec3) -> [Vec3; 4] {
+        UNIT.map(|p| add(p, by))
+    }
+
+    #[test]
+    fn the_same_tetrahedron_is_whole_and_ends_there() {
+        for corners in [[0, 1, 2, 3], [1, 2, 0, 3], [3, 2, 1, 0]] {
+            let piece = Planes::of(UNIT).unwrap().clip(&corners.map(|i| UNIT[i]));
+            assert_eq!((piece.share, piece.beyond, piece.centroid()), (1.0, 0, [0.25; 4]));
+        }
+        // Also at an odd place, where barycentric coordinates are rounded.
+        let odd =
+            UNIT.map(|p| [0.3 + p[0] / 7.0 + p[1] / 30.0, 1.0 / 3.0 + p[1] / 11.0 - p[0] / 40.0, 17.1 + p[2] / 1300.0]);
+        let piece = Planes::of(odd).unwrap().clip(&odd);
+        assert!((piece.share - 1.0).abs() < 1e-15 && piece.beyond == 0, "{piece:?}");
+    }
+
+    #[test]
+    fn what_only_touches_has_no_share() {
+        let planes = Planes::of(UNIT).unwrap();
+        // A corner, an edge, the face x + y + z = 1, and two faces of x = 0 from either side.
+        let mirrored = turned(UNIT.map(|p| [1.0 - p[0], 1.0 - p[1], 1.0 - p[2]].map(|x| x * 1.0)));
+        let across = turned(UNIT.map(|p| [-p[0], p[1], p[2]]));
+        let face = turned([UNIT[1], UNIT[2], UNIT[3], [1.0; 3]]);
+        for other in [shifted([1.0, 0.0, 0.0]), shifted([0.0, 0.0, -1.0]), across, face] {
+            let piece = planes.clip(&other);
+            assert_eq!((piece.share, piece.beyond), (0.0, 0), "{other:?}");
+        }
+        assert!(planes.clip(&mirrored).share <= 1.0);
+    }
+
+    #[test]
+    fn a_half_goes_on_beyond_the_face() {
+        let planes = Planes::of(UNIT).unwrap();
+        // Half of a box's part across x = 0: symmetric about that plane.
+        let x = turned(
+            [[-1.0, 0.1, 0.1], [1.0, 0.1, 0.1], [0.0, 0.3, 0.1], [0.0, 0.1, 0.3]]
+                .map(|p: Vec3| [0.2 * p[0], p[1], p[2]]),
+        );
+        let piece = planes.clip(&x);
+        assert!((piece.share - 0.5).abs() < 1e-14, "{piece:?}");
+        assert_eq!(piece.beyond, 0b10);
+    }
+
+    #[test]
+    fn flat_ones_have_no_planes() {
+        assert!(Planes::of([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]).is_none());
+        assert!(Planes::of([[0.5; 3]; 4]).is_none());
+        let flat = [[0.1, 0.1, 0.1], [0.2, 0.1, 0.1], [0.1, 0.2, 0.1], [5.0, 5.0, 0.1]];
+        let piece = Planes::of(UNIT).unwrap().clip(&flat);
+        assert!(piece.share <= 1.0 && piece.share >= 0.0);
+    }
+}

@@ -1,0 +1,201 @@
+//! The tetrahedra of a mesh that a tetrahedron of another one meets: a front goes from one that holds its centroid across the faces that
+//! it pierces.
+use super::clip::{Piece, Planes};
+use crate::mesh::adjacency::NONE;
+use crate::mesh::locate::Locator;
+use crate::mesh::vector::{Vec3, add, scale};
+
+/// Less than this share of a tetrahedron uncovered is rounding: no other parts are looked for.
+const COVERED: f64 = 1e-10;
+
+/// Tetrahedra that were visited, with open addressing; what an earlier front left is told by its number.
+struct Visited {
+    slots: Vec<(u32, u32)>,
+    front: u32,
+    count: usize,
+}
+
+impl Visited {
+    fn new() -> Self {
+        Self { slots: vec![(0, 0); 256], front: 0, count: 0 }
+    }
+
+    fn clear(&mut self) {
+        self.count = 0;
+        self.front = self.front.wrapping_add(1);
+        if self.front == 0 {
+            self.slots.fill((0, 0));
+            self.front = 1;
+        }
+    }
+
+    /// Whether it was not there.
+    #[inline]
+    fn insert(&mut self, tet: u32) -> bool {
+        if 2 * self.count >= self.slots.len() {
+            self.grow();
+        }
+        let is_new = self.put(tet);
+        self.count += usize::from(is_new);
+        is_new
+    }
+
+    #[inline]
+    fn put(&mut self, tet: u32) -> bool {
+        let mask = self.slots.len() - 1;
+        let mut at = (u64::from(tet).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as usize & mask;
+        while self.slots[at].0 == self.front {
+            if self.slots[at].1 == tet {
+                return false;
+            }
+            at = (at + 1) & mask;
+        }
+        self.slots[at] = (self.front, tet);
+        true
+    }
+
+    fn grow(&mut self) {
+        let twice = vec![(0, 0); 2 * self.slots.len()];
+        let old = std::mem::replace(&mut self.slots, twice);
+        for (front, tet) in old {
+            if front == self.front {
+                self.put(tet);
+            }
+        }
+    }
+}
+
+/// One for each thread or chunk: it keeps its memory, and where it was last.
+pub struct Front<'l> {
+    locator: &'l Locator,
+    visited: Visited,
+    open: Vec<u32>,
+    hint: u32,
+}
+
+impl<'l> Front<'l> {
+    /// Over a mesh.
+    pub fn new(locator: &'l Locator) -> Self {
+        Self { locator, visited: Visited::new(), open: Vec::new(), hint: 0 }
+    }
+
+    /// Calls `take` with each tetrahedron of the mesh that `x` meets, its planes and the piece of `x` in it. Returns the share of
+    /// `x` that the mesh covers.
+    pub fn over(&mut self, x: &[Vec3; 4], mut take: impl FnMut(u32, &Planes, &Piece)) -> f64 {
+        self.visited.clear();
+        let centroid = scale(add(add(x[0], x[1]), add(x[2], x[3])), 0.25);
+        let seed = self.locator.locate(centroid, &mut self.hint).tet;
+        let mut covered = self.spread(seed, x, &mut take);
+        if covered < 1.0 - COVERED {
+            // Where the mesh ends within x, there may be other parts of it: each has a face on the boundary in x.
+            let low = std::array::from_fn(|i| x[0][i].min(x[1][i]).min(x[2][i]).min(x[3][i]));
+            let high = std::array::from_fn(|i| x[0][i].max(x[1][i]).max(x[2][i]).max(x[3][i]));
+            let locator = self.locator;
+            locator.at_boundary(&[low, high], |tet| covered += self.spread(tet, x, &mut take));
+        }
+        covered
+    }
+
+    /// The front from one tetrahedron on; the share of x covered by those that were not visited before.
+    fn spread(&mut self, seed: u32, x: &[Vec3; 4], take: &mut impl FnMut(u32, &Planes, &Piece)) -> f64 {
+        let mut covered = 0.0;
+        if self.visited.insert(seed) {
+            self.open.push(seed);
+        }
+        while let Some(tet) = self.open.pop() {
+            let beyond = match Planes::of(self.locator.corners(tet)) {
+                Some(planes) => {
+                    let piece = planes.clip(x);
+                    if piece.share > 0.0 {
+                        covered += piece.share;
+                        take(tet, &planes, &piece);
+                    }
+                    piece.beyond
+                }
+                // A flat one has no part of x, but may lie between two that have.
+                None => 0b1111,
+            };
+            for (k, &next) in self.locator.faces().neighbours[tet as usize].iter().enumerate() {
+                if beyond >> k & 1 == 1 && next != NONE && self.visited.insert(next) {
+                    self.open.push(next);
+                }
+            }
+        }
+        covered
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::cube;
+    use crate::mesh::vector::volume6;
+
+    /// The tetrahedra met, with their shares, by trying all.
+    fn by_trying(locator: &Locator, x: &[Vec3; 4]) -> Vec<(u32, f64)> {
+        let tets = 0..locator.tets().len() as u32;
+        let share = |tet| Planes::of(locator.corners(tet)).map_or(0.0, |planes| planes.clip(x).share);
+        tets.map(|tet| (tet, share(tet))).filter(|found| found.1 > 0.0).collect()
+    }
+
+    fn by_front(front: &mut Front, x: &[Vec3; 4]) -> (f64, Vec<(u32, f64)>) {
+        let mut found = Vec::new();
+        let covered = front.over(x, |tet, _, piece| found.push((tet, piece.share)));
+        found.sort_by_key(|found| found.0);
+        (covered, found)
+    }
+
+    #[test]
+    fn a_front_finds_all_that_is_met() {
+        // The second has a slit, so that a tetrahedron may meet two parts of it.
+        let mut slit = cube(6);
+        let middle = |nodes: &[u32; 4]| nodes.iter().map(|&v| slit.vertices[v as usize][0]).sum::<f64>() / 4.0;
+        slit.tets.nodes =
+            slit.tets.nodes.iter().copied().filter(|nodes| !(0.5..0.66).contains(&middle(nodes))).collect();
+        let mut partly = 0;
+        for mesh in [cube(5), slit] {
+            let locator = Locator::new(mesh.vertices, mesh.tets.nodes);
+            let mut front = Front::new(&locator);
+            for other in [cube(3), cube(4), cube(5)] {
+                for nodes in &other.tets.nodes {
+                    let bent = |p: Vec3| [p[0], p[1] + 0.05 * p[0] * (1.0 - p[0]), 0.9 * p[2] + 0.1 * p[0] * p[2]];
+                    let x = nodes.map(|v| bent(other.vertices[v as usize]));
+                    assert!(volume6(x[0], x[1], x[2], x[3]) > 0.0);
+                    let (covered, found) = by_front(&mut front, &x);
+                    let expected = by_trying(&locator, &x);
+                    // What rounding alone lets them meet may be missed.
+                    let met = |list: &[(u32, f64)]| list.iter().copied().filter(|m| m.1 > 1e-12).collect::<Vec<_>>();
+                    assert_eq!(met(&found), met(&expected));
+                    let sum: f64 = expected.iter().map(|m| m.1).sum();
+                    assert!((covered - sum).abs() < 1e-11);
+                    partly += usize::from(covered < 1.0 - 1e-9);
+                }
+            }
+        }
+        assert!(partly > 100);
+    }
+
+    #[test]
+    fn of_the_same_mesh_only_the_same_tetrahedron_is_met() {
+        let mesh = cube(4);
+        let locator = Locator::new(mesh.vertices.clone(), mesh.tets.nodes.clone());
+        let mut front = Front::new(&locator);
+        for (nodes, tet) in mesh.tets.nodes.iter().zip(0..) {
+            let (covered, found) = by_front(&mut front, &nodes.map(|v| mesh.vertices[v as usize]));
+            assert!((covered - 1.0).abs() < 1e-14 && found.len() == 1 && found[0].0 == tet, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn many_are_remembered() {
+        let mut visited = Visited::new();
+        for _ in 0..3 {
+            visited.clear();
+            assert!((0..1000).all(|tet| visited.insert(tet * 64)));
+            assert!((0..1000).all(|tet| !visited.insert(tet * 64)));
+        }
+        visited.front = u32::MAX;
+        visited.clear();
+        assert!(visited.insert(64));
+    }
+}

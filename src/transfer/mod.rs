@@ -1,0 +1,24 @@
+//! Fields at the vertices of one mesh brought to the vertices of another.
+//!
+//! Two ways. [`interpolate`] takes the value of the old field, linear in each tetrahedron, at each new vertex: exact for linear fields,
+//! within the bounds of the old one, and it keeps no integral. [`conservative`] makes the new field from the integrals of the old one over the
+//! pieces in which the tetrahedra of both meshes meet (Alauzet & Mehrenbach, *P1-conservative solution interpolation on unstructured
+//! triangular meshes*, Int. J. Numer. Meth. Engng 84, 2010): exact for linear fields too, within the bounds of the old one, and it keeps the mean.
+//!
+//! Values come in rows of `width` a vertex, in whichever order: several fields are brought over at the price of one.
+//! All results are the same bit for bit on any number of threads.
+mod balance;
+mod clip;
+mod conservative;
+mod corners;
+mod error;
+mod front;
+mod interpolate;
+mod mass;
+mod places;
+
+pub use conservative::{Conserved, Keep, conservative};
+pub use error::{Error, Which};
+pub use interpolate::interpolate;
+pub use mass::{Component, measure};
+pub use places::Places;
