@@ -379,6 +379,8 @@ awk -v out="$points" '/^NPOIN=/ { n = $2; print "\"PointID\",\"x\",\"y\",\"z\",\
     for (i = 0; i < n; i++) { getline; printf "%d, %.15e, %.15e, %.15e, %.15e, %e, %e, %e, %e, %.15e\n", i, $1, $2, $3, 1 + $1 / 10, $1, $2, $3, 2.5, $1 * $1 + $2 * $2 > out } }' "$mesh"
 off=9
 if [ "$(value RESTART_SOL "$1")" = YES ]; then
+    columns=$(head -1 "$(value SOLUTION_FILENAME "$1").csv" | tr -d '" ')
+    [ "$columns" = PointID,x,y,z,Density,Momentum_x,Momentum_y,Momentum_z,Energy,Mach ] || { echo "columns $columns"; exit 1; }
     off=$(awk -F, 'NR > 1 { d = $5 - 1 - $2 / 10; if (d < 0) d = -d; if (d > m) m = d } END { printf "%e", m }' "$(value SOLUTION_FILENAME "$1").csv")
 fi
 printf '"Time_Iter","Inner_Iter",     "rms[Rho]"    ,       "CL"       ,       "CD"       \n0, 0, -1.0, 0.0, 0.0\n0, 1, -8.0, %d, %s\n' \
