@@ -59,7 +59,7 @@ pub fn end_leftovers(folder: &Path, stop: &Stop) -> Result<bool, Error> {
         && let Ok(group) = text.trim().parse::<u32>()
     {
         // The lock is held, so somebody of that group lives, and the number is still theirs.
-        signal_group("-KILL", group);
+        kill_group(group);
     }
     while matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
         if stop.asked.load(Relaxed) {
@@ -98,7 +98,8 @@ fn wait(child: &mut Child, stop: &Stop) -> Result<ExitStatus, Error> {
             return Ok(status);
         }
         if stop.now.load(Relaxed) {
-            signal_group("-KILL", child.id());
+            kill_group(child.id());
+            let _ = child.kill();
             child.wait().map_err(failed)?;
             return Err(Error::Interrupted);
         }
@@ -106,12 +107,12 @@ fn wait(child: &mut Child, stop: &Stop) -> Result<ExitStatus, Error> {
     }
 }
 
-/// Sends a signal to a process group, by the system's own program.
-fn signal_group(signal: &str, group: u32) {
-    let target = format!("-{group}");
-    let quiet = Command::new("kill").args([signal, "--", &target]).stdout(Stdio::null()).stderr(Stdio::null()).status();
+/// Kills a process group, by the shell, which has that built in.
+fn kill_group(group: u32) {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", r#"kill -s KILL -- "-$0""#, &group.to_string()]).stdout(Stdio::null()).stderr(Stdio::null());
     // Where that fails the group is waited for.
-    drop(quiet);
+    drop(shell.status());
 }
 
 /// How a program ended, in words.

@@ -29,7 +29,11 @@ impl Schedule {
             return None;
         }
         if self.cycles == Some(adaptations) {
-            return Some(format!("{adaptations} cycles are done"));
+            return Some(if adaptations == 1 {
+                "1 cycle is done".into()
+            } else {
+                format!("{adaptations} cycles are done")
+            });
         }
         Some(format!("complexity {} is reached", self.of_cycle(adaptations)))
     }
