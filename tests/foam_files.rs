@@ -325,3 +325,27 @@ proptest! {
         let _ = foam::read(folder.path()).map_err(|error| error.to_string());
     }
 }
+
+#[test]
+fn convert_writes_and_reads_cases() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = data();
+    let [first, case, back] = ["first.meshb", "case/", "back.meshb"].map(|name| folder.path().join(name));
+    geo_adapt::formats::write(&first, &data).unwrap();
+    let convert = |from: &Path, to: &Path| {
+        let output = Command::new(env!("CARGO_BIN_EXE_geo-adapt")).arg("convert").args([from, to]).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    convert(&first, &case);
+    assert!(foam::is_case(&case));
+    convert(&case, &back);
+    let found = geo_adapt::formats::read(&back).unwrap().content;
+    assert_same(&found.mesh, &data.mesh);
+    assert_eq!(found.names, data.names);
+    assert_eq!(found.fields.iter().map(|field| &field.name[..]).collect::<Vec<_>>(), ["T", "U", "metric", "p"]);
+    let unknown = folder.path().join("case-without-slash");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_geo-adapt")).arg("convert").args([&first, &unknown]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("a new one is named with a / at its end"));
+}

@@ -29,6 +29,7 @@ def arguments():
     parser.add_argument("--short", action="store_true", help="one coarse cycle")
     parser.add_argument("--restart", action="store_true", help="throw away what is there")
     parser.add_argument("--complexity", type=float, help="of the end (default: of loop.toml)")
+    parser.add_argument("--processes", type=int, help="of the solver (default: 1)")
     return parser.parse_args()
 
 
@@ -40,6 +41,8 @@ def main():
     changed = dict(SHORTER) if options.short else {}
     if options.complexity:
         changed["max_complexity"] = f"{options.complexity:g}"
+    if options.processes:
+        changed["processes"] = options.processes
     config = OUT / f"{name}.toml"
     config.write_text(loops.replaced((HERE / "loop.toml").read_text(), changed))
     words = ["--restart"] if options.restart or options.short else []

@@ -17,7 +17,8 @@ const LISTED: usize = 16;
 #[derive(clap::Args)]
 #[command(
     after_help = "Formats: .mesh, .meshb (with .solb and .names.json beside), .su2, .vtu, .msh (gmsh 4.1; reads 2.2 too), \
-                        .msh2 (gmsh 2.2), .ugrid, .b8.ugrid, .lb8.ugrid (with .mapbc beside); fields alone: .sol, .solb, .csv, .dat (SU2)"
+                        .msh2 (gmsh 2.2), .ugrid, .b8.ugrid, .lb8.ugrid (with .mapbc beside), folders (cases of OpenFOAM; \
+                        a new one is named with a / at its end); fields alone: .sol, .solb, .csv, .dat (SU2)"
 )]
 pub struct Arguments {
     /// The mesh
@@ -30,7 +31,7 @@ pub struct Arguments {
     /// Names of the references, instead of the mesh's own: JSON, as bootstrap writes it
     #[arg(long, value_name = "FILE")]
     names: Option<PathBuf>,
-    /// Write text where the format would be binary (.vtu, .msh)
+    /// Write text where the format would be binary (.vtu, .msh, OpenFOAM)
     #[arg(long)]
     text: bool,
 }
@@ -41,7 +42,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let given = [fields.as_deref(), names.as_deref()].into_iter().flatten();
     let beside = formats::beside(input).unwrap_or_default();
     let inputs: Vec<&Path> = given.chain([input.as_path()]).chain(beside.iter().map(PathBuf::as_path)).collect();
-    check_place(output, &inputs)?;
+    if !output.is_dir() {
+        check_place(output, &inputs)?;
+    } else if output.canonicalize().ok() == input.canonicalize().ok() {
+        return Err(format!("{}: is the input and would be overwritten; give another output", output.display()).into());
+    }
     for file in formats::beside(output)? {
         check_place(&file, &inputs)?;
     }

@@ -1,6 +1,6 @@
 //! Which format a file has.
-use super::error;
 use super::ugrid::Encoding;
+use super::{error, foam};
 use crate::mesh::io::Error;
 use std::path::Path;
 
@@ -20,6 +20,8 @@ pub enum Format {
     },
     /// UGRID: .ugrid, .b8.ugrid, .lb8.ugrid.
     Ugrid(Encoding),
+    /// OpenFOAM's cases: folders.
+    Foam,
     /// libMeshb's solutions: .sol, .solb.
     Solution,
     /// SU2's restarts as text: .csv.
@@ -29,15 +31,18 @@ pub enum Format {
 }
 
 /// What can be read and written.
-const KNOWN: &str =
-    ".mesh, .meshb, .su2, .vtu, .msh, .msh2, .ugrid, .b8.ugrid, .lb8.ugrid; fields alone .sol, .solb, .csv, .dat";
+const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .msh, .msh2, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
+     a new one is named with a / at its end); fields alone .sol, .solb, .csv, .dat";
 
 impl Format {
-    /// By the extension.
+    /// By the extension; a folder is a case of OpenFOAM.
     ///
     /// # Errors
     /// When it is none that is known.
     pub fn of(path: &Path) -> Result<Self, Error> {
+        if foam::is_folder(path) {
+            return Ok(Self::Foam);
+        }
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
         Ok(match extension.as_str() {
             "mesh" | "meshb" => Self::Libmeshb,

@@ -8,7 +8,8 @@ pub(super) fn notices(format: Format, data: &Dataset) -> Vec<String> {
     if format.is_fields() {
         return vec!["fields alone are written, no mesh".into()];
     }
-    if format == Format::Libmeshb {
+    // A case tells itself.
+    if matches!(format, Format::Libmeshb | Format::Foam) {
         return Vec::new();
     }
     let (edges, regions, fields, names) = match format {

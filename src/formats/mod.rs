@@ -2,7 +2,7 @@
 //!
 //! Reading goes bytes → a reader a format (`su2`, `vtu`, `msh`, `ugrid`; `libmeshb` hands over to [`crate::mesh::io`]) → [`Dataset`] →
 //! `check` (indices, numbers) → `turn` (tetrahedra numbered the other way). Writing goes the way back, and says what the format cannot carry.
-//! Columns of fields alone (`columns`: SU2's restarts) come onto a mesh that is there.
+//! Cases of OpenFOAM (`foam`) are folders, with fields at cells. Columns of fields alone (`columns`: SU2's restarts) come onto a mesh that is there.
 mod cells;
 mod check;
 mod columns;
@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 /// How a file is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// As text where the format would be binary otherwise (.vtu, .msh).
+    /// As text where the format would be binary otherwise (.vtu, .msh, cases of OpenFOAM).
     pub text: bool,
 }
 
@@ -45,6 +45,11 @@ pub struct Options {
 /// # Errors
 /// [`Error::System`] when a file cannot be read, [`Error::Content`] when what it says cannot be true, or is not for us.
 pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
+    if foam::is_folder(path) {
+        let read = foam::read(path)?;
+        check::check(path, &read.content)?;
+        return Ok(read);
+    }
     let bytes = error::read(path)?;
     let format = Format::of_input(path, &bytes)?;
     let mut read = read_bytes(format, path, &bytes)?;
@@ -67,6 +72,7 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
         Format::Vtu => vtu::read(path, bytes)?,
         Format::Msh { .. } => msh::read(path, bytes)?,
         Format::Ugrid(encoding) => ugrid::read(path, bytes, encoding)?,
+        Format::Foam => return Err(error::at(path, "format", "a case of OpenFOAM is a folder of several files")),
         Format::Solution | Format::Table | Format::Restart => {
             let message = "holds fields and no mesh: give the mesh, and this file by --fields";
             return Err(error::at(path, "extension", message));
@@ -128,6 +134,7 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, options: Options) -
         Format::Libmeshb => libmeshb::write(team, path, data)?,
         Format::Su2 => su2::write(path, data)?,
         Format::Vtu => vtu::write(team, path, data, options.text)?,
+        Format::Foam => foam::write_on(team, path, data, options.text)?,
         Format::Msh { is_new } => msh::write(path, data, is_new, options.text)?,
         Format::Ugrid(encoding) => ugrid::write(path, data, encoding)?,
         Format::Solution => libmeshb::write_solution(team, path, data)?,

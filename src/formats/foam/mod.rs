@@ -38,6 +38,11 @@ pub fn is_case(path: &Path) -> bool {
     file::find(&poly_mesh_of(path), "faces").is_some()
 }
 
+/// Whether a path is that of a folder, so of a case: it is there, or ends in `/`.
+pub fn is_folder(path: &Path) -> bool {
+    path.as_os_str().to_string_lossy().ends_with('/') || path.is_dir()
+}
+
 /// The polyMesh of a case, or of itself.
 fn poly_mesh_of(path: &Path) -> PathBuf {
     let is_itself = path.file_name().is_some_and(|name| name == "polyMesh");
@@ -150,11 +155,11 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Resu
     ];
     let lost: Vec<_> = lost.iter().filter(|(_, count)| *count > 0).map(|(what, _)| *what).collect();
     if !lost.is_empty() {
-        notices.push(format!("{}: OpenFOAM has no place for {}: these are left out", path.display(), lost.join(", ")));
+        notices.push(format!("OpenFOAM has no place for {}: these are left out", lost.join(", ")));
     }
     if folder == path {
         if !data.fields.is_empty() {
-            notices.push(format!("{}: a polyMesh has no fields; name the case to write them", path.display()));
+            notices.push("a polyMesh has no fields; name the case to write them".to_owned());
         }
         return Ok(notices);
     }
@@ -169,7 +174,7 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Resu
         let values = vertices_to_cells(team, mesh, values, kind.values());
         let file = name.replace(|c: char| !c.is_ascii_alphanumeric() && !"_.-".contains(c), "_");
         if file != *name {
-            notices.push(format!("{}: the field {name} is called {file} there", path.display()));
+            notices.push(format!("the field {name} is called {file} there"));
         }
         write_cell_field(&time.join(file), &CellField { kind: *kind, values }, mesh.tets.len(), &entries, text)?;
     }
