@@ -108,7 +108,7 @@ fn bad_slices_are_errors() {
     let good = MeshView::of(&input);
     let metric = vec![isotropic(0.4).0; input.vertices.len()];
     let mut adapter = Adapter::discrete(settings()).unwrap();
-    let mut refused = |view: MeshView, metric: &[[f64; 6]]| adapter.adapt(&view, metric).err().expect("an error");
+    let mut refused = |view: MeshView, metric: &[[f64; 6]]| adapter.adapt(&view, metric).expect_err("an error");
 
     assert!(matches!(refused(good, &metric[1..]), Error::Length { what: "metrics", found: 26, expected: 27 }));
     for bad in [[1.0, 2.0, 1.0, 0.0, 0.0, 1.0], [f64::NAN, 0.0, 1.0, 0.0, 0.0, 1.0], [0.0; 6], [f64::INFINITY; 6]] {
