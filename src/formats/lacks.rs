@@ -17,7 +17,7 @@ pub(super) fn notices(format: Format, data: &Dataset) -> Vec<String> {
         _ => (true, true, true, [true; 3]),
     };
     let mut lost: Vec<String> = Vec::new();
-    let mut count = |count: usize, what: &str| lost.extend((count > 0).then(|| format!("{count} {what}")));
+    let mut count = |count: usize, what: &str| lost.extend((count > 0).then(|| format!("{count} {what}: left out")));
     if !edges {
         count(mesh.edges.len(), "edges");
     }

@@ -189,6 +189,8 @@ fn data_at_elements_and_odd_numbers_are_read() {
     assert!(with("2.2 0 8", "1.0 0 8").contains("version 2.2 or 4.1 is expected"));
     assert!(with("2.2 0 8", "2.2 1 8").contains("the number 1 is expected behind the head"));
     assert!(with("$EndPeriodic", "").contains("$EndPeriodic is missing"));
+    assert!(with("$EndElements\n", &format!("$EndElements\n{elements}")).contains("$Elements comes a second time"));
+    assert!(with("$EndNodes\n", &format!("$EndNodes\n{nodes}")).contains("$Nodes comes a second time"));
     assert!(with("$MeshFormat", "$Format").contains("$MeshFormat must come first"));
     assert!(with("$EndMeshFormat\n$Nodes\n5", "$EndMeshFormat\n$Nodes\n99999999999999").contains("too many nodes"));
     assert!(refusal("a.msh", "").contains("there are no nodes"));

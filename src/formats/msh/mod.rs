@@ -96,7 +96,7 @@ fn sections(path: &Path, bytes: &[u8]) -> Result<Raw, Error> {
         data: Vec::new(),
         notices: Vec::new(),
     };
-    let mut is_new = None;
+    let (mut is_new, mut has_elements) = (None, false);
     while let Some(line) = source.scan.line() {
         let Some(section) = line.strip_prefix(b"$").filter(|name| !name.starts_with(b"End")) else { continue };
         if section == b"MeshFormat" {
@@ -107,9 +107,8 @@ fn sections(path: &Path, bytes: &[u8]) -> Result<Raw, Error> {
             (b"Comments", _) => source.leave(section)?,
             (_, None) => return Err(source.fail("$MeshFormat must come first; give a mesh of MSH version 2.2 or 4.1")),
             (b"PhysicalNames", _) => groups(&mut source, &mut raw)?,
-            (b"Nodes" | b"Elements", _) if section == b"Nodes" && !raw.mesh.vertices.is_empty() => {
-                return Err(source.fail("$Nodes comes a second time; join the two"));
-            }
+            (b"Nodes", _) if !raw.mesh.vertices.is_empty() => return Err(twice(&source, "Nodes")),
+            (b"Elements", _) if std::mem::replace(&mut has_elements, true) => return Err(twice(&source, "Elements")),
             (b"Entities", Some(true)) => v4::entities(&mut source, &mut raw)?,
             (b"Nodes", Some(true)) => v4::nodes(&mut source, &mut raw)?,
             (b"Elements", Some(true)) => v4::elements(&mut source, &mut raw)?,
@@ -129,6 +128,11 @@ fn sections(path: &Path, bytes: &[u8]) -> Result<Raw, Error> {
         return Err(source.fail("there are no nodes in it; give a mesh of MSH version 2.2 or 4.1"));
     }
     Ok(raw)
+}
+
+/// A section that comes again.
+fn twice(source: &Source, section: &str) -> Error {
+    source.fail(format!("${section} comes a second time; join the two"))
 }
 
 /// Reads the version and the encoding: whether it is 4.1.
