@@ -15,6 +15,7 @@ pub use forces::{Coefficients, Walls};
 use super::{Call, Job, Solved, Solver, find_program};
 use crate::formats::foam::{self, CellField};
 use crate::formats::{Dataset, NamedField};
+use crate::mesh::TetMesh;
 use crate::mesh::io::FieldKind;
 use crate::tasks::Team;
 use drive::{Outcome, PLAN, Plan, RESULT};
@@ -145,13 +146,18 @@ impl Config {
         Ok([p, t, cells("U", FieldKind::Vector)?])
     }
 
-    fn plan(&self, kinds: &BTreeMap<i32, Kind>, begins: bool) -> Plan {
-        let walls = kinds.iter().filter(|(_, kind)| **kind == Kind::Wall).map(|(&reference, _)| reference);
+    /// References of the walls.
+    fn walls(&self, data: &Dataset) -> Result<Vec<i32>, String> {
+        let kinds = self.kinds(data)?.into_iter();
+        Ok(kinds.filter(|(_, kind)| *kind == Kind::Wall).map(|(reference, _)| reference).collect())
+    }
+
+    fn plan(&self, walls: Vec<i32>, begins: bool) -> Plan {
         Plan {
             program: self.program.clone(),
             processes: self.processes,
             flow: self.flow.clone(),
-            walls: walls.collect(),
+            walls,
             stage: Stage { scheme: self.scheme, courant: self.courant, smoothing: self.smoothing },
             start_steps: if begins { self.start_steps } else { 0 },
             steps: self.steps,
@@ -202,7 +208,7 @@ impl Solver for Config {
                 .map_err(|error| error.to_string())?;
         }
         dictionaries::write_constant(&case, &self.flow)?;
-        let mut plan = self.plan(&kinds, data.fields.is_empty());
+        let mut plan = self.plan(self.walls(&data)?, data.fields.is_empty());
         if let Some(program) = find_program(&self.program, job.base) {
             plan.program = program.to_string_lossy().into_owned();
         }
@@ -219,8 +225,9 @@ impl Solver for Config {
         let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let text = std::fs::read_to_string(&path).map_err(|error| named(&error))?;
         let outcome: Outcome = serde_json::from_str(&text).map_err(|error| named(&error))?;
-        let mesh = job.mesh()?;
-        let fields = fields(&self.flow, &mesh, &drive::last_time(&case)?)?;
+        let data = job.dataset()?;
+        let still = if self.flow.reynolds.is_some() { self.walls(&data)? } else { Vec::new() };
+        let fields = fields(&self.flow, &data.mesh, &still, &drive::last_time(&case)?)?;
         let Coefficients { lift, drag } = outcome.coefficients;
         let steps = outcome.steps as f64;
         let functionals = [("CL", lift), ("CD", drag), ("steps", steps), ("change", outcome.change)];
@@ -228,8 +235,8 @@ impl Solver for Config {
     }
 }
 
-/// Pressure, temperature, velocity, density and Mach number at the vertices.
-fn fields(flow: &Flow, mesh: &crate::mesh::TetMesh, time: &Path) -> Result<Vec<NamedField>, String> {
+/// Pressure, temperature, velocity, density and Mach number at the vertices; on surfaces of the references `still` nothing moves.
+fn fields(flow: &Flow, mesh: &TetMesh, still: &[i32], time: &Path) -> Result<Vec<NamedField>, String> {
     let read = |name: &str| -> Result<NamedField, String> {
         let path = time.join(name);
         let read = foam::read_cell_field(&path, mesh.tets.len()).map_err(|error| error.to_string())?;
@@ -237,7 +244,10 @@ fn fields(flow: &Flow, mesh: &crate::mesh::TetMesh, time: &Path) -> Result<Vec<N
         let values = foam::cells_to_vertices(Team::alone(), mesh, &values, kind.values());
         Ok(NamedField { name: name.to_owned(), kind, values })
     };
-    let (p, t, u) = (read("p")?, read("T")?, read("U")?);
+    let (p, t, mut u) = (read("p")?, read("T")?, read("U")?);
+    for (nodes, _) in mesh.triangles.iter().filter(|(_, reference)| still.contains(reference)) {
+        nodes.into_iter().for_each(|v| u.values[3 * v as usize..][..3].fill(0.0));
+    }
     let scalar = |name: &str, values| NamedField { name: name.to_owned(), kind: FieldKind::Scalar, values };
     let density = p.values.iter().zip(&t.values).map(|(p, t)| p / (flow.r() * t)).collect();
     let speed = u.values.chunks_exact(3).map(|u| (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt());
