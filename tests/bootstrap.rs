@@ -260,7 +260,7 @@ fn names_and_colours_go_through_bootstrap_and_adapt() {
     assert!(message.contains("called outflow; there are copper, inlet, outlet, steel"), "{message}");
     std::fs::write(place.path("out.names.json"), "[1]").unwrap();
     let message = complaint(&adapt(&[]));
-    assert!(message.contains("out.names.json: no names of references"), "{message}");
+    assert!(message.contains("out.names.json: line 1: no names of references"), "{message}");
 }
 
 #[test]
@@ -406,7 +406,7 @@ fn a_mesher_that_crashes_hangs_or_writes_rubbish_is_told_in_one_error() {
     assert!(with("exec sleep 60", &["--time-limit", "0.1"]).contains("--time-limit"));
     assert!(with("exit 0", &[]).contains("it wrote no mesh"));
     let rubbish = "while [ \"$1\" != -o ]; do shift; done; echo rubbish > \"$2\"";
-    assert!(with(rubbish, &[]).contains("no tetrahedra in it"));
+    assert!(with(rubbish, &[]).contains("there are no nodes in it"));
     // One tetrahedron is a mesh, but none of the cube.
     let one = "while [ \"$1\" != -o ]; do shift; done; printf '$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\\n1 4 1 4\\n3 1 0 4\\n1\\n2\\n3\\n4\\n\
         0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n$EndNodes\\n$Elements\\n2 5 1 5\\n2 1 2 4\\n1 1 2 3\\n2 1 2 4\\n3 1 3 4\\n4 2 3 4\\n3 1 4 1\\n5 1 2 3 4\\n$EndElements\\n' > \"$2\"";

@@ -78,7 +78,7 @@ for index, block in enumerate(mesh.cells):
 print('points', len(mesh.points), repr(float(mesh.points.sum())))
 for name in sorted(cells): print(name, cells[name])
 for name in sys.argv[2:]:
-    values = mesh.point_data[name] if name in mesh.point_data else np.concatenate([np.ravel(b) for b in mesh.cell_data[name]])
+    values = np.concatenate([np.ravel(b) for b in mesh.cell_data[name]]) if name in mesh.cell_data else mesh.point_data[name]
     print(name, values.shape, repr(float(np.abs(values).sum())))
 ";
 
