@@ -42,7 +42,7 @@ fn write(case: &Path, folder: &str, name: &str, body: &str) -> Result<(), String
 pub fn write_constant(case: &Path, flow: &Flow) -> Result<(), String> {
     let heat = flow.gamma * flow.r() / (flow.gamma - 1.0);
     // J/(kmol K), the value that OpenFOAM divides by.
-    let weight = 8314.462_618 / flow.r();
+    let weight = 8_314.462_618 / flow.r();
     let gas = format!(
         "thermoType\n{{\n    type hePsiThermo;\n    mixture pureMixture;\n    transport const;\n    thermo hConst;\n    \
          equationOfState perfectGas;\n    specie specie;\n    energy sensibleInternalEnergy;\n}}\n\
