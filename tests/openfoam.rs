@@ -2,8 +2,11 @@
 mod common;
 use common::adapting::stderr;
 use common::program;
-use serde_json::Value;
-use std::path::{Path, PathBuf};
+use geo_adapt::cycle::solver::openfoam::{self, drive::drive};
+use geo_adapt::cycle::solver::{Before, FieldName, Job, Solved, Solver};
+use geo_adapt::mesh::io::{Solution, SolutionField, write_mesh, write_solution};
+use geo_adapt::mesh::samples::cube;
+use std::path::PathBuf;
 use std::process::Output;
 
 /// A folder with a configuration, run on the unit cube. Its sides are 1 to 6: the least and the greatest x, y, z, or otherwise.
@@ -62,10 +65,6 @@ impl Place {
         program().arg("cycle").arg(self.path("loop.toml")).output().unwrap()
     }
 
-    fn json(&self, name: &str) -> Value {
-        serde_json::from_slice(&std::fs::read(self.path(name)).unwrap()).unwrap()
-    }
-
     fn text(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name)).unwrap()
     }
@@ -73,35 +72,54 @@ impl Place {
 
 const SIDES: &str = "inflow = ['1']\noutflow = ['2']\nwalls = ['3', '4']\nsymmetry = ['5', '6']";
 
+/// Solves on the cube as the loop would, in this process; the solution before as its fields are.
+fn solve(place: &Place, surfaces: &str, program: &str, before: Option<&Solved>) -> (Solved, Vec<String>) {
+    let text = CONFIG.replace("PROGRAM", program).replace("WALLS", surfaces);
+    let text = text.split("[metric]").next().unwrap().split("[solver.openfoam]").nth(1).unwrap();
+    let config: openfoam::Config = toml::from_str(&text.replace("[solver.openfoam.flow]", "[flow]")).unwrap();
+    config.check(place.folder.path()).unwrap();
+    let mesh = place.path("mesh.meshb");
+    let content = cube(3);
+    write_mesh(&mesh, &content).unwrap();
+    let (path, mut named) = (place.path("before.solb"), Vec::new());
+    if let Some(solved) = before {
+        named = solved.fields.iter().map(FieldName::of).collect();
+        let fields = solved.fields.iter().map(|f| SolutionField { kind: f.kind, values: f.values.clone() }).collect();
+        write_solution(&path, &Solution { vertices: content.vertices.len(), fields }).unwrap();
+    }
+    let folder = place.path(if before.is_some() { "second" } else { "first" });
+    std::fs::create_dir(&folder).unwrap();
+    let before = before.map(|_| Before { path: &path, fields: &named });
+    let base = place.folder.path();
+    let job = Job { folder: &folder, base, cycle: 1, mesh: &mesh, before, threads: 1, thread_words: &[] };
+    let calls = config.prepare(&job).unwrap();
+    assert_eq!(calls[0].words[1..], ["openfoam".to_owned(), folder.join("case").to_string_lossy().into_owned()]);
+    let mut log = Vec::new();
+    drive(&folder.join("case"), &mut |line| log.push(line.to_owned())).unwrap();
+    (config.collect(&job).unwrap(), log)
+}
+
 #[test]
 fn a_solve_that_blows_up_is_repeated_with_smaller_steps() {
     let place = Place::new("./stand-in", SIDES);
-    let run = place.run();
-    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
-    for cycle in ["cycle-01", "cycle-02"] {
-        let result = place.json(&format!("out/{cycle}/solve/case/coefficients.json"));
-        // 0.4 and 0.2 fail, 0.1 does not; nothing moves, so two blocks of second order are enough.
-        assert_eq!(result["still"], true, "{result}");
-        let first = cycle == "cycle-01";
-        assert_eq!(result["steps"], if first { 80 } else { 40 }, "{result}");
-        let log = place.text(&format!("out/{cycle}/solve/log.txt"));
-        assert!(log.contains("blew up at Courant 0.4") && log.contains("Courant 0.1 VanAlbada"), "{log}");
-        assert_eq!(log.contains("Upwind"), first, "first order goes before the first solve alone: {log}");
-    }
-    // The free stream through the second solve as it was.
-    let folder = place.path("out/cycle-02/solve/case/40");
-    let found =
-        geo_adapt::formats::foam::read_cell_field(&folder.join("U"), cells(&place.path("out/cycle-02/solve/case")));
-    let velocity = found.unwrap().unwrap().values;
-    assert!(velocity.chunks(3).all(|u| (u[0] - 2.0).abs() < 1e-9 && u[1].abs() + u[2].abs() < 1e-9));
-    let p = place.text("out/cycle-01/solve/case/0/p");
+    let (first, log) = solve(&place, SIDES, "./stand-in", None);
+    // 0.4 and 0.2 fail, 0.1 does not; nothing moves, so two blocks of second order are enough.
+    assert!(log[0].contains("blew up at Courant 0.4") && log[1].contains("blew up at Courant 0.2"), "{log:?}");
+    assert!(log[2].contains("Courant 0.1 Upwind") && log.last().unwrap().contains("VanAlbada"), "{log:?}");
+    assert_eq!(first.functionals["steps"], 80.0);
+    let (second, log) = solve(&place, SIDES, "./stand-in", Some(&first));
+    assert_eq!(second.functionals["steps"], 40.0);
+    assert!(!log.iter().any(|line| line.contains("Upwind")), "first order goes before the first solve alone: {log:?}");
+    // The free stream, through both solves, as it was.
+    let names: Vec<&str> = second.fields.iter().map(|field| &field.name[..]).collect();
+    assert_eq!(names, ["p", "T", "U", "rho", "Mach"]);
+    assert!(second.fields[2].values.chunks(3).all(|u| (u[0] - 2.0).abs() < 1e-9 && u[1].abs() + u[2].abs() < 1e-9));
+    assert!(second.fields[3].values.iter().all(|rho| (rho - 1.4).abs() < 1e-9));
+    assert!(second.fields[4].values.iter().all(|mach| (mach - 2.0).abs() < 1e-9));
+    let p = place.text("first/case/0/p");
     assert!(p.contains("type fixedValue; value uniform 1.0;") && p.contains("type symmetry;"), "{p}");
-    assert!(place.text("out/cycle-01/solve/case/0/U").contains("type slip;"));
-    assert!(place.text("out/cycle-01/solve/case/constant/thermophysicalProperties").contains("mu 0.0;"));
-}
-
-fn cells(case: &Path) -> usize {
-    geo_adapt::formats::foam::read_mesh(case).unwrap().0.tets.len()
+    assert!(place.text("first/case/0/U").contains("type slip;"));
+    assert!(place.text("first/case/constant/thermophysicalProperties").contains("mu 0.0;"));
 }
 
 #[test]
@@ -140,14 +158,17 @@ fn a_free_stream_through_a_channel_stays() {
         eprintln!("skipped: rhoCentralFoam is not there (Debian's package openfoam)");
         return;
     }
-    // Which sides the stream goes along does not matter: it is that of all, and walls along it let it be.
-    let place = Place::new("rhoCentralFoam", "farfield = ['1', '2', '3', '4', '5', '6']");
-    let run = place.run();
-    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
-    let report = place.json("out/report.json");
-    let last = &report["cycles"][1]["functionals"];
-    assert!(last["change"].as_f64().unwrap() < 1e-9, "{last}");
-    let solution = geo_adapt::mesh::io::read_solution(&place.path("out/cycle-02/solve/solution.solb")).unwrap().content;
-    let mach = &solution.fields[4].values;
-    assert!(mach.iter().all(|mach| (mach - 2.0).abs() < 1e-6), "{mach:?}");
+    let sides = "farfield = ['1', '2', '3', '4', '5', '6']";
+    let place = Place::new("rhoCentralFoam", sides);
+    let (first, _) = solve(&place, sides, "rhoCentralFoam", None);
+    let (second, log) = solve(&place, sides, "rhoCentralFoam", Some(&first));
+    assert!(second.functionals["change"] < 1e-9, "{log:?}");
+    assert!(second.fields[4].values.iter().all(|mach| (mach - 2.0).abs() < 1e-6), "{log:?}");
+}
+
+#[test]
+fn an_example_is_printed_and_can_be_checked() {
+    let run = program().args(["cycle", "--example", "openfoam"]).output().unwrap();
+    let text = String::from_utf8(run.stdout).unwrap();
+    assert!(text.contains("[solver.openfoam.flow]") && run.status.success());
 }
