@@ -141,7 +141,8 @@ mod tests {
 
     #[test]
     fn a_histogram_has_a_bar_a_class() {
-        let classes = json!([{ "low": 0.0, "high": 0.71, "count": 1 }, { "low": 0.71, "high": 1.0, "count": 2 }, { "low": 1.0, "high": null, "count": 1 }]);
+        let middle = std::f64::consts::FRAC_1_SQRT_2;
+        let classes = json!([{ "low": 0.0, "high": middle, "count": 1 }, { "low": middle, "high": 1.0, "count": 2 }, { "low": 1.0, "high": null, "count": 1 }]);
         let html = histogram(&json!({ "classes": classes, "min": 0.5, "mean": 1.0, "max": 2.0 }), "lengths", true);
         assert!(html.contains("0.7071 to 1: 2 (50.00 %)") && html.contains("above 1: 1 (25.00 %)"), "{html}");
         assert_eq!((html.matches("class=\"unit\"").count(), html.matches("class=\"bar\"").count()), (1, 2));
