@@ -17,9 +17,12 @@ from judging import cycles, loops, meshfile  # noqa: E402
 HERE = Path(__file__).resolve().parent
 OUT = cycles.ROOT / "out" / "onera-m6-flow"
 MACH = 0.84
-# (target, floor of today); `within`: of the section where the fewest points are near the measured ones.
-BOUNDS = [Bound("within", "≥", 0.8, 0.8), Bound("adaptation", "≤", 0.05, 0.05), Bound("lift", "≥", 0.28, 0.27)]
-SHORT = [Bound("within", "≥", 0.8, 0.4), Bound("lift", "≥", 0.28, 0.25)]
+# (target, floor of today); `within`: of the section where the fewest points are near the measured ones; `inner`: of those without y/b 0.99, where
+# the measured flow separates behind the tip, which no inviscid one does.
+BOUNDS = [
+    Bound("within", "≥", 0.8), Bound("inner", "≥", 0.8, 0.75), Bound("adaptation", "≤", 0.05, 0.05), Bound("lift", "≥", 0.28, 0.27),
+]
+SHORT = [Bound("within", "≥", 0.8), Bound("inner", "≥", 0.8, 0.65), Bound("adaptation", "≤", 0.05, 0.1), Bound("lift", "≥", 0.28, 0.25)]
 SHORTER = {"complexity": "4000", "max_complexity": "4000", "every": "1", "steps": "800", "folder": '"../../out/onera-m6-flow/short"'}
 
 
@@ -53,7 +56,8 @@ def main():
     pressure.draw(lines, folder / "sections.png")
     for line in lines:
         cycles.say(f"y/b {line['share']:.2f}  {line['within']:6.1%} of {line['points']} points within 0.1, {line['left_out']} at shocks left out")
-    result = {"within": min(line["within"] for line in lines), "lift": loop[-1]["functionals"]["CL"], "drag": loop[-1]["functionals"]["CD"],
+    result = {"within": min(line["within"] for line in lines), "inner": min(line["within"] for line in lines if line["share"] < 0.99),
+              "lift": loop[-1]["functionals"]["CL"], "drag": loop[-1]["functionals"]["CD"],
               "vertices": len(mesh.points), "adaptation": adaptation(loop)}
     (OUT / f"{name}.json").write_text(json.dumps(result, indent=1))
     cycles.say("  ".join(f"{key} {value:.5g}" for key, value in result.items()))

@@ -51,7 +51,7 @@ pub struct Outcome {
     pub coefficients: Coefficients,
     /// Steps that were made and kept.
     pub steps: usize,
-    /// Relative change of the pressure over the last block.
+    /// Relative change over the last block: of the pressure (root of squares over the volume) or a coefficient, whichever is more.
     pub change: f64,
     /// Whether it stood still before the steps were used up.
     pub still: bool,
@@ -167,15 +167,18 @@ impl<'a> Run<'a> {
     /// Takes over a block that ended well, and drops the one before.
     fn take(&mut self, next: usize, state: State) -> Result<(), String> {
         let coefficients = self.walls.coefficients(&self.plan.flow, &state.pressure, &state.velocity);
+        // Squares: the noise of a large far field must not outweigh the body's surroundings.
         let size = |f: &dyn Fn(usize) -> f64| {
-            (0..self.volumes.len()).map(|cell| self.volumes[cell] * f(cell).abs()).sum::<f64>()
+            (0..self.volumes.len()).map(|cell| self.volumes[cell] * f(cell).powi(2)).sum::<f64>().sqrt()
         };
-        let away = size(&|cell| state.pressure[cell] - self.plan.flow.pressure);
+        let outside = self.plan.flow.pressure;
+        // Where nothing but rounding is left, that is still.
+        let away = size(&|cell| state.pressure[cell] - outside) + size(&|_| 1e-6 * outside);
         let moved = size(&|cell| state.pressure[cell] - self.state.pressure[cell]);
         let Coefficients { lift, drag } = self.coefficients;
         let forces = (coefficients.lift - lift).abs().max((coefficients.drag - drag).abs())
             / coefficients.lift.abs().max(coefficients.drag.abs()).max(1e-6);
-        self.change = if away > 0.0 { moved / away } else { moved };
+        self.change = moved / away;
         if !self.walls.is_empty() {
             self.change = self.change.max(forces);
         }
