@@ -31,7 +31,7 @@ fn an_output_over_an_input_is_refused_and_the_input_untouched() {
     let (work, mesh, input, metric) = prepared();
     let before = std::fs::read(&input).unwrap();
     let field = ["--metric", &metric];
-    assert_says(&refused_output(&input, &input, &field), &["in.meshb", "would be overwritten", "another -o"]);
+    assert_says(&refused_output(&input, &input, &field), &["in.meshb", "would be overwritten", "another output"]);
     // By another name for the same file.
     let roundabout = work.path(".").join("in.meshb");
     assert_says(&refused_output(&input, &roundabout, &field), &["in.meshb", "would be overwritten"]);
