@@ -151,17 +151,22 @@ impl<'a> Pipeline<'a> {
             let mut common =
                 vec!["view".into(), text(&mesh), "--field".into(), text(&field), "--color".into(), "field".into()];
             common.extend(["--size".into(), PICTURE.into(), "-q".into()]);
-            option(&mut common, "--zoom", output.zoom.as_ref());
             option(&mut common, "--view", output.view.map(|[a, e]| format!("{a},{e}")).as_ref());
-            option(&mut common, "--at", output.at.map(|[x, y, z]| format!("{x},{y},{z}")).as_ref());
             let mut surface = common.clone();
+            let mut near = Vec::new();
+            option(&mut near, "--zoom", output.zoom.as_ref());
+            option(&mut near, "--at", output.at.map(|[x, y, z]| format!("{x},{y},{z}")).as_ref());
             let mut hidden = output.hide.clone();
             hidden.extend(called(&names::read(&mesh)?.triangles, "farfield"));
-            if !hidden.is_empty() {
+            if hidden.is_empty() {
+                surface.extend(near.clone());
+            } else {
+                // What is left fills the picture.
                 surface.extend(["--hide".into(), hidden.iter().map(i32::to_string).collect::<Vec<_>>().join(",")]);
             }
             surface.extend(["--png".into(), text(&running.file("surface.png"))]);
             running.geo_adapt(surface)?;
+            common.extend(near);
             let plane = output.cut.clone().map_or_else(|| middle(&mesh), Ok)?;
             common.extend(["--cut".into(), plane, "--png".into(), text(&running.file("cut.png"))]);
             running.geo_adapt(common)

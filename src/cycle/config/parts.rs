@@ -215,9 +215,9 @@ pub struct Output {
     pub cut: Option<String>,
     /// Azimuth and elevation of the camera, degrees.
     pub view: Option<[f64; 2]>,
-    /// What is in the middle, model units.
+    /// What is in the middle, model units; of the surface only where nothing is hidden.
     pub at: Option<[f64; 3]>,
-    /// So many times larger than what fits.
+    /// So many times larger than what fits; likewise.
     pub zoom: Option<f64>,
     /// Surfaces that are not shown, by reference.
     #[serde(default)]
