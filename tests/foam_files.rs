@@ -285,8 +285,13 @@ fn small(text: bool) -> (tempfile::TempDir, Vec<PathBuf>) {
     (folder, all)
 }
 
+/// How many mutated files are read: 400, or what GEO_ADAPT_MUTATIONS says.
+fn mutations() -> u32 {
+    std::env::var("GEO_ADAPT_MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(400)
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: mutations(), ..ProptestConfig::default() })]
 
     #[test]
     fn damaged_bytes_never_crash_the_reader(
