@@ -14,7 +14,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from comparing.expected import Bound  # noqa: E402
-from judging import cycles, meshfile, report  # noqa: E402
+from judging import cycles, loops, meshfile, report  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 OUT = cycles.ROOT / "out" / "advection-diffusion"
@@ -85,14 +85,7 @@ def main():
         "cells across the layer": across(mesh),
         "seconds": seconds,
     }
-    lost = list(figures["findings"])
-    for bound in BOUNDS:
-        cycles.say(f"  {bound.line(figures[bound.figure])}")
-        if not bound.held(figures[bound.figure]):
-            lost.append(bound.line(figures[bound.figure]))
-    for line in lost:
-        cycles.say(f"LOST  {line}")
-    return 1 if lost else 0
+    return loops.judged(BOUNDS, figures, figures["findings"])
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from comparing.expected import Bound  # noqa: E402
 from convergence_study.quadrature import interpolation_error  # noqa: E402
 from convergence_study.scalars import SCALARS  # noqa: E402
 from convergence_study.study import fitted_order  # noqa: E402
-from judging import cycles, meshfile, report  # noqa: E402
+from judging import cycles, loops, meshfile, report  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 OUT = cycles.ROOT / "out" / "analytic-cycle"
@@ -53,13 +53,7 @@ def main():
     told = loop[-1]["functionals"]["error"]
     if abs(told - figures["error"]) > AGREE * figures["error"]:
         lost.append(f"the loop tells the error {told:.5g}, the judge {figures['error']:.5g}")
-    for bound in BOUNDS:
-        cycles.say(f"  {bound.line(figures[bound.figure])}")
-        if not bound.held(figures[bound.figure]):
-            lost.append(bound.line(figures[bound.figure]))
-    for line in lost:
-        cycles.say(f"LOST  {line}")
-    return 1 if lost else 0
+    return loops.judged(BOUNDS, figures, lost)
 
 
 if __name__ == "__main__":

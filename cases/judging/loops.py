@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 
-from .cycles import ROOT
+from .cycles import ROOT, say
 
 
 def replaced(text, values):
@@ -29,3 +29,13 @@ def run(program, config, folder, *words):
 def last(loop, folder):
     """The last mesh of a loop, and the solution on it."""
     return folder / f"cycle-{loop[-2]['cycle']:02}/adapt/mesh.meshb", folder / f"cycle-{loop[-1]['cycle']:02}/solve/solution.solb"
+
+
+def judged(bounds, figures, lost=()):
+    """Says each bound on the figures, and what is lost besides; the exit code."""
+    for bound in bounds:
+        say(f"  {bound.line(figures[bound.figure])}")
+    lost = [*lost, *(bound.line(figures[bound.figure]) for bound in bounds if not bound.held(figures[bound.figure]))]
+    for line in lost:
+        say(f"LOST  {line}")
+    return 1 if lost else 0

@@ -61,14 +61,8 @@ def main():
               "vertices": len(mesh.points), "adaptation": adaptation(loop)}
     (OUT / f"{name}.json").write_text(json.dumps(result, indent=1))
     cycles.say("  ".join(f"{key} {value:.5g}" for key, value in result.items()))
-    bounds = SHORT if options.short else BOUNDS
-    for bound in bounds:
-        cycles.say(f"  {bound.line(result[bound.figure])}")
-    lost = [bound.line(result[bound.figure]) for bound in bounds if not bound.held(result[bound.figure])]
-    for line in lost:
-        cycles.say(f"LOST  {line}")
     cycles.say(f"{folder}/report.html, {folder}/sections.png")
-    return 1 if lost else 0
+    return loops.judged(SHORT if options.short else BOUNDS, result)
 
 
 def adaptation(loop):

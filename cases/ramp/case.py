@@ -90,14 +90,8 @@ def main():
         "uniform error / error": even["mach_error"] / result["mach_error"], "seconds": seconds,
     }
     (folder.parent / f"{folder.name}.json").write_text(json.dumps({"adapted": result, "uniform": even}, indent=1))
-    bounds = SHORT if options.short else BOUNDS
-    for bound in bounds:
-        cycles.say(f"  {bound.line(result[bound.figure])}")
-    lost = [bound.line(result[bound.figure]) for bound in bounds if not bound.held(result[bound.figure])]
-    for line in lost:
-        cycles.say(f"LOST  {line}")
     cycles.say(f"{seconds:.0f} s in the loop; its report is {folder}/report.html")
-    return 1 if lost else 0
+    return loops.judged(SHORT if options.short else BOUNDS, result)
 
 
 if __name__ == "__main__":

@@ -121,6 +121,29 @@ impl<'a> Scan<'a> {
         count.min(self.left() / bytes + 1)
     }
 
+    /// All bytes that are left.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
+    }
+
+    /// The next N bytes of a binary file, in the order of this machine; `big` says whether the most significant comes first in the file.
+    #[inline]
+    pub fn number<const N: usize>(&mut self, big: bool) -> Result<[u8; N], Error> {
+        let Some(&(mut bytes)) = self.rest().first_chunk::<N>() else {
+            return Err(self.fail_at_byte("the file ends here; it was cut, or a count is too large"));
+        };
+        self.at += N;
+        if big != cfg!(target_endian = "big") {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    /// An error here, in a binary file.
+    pub fn fail_at_byte(&self, message: impl Into<String>) -> Error {
+        error::at(self.path, format!("byte {}", self.at), message)
+    }
+
     /// An error at the last word or line.
     pub fn fail(&self, message: impl Into<String>) -> Error {
         let line = 1 + self.bytes[..self.last.min(self.bytes.len())].iter().filter(|&&b| b == b'\n').count();

@@ -46,8 +46,6 @@ impl Encoding {
 
 /// Walks through the numbers of a file.
 struct Source<'a> {
-    path: &'a Path,
-    bytes: &'a [u8],
     scan: Scan<'a>,
     encoding: Encoding,
 }
@@ -56,28 +54,18 @@ impl Source<'_> {
     fn fail(&self, message: impl Into<String>) -> Error {
         match self.encoding {
             Encoding::Text => self.scan.fail(message),
-            Encoding::Binary { .. } => error::at(self.path, format!("byte {}", self.scan.at), message),
+            Encoding::Binary { .. } => self.scan.fail_at_byte(message),
         }
-    }
-
-    #[inline]
-    fn take<const N: usize>(&mut self, big: bool) -> Result<[u8; N], Error> {
-        let Some(&(mut bytes)) = self.bytes[self.scan.at..].first_chunk::<N>() else {
-            return Err(self.fail("the file ends here; it was cut, or a count is too large"));
-        };
-        self.scan.at += N;
-        if big != cfg!(target_endian = "big") {
-            bytes.reverse();
-        }
-        Ok(bytes)
     }
 
     #[inline]
     fn int(&mut self) -> Result<i64, Error> {
         match self.encoding {
             Encoding::Text => self.scan.int(),
-            Encoding::Binary { big, long: false, .. } => self.take(big).map(|bytes| i32::from_ne_bytes(bytes).into()),
-            Encoding::Binary { big, .. } => self.take(big).map(i64::from_ne_bytes),
+            Encoding::Binary { big, long: false, .. } => {
+                self.scan.number(big).map(|bytes| i32::from_ne_bytes(bytes).into())
+            }
+            Encoding::Binary { big, .. } => self.scan.number(big).map(i64::from_ne_bytes),
         }
     }
 
@@ -85,8 +73,8 @@ impl Source<'_> {
     fn real(&mut self) -> Result<f64, Error> {
         match self.encoding {
             Encoding::Text => self.scan.real(),
-            Encoding::Binary { big, double: true, .. } => self.take(big).map(f64::from_ne_bytes),
-            Encoding::Binary { big, .. } => self.take(big).map(|bytes| f32::from_ne_bytes(bytes).into()),
+            Encoding::Binary { big, double: true, .. } => self.scan.number(big).map(f64::from_ne_bytes),
+            Encoding::Binary { big, .. } => self.scan.number(big).map(|bytes| f32::from_ne_bytes(bytes).into()),
         }
     }
 
@@ -111,7 +99,7 @@ impl Source<'_> {
 
 /// Reads a grid without what lies beside.
 pub(super) fn read(path: &Path, bytes: &[u8], encoding: Encoding) -> Result<Read<Dataset>, Error> {
-    let mut source = Source { path, bytes, scan: Scan::new(path, bytes), encoding };
+    let mut source = Source { scan: Scan::new(path, bytes), encoding };
     let mut counts = [0; 7];
     for count in &mut counts {
         let value = source.int()?;

@@ -16,8 +16,6 @@ pub(super) enum Encoding {
 
 /// A place in a file.
 pub(super) struct Source<'a> {
-    path: &'a Path,
-    bytes: &'a [u8],
     /// Walks through lines and words.
     pub scan: Scan<'a>,
     pub encoding: Encoding,
@@ -26,12 +24,12 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     /// At the beginning; a text until the head tells other.
     pub fn new(path: &'a Path, bytes: &'a [u8]) -> Self {
-        Self { path, bytes, scan: Scan::new(path, bytes), encoding: Encoding::Text }
+        Self { scan: Scan::new(path, bytes), encoding: Encoding::Text }
     }
 
     /// The bytes from here.
     pub fn rest(&self) -> &'a [u8] {
-        &self.bytes[self.scan.at..]
+        self.scan.rest()
     }
 
     /// Whether it is a text.
@@ -43,20 +41,8 @@ impl<'a> Source<'a> {
     pub fn fail(&self, message: impl Into<String>) -> Error {
         match self.encoding {
             Encoding::Text => self.scan.fail(message),
-            Encoding::Binary { .. } => error::at(self.path, format!("byte {}", self.scan.at), message),
+            Encoding::Binary { .. } => self.scan.fail_at_byte(message),
         }
-    }
-
-    #[inline]
-    fn take<const N: usize>(&mut self, big: bool) -> Result<[u8; N], Error> {
-        let Some(&(mut bytes)) = self.bytes[self.scan.at..].first_chunk::<N>() else {
-            return Err(self.fail("the file ends here; it was cut, or a count is too large"));
-        };
-        self.scan.at += N;
-        if big != cfg!(target_endian = "big") {
-            bytes.reverse();
-        }
-        Ok(bytes)
     }
 
     /// An int.
@@ -64,7 +50,7 @@ impl<'a> Source<'a> {
     pub fn int(&mut self) -> Result<i64, Error> {
         match self.encoding {
             Encoding::Text => self.scan.int(),
-            Encoding::Binary { big } => self.take(big).map(|bytes| i32::from_ne_bytes(bytes).into()),
+            Encoding::Binary { big } => self.scan.number(big).map(|bytes| i32::from_ne_bytes(bytes).into()),
         }
     }
 
@@ -73,7 +59,7 @@ impl<'a> Source<'a> {
     pub fn size(&mut self) -> Result<usize, Error> {
         let value = match self.encoding {
             Encoding::Text => self.scan.int()?,
-            Encoding::Binary { big } => i64::from_ne_bytes(self.take(big)?),
+            Encoding::Binary { big } => i64::from_ne_bytes(self.scan.number(big)?),
         };
         usize::try_from(value).map_err(|_| self.fail(format!("{value} stands where a count or number is expected")))
     }
@@ -83,7 +69,7 @@ impl<'a> Source<'a> {
     pub fn real(&mut self) -> Result<f64, Error> {
         match self.encoding {
             Encoding::Text => self.scan.real(),
-            Encoding::Binary { big } => self.take(big).map(f64::from_ne_bytes),
+            Encoding::Binary { big } => self.scan.number(big).map(f64::from_ne_bytes),
         }
     }
 
@@ -115,7 +101,7 @@ impl<'a> Source<'a> {
     /// Moves on behind the end of a section.
     pub fn leave(&mut self, section: &[u8]) -> Result<(), Error> {
         let end = [b"$End", section].concat();
-        let rest = &self.bytes[self.scan.at..];
+        let rest = self.scan.rest();
         let Some(at) = rest.windows(end.len()).position(|part| part == end) else {
             let section = error::short(&String::from_utf8_lossy(section));
             return Err(self.fail(format!("$End{section} is missing: the file was cut off")));
