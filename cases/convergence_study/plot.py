@@ -26,6 +26,9 @@ def _panel(axes, name, result):
     order = result["order"]
     label = "adapted" if order is None else f"adapted: error ∝ N^-{order:.3f} at last"
     axes.loglog([s["vertices"] for s in steps], [s["error"] for s in steps], "o-", color="tab:blue", label=label)
+    if result["finest_order"] is not None:
+        label = f"adapted, against the finest mesh: N^-{result['finest_order']:.3f}"
+        axes.loglog([s["vertices"] for s in steps], [s["finest_error"] for s in steps], "^-", color="tab:green", label=label)
     # The slope of second order, through the last point.
     last, first = steps[-1], steps[0]
     line = [last["error"] * (s["vertices"] / last["vertices"]) ** (-2 / 3) for s in (first, last)]

@@ -5,7 +5,7 @@ use super::table::{Table, figure};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::io::{self, Solution, SolutionField};
 use crate::mesh::locate::Locator;
-use crate::metric::{Sym3, transfer as of_metric};
+use crate::metric::{Field, Sym3, transfer as of_metric};
 use crate::tasks::{GRAIN, Plan, Team, stage};
 use crate::transfer::{Component, Conserved, Keep, Places, conservative, interpolate, measure};
 use clap::ValueEnum;
@@ -136,8 +136,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
     stage("written");
     let (old_volume, before) = measure(team, locator.mesh(), width, &rows);
     let (new_volume, after) = measure(team, &new, width, &found);
-    let components =
-        fields.fields.iter().zip(1..).flat_map(|(field, number)| (1..=field.kind.values()).map(move |k| (number, k)));
     let value = |(c, (field, component)): (usize, (usize, usize))| Value {
         field,
         component,
@@ -157,7 +155,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             partly_outside: found.partly,
             outside: found.outside,
         }),
-        values: components.enumerate().map(value).collect(),
+        values: components(&fields).enumerate().map(value).collect(),
         seconds: Seconds { read, transfer: transferred - read, total: start.elapsed().as_secs_f64() },
     };
     if let Some(path) = &arguments.report {
@@ -170,27 +168,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
 impl Arguments {
     /// Reads the fields, of a mesh of so many vertices.
     fn fields(&self, team: Team<'_>, vertices: usize) -> Result<Solution, Failure> {
-        let name = self.old_fields.display();
         if self.metric {
-            // Read as a metric to refuse what is none, in the words of all commands that read one.
-            let _ = common::logs(&self.run, team, &self.old_fields, vertices)?;
+            // Read as a metric to refuse what is none, in the words of all commands that read one; the notes come below.
+            Field::read_logs(team, &self.old_fields, vertices)?;
         }
-        let read = io::read_solution(&self.old_fields)?;
-        if !self.metric {
-            self.run.note(&read.notices);
-        }
-        let solution = read.content;
-        if solution.vertices != vertices {
-            let (found, mesh) = (solution.vertices, self.old_mesh.display());
-            return Err(format!(
-                "{name}: values at {found} vertices, but {mesh} has {vertices}; give the mesh they belong to"
-            )
-            .into());
-        }
-        if solution.fields.is_empty() {
-            return Err(format!("{name}: no field at the vertices: there is nothing to transfer").into());
-        }
-        Ok(solution)
+        common::fields(&self.run, &self.old_fields, &self.old_mesh, vertices)
     }
 
     fn method(&self) -> &'static str {
@@ -211,8 +193,14 @@ impl Arguments {
     }
 }
 
+/// Number of the field and of the component in it, each from 1, of each value of a vertex.
+pub(super) fn components(solution: &Solution) -> impl Iterator<Item = (usize, usize)> {
+    let fields = solution.fields.iter().zip(1..);
+    fields.flat_map(|(field, number)| (1..=field.kind.values()).map(move |k| (number, k)))
+}
+
 /// All fields in rows of `width` values a vertex.
-fn rows(team: Team<'_>, solution: &Solution, width: usize) -> Vec<f64> {
+pub(super) fn rows(team: Team<'_>, solution: &Solution, width: usize) -> Vec<f64> {
     let mut rows = vec![0.0; width * solution.vertices];
     team.fill(width * GRAIN, &mut rows, |start, rows| {
         for (row, v) in rows.chunks_exact_mut(width).zip(start / width..) {

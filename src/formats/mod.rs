@@ -21,7 +21,7 @@ mod turn;
 pub mod ugrid;
 mod vtu;
 
-pub use cells::to_vertices;
+pub use cells::{cells_to_vertices, vertices_to_cells};
 pub use dataset::{Dataset, NamedField};
 pub use format::Format;
 pub use msh::read_msh;

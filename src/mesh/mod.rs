@@ -7,6 +7,7 @@ pub mod io;
 pub mod locate;
 mod matched_faces;
 pub mod predicate;
+pub mod quadrature;
 #[doc(hidden)]
 pub mod samples;
 mod starts;

@@ -11,6 +11,7 @@ mod balance;
 mod clip;
 mod conservative;
 mod corners;
+mod distance;
 mod error;
 mod front;
 mod interpolate;
@@ -18,6 +19,7 @@ mod mass;
 mod places;
 
 pub use conservative::{Conserved, Keep, conservative};
+pub use distance::{Distance, distance};
 pub use error::{Error, Which};
 pub use interpolate::interpolate;
 pub use mass::{Component, measure};

@@ -91,14 +91,24 @@ class Study(unittest.TestCase):
         self.assertEqual(study.complexities(3000), [750, 1500, 3000])
         self.assertEqual(study.complexities(200), [200])
 
+    def test_complexities_beyond_the_last_end_at_the_finest(self):
+        self.assertEqual(study.beyond(64_000, 256_000), [128_000, 256_000])
+        self.assertEqual(study.beyond(1000, 3000), [2000, 3000])
+
     def test_what_is_not_reached_is_said(self):
         def result(order, times, complexity=64_000.0, doubt=0.01):
-            return {"order": order, "doubt": doubt, "steps": [{"complexity": complexity, "error": 1.0, "uniform_error": times}]}
-        order, times = (bound.floor for bound in command.BOUNDS["sinatan3"])
+            last = {"complexity": complexity, "error": 1.0, "uniform_error": times, "finest_error": None}
+            return {"order": order, "finest_order": None, "doubt": doubt, "steps": [last]}
+        order, times, finest_order, finest_times = (bound.floor for bound in command.BOUNDS["sinatan3"])
         self.assertEqual(command.hold("sinatan3", result(order, times))[1], [])
         self.assertEqual(len(command.hold("sinatan3", result(order - 0.01, times - 0.1))[1]), 2)
         self.assertEqual(command.hold("sinatan3", result(order - 0.01, times - 0.1, 32_000.0)), ([], []), "held from 64 000 on")
         self.assertEqual(len(command.hold("tanh3", result(1.0, 2.0, doubt=0.03))[1]), 1)
+        measured = result(order, times) | {"finest_order": finest_order}
+        measured["steps"][0] |= {"finest_error": 2.0, "uniform_finest_error": 2.0 * finest_times}
+        told, lost = command.hold("sinatan3", measured)
+        self.assertEqual((len(told), lost), (4, []), "against the finest mesh too")
+        self.assertEqual(len(command.hold("sinatan3", measured | {"finest_order": finest_order - 0.01})[1]), 1)
         self.assertIn("not reached", command.hold("sinatan3", result(order, 0.9 * 20))[0][1])
 
 

@@ -2,7 +2,7 @@
 //!
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
 use crate::mesh::TetMesh;
-use crate::mesh::io::{self, Read, read_mesh};
+use crate::mesh::io::{self, Read, Solution, read_mesh, read_solution};
 use crate::mesh::vector::distance;
 use crate::metric::{Field, Limits, Sym3, field};
 use crate::tasks::{Pool, Team};
@@ -172,6 +172,24 @@ pub fn mesh(run: &RunArguments, path: &Path) -> Result<TetMesh, Failure> {
         return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
     }
     Ok(read.content)
+}
+
+/// Reads fields at the vertices of a mesh of so many, one at least, and shows the notices.
+pub fn fields(run: &RunArguments, path: &Path, mesh: &Path, vertices: usize) -> Result<Solution, Failure> {
+    let Read { content, notices } = read_solution(path)?;
+    run.note(&notices);
+    let name = path.display();
+    if content.vertices != vertices {
+        let (found, mesh) = (content.vertices, mesh.display());
+        return Err(format!(
+            "{name}: values at {found} vertices, but {mesh} has {vertices}; give the mesh they belong to"
+        )
+        .into());
+    }
+    if content.fields.is_empty() {
+        return Err(format!("{name}: no field at the vertices").into());
+    }
+    Ok(content)
 }
 
 /// Reads ln M at the vertices of a mesh of so many, and shows the notices.

@@ -2,7 +2,6 @@
 //! Source: OpenFOAM user guide, "Mesh description" and "Field files" (v1912); only what is a mesh of tetrahedra.
 //!
 //! Reading goes bytes → `file` (head) → `scan` (words) → `list`, `boundary` → `poly_mesh`; fields go from cells to vertices by `average`.
-mod average;
 mod boundary;
 mod field;
 mod file;
@@ -11,12 +10,11 @@ mod poly_mesh;
 mod scan;
 mod write;
 
-pub use average::{cells_to_vertices, vertices_to_cells};
 pub use boundary::Patch;
 pub use field::{CellField, read_cell_field, write_cell_field};
 pub use write::write_poly_mesh;
 
-use super::{Dataset, NamedField};
+use super::{Dataset, NamedField, cells_to_vertices, vertices_to_cells};
 use crate::geometry::Names;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, Read, write_beside};

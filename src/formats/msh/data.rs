@@ -1,11 +1,12 @@
 //! Values at nodes and elements.
 use super::super::NamedField;
-use super::super::cells::to_vertices;
+use super::super::cells::cells_to_vertices;
 use super::super::error;
 use super::source::Source;
 use super::tags::Tags;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, FieldKind};
+use crate::tasks::Team;
 
 /// A view as it stands in the file.
 pub(super) struct View {
@@ -56,7 +57,7 @@ fn count(source: &mut Source) -> Result<usize, Error> {
 }
 
 impl View {
-    /// Makes a field of it: of the last step where there are several; at elements their mean about each vertex, by volume.
+    /// Makes a field of it: of the last step where there are several; at elements their mean about each vertex.
     pub fn resolve(
         self,
         mesh: &TetMesh,
@@ -90,8 +91,8 @@ impl View {
             return;
         }
         if !self.at_nodes {
-            all = to_vertices(mesh, self.width, &all);
-            notices.push(format!("{name} was given at elements: its mean about each vertex, by volume, is taken"));
+            all = cells_to_vertices(Team::alone(), mesh, &all, self.width);
+            notices.push(format!("{name} was given at elements: its mean about each vertex is taken"));
         }
         let is_symmetric = |t: &[f64; 9]| t[1] == t[3] && t[2] == t[6] && t[5] == t[7];
         let kind = match self.width {

@@ -6,12 +6,13 @@ mod xml;
 
 pub(super) use write::write;
 
-use super::cells::to_vertices;
+use super::cells::cells_to_vertices;
 use super::format::vtk::{self, LINE, TETRAHEDRON, TRIANGLE, VERTEX};
 use super::{Dataset, NamedField, error};
 use crate::geometry::{Label, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, FieldKind, Read};
+use crate::tasks::Team;
 use decode::Decoder;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -258,11 +259,9 @@ impl<'a> Reader<'_, 'a> {
             }
             let Joined { width, mut values } = joined;
             if is_cells {
-                values = to_vertices(&self.mesh, width, &values);
-                self.notices.push(format!(
-                    "{} was given at cells: their mean about each vertex, by volume, is taken",
-                    error::short(&name)
-                ));
+                values = cells_to_vertices(Team::alone(), &self.mesh, &values, width);
+                self.notices
+                    .push(format!("{} was given at cells: their mean about each vertex is taken", error::short(&name)));
             }
             split(name, width, values, &mut fields, &mut self.notices);
         }

@@ -16,6 +16,11 @@ impl Norm {
         (p >= 1.0).then_some(Self(p))
     }
 
+    /// p, infinity for the greatest error.
+    pub fn exponent(self) -> f64 {
+        self.0
+    }
+
     /// 2p + 3, the number that divides in all exponents of three dimensions; infinite for p = ∞.
     pub(super) fn divisor(self) -> f64 {
         2.0 * self.0 + 3.0

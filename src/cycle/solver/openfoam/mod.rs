@@ -14,7 +14,7 @@ pub use forces::{Coefficients, Walls};
 
 use super::{Call, Job, Solved, Solver, find_program};
 use crate::formats::foam::{self, CellField};
-use crate::formats::{Dataset, NamedField};
+use crate::formats::{self, Dataset, NamedField};
 use crate::mesh::TetMesh;
 use crate::mesh::io::FieldKind;
 use crate::tasks::Team;
@@ -136,7 +136,7 @@ impl Config {
         let cells = |name: &str, kind: FieldKind| {
             let field = data.fields.iter().find(|field| field.name == name && field.kind == kind);
             let field = field.ok_or_else(|| format!("the solution before has no field {name}: begin the loop anew"))?;
-            let values = foam::vertices_to_cells(team, &data.mesh, &field.values, kind.values());
+            let values = formats::vertices_to_cells(team, &data.mesh, &field.values, kind.values());
             Ok::<_, String>(CellField { kind, values })
         };
         let (mut p, mut t) = (cells("p", FieldKind::Scalar)?, cells("T", FieldKind::Scalar)?);
@@ -241,7 +241,7 @@ fn fields(flow: &Flow, mesh: &TetMesh, still: &[i32], time: &Path) -> Result<Vec
         let path = time.join(name);
         let read = foam::read_cell_field(&path, mesh.tets.len()).map_err(|error| error.to_string())?;
         let CellField { kind, values } = read.map_err(|class| format!("{}: a {class}", path.display()))?;
-        let values = foam::cells_to_vertices(Team::alone(), mesh, &values, kind.values());
+        let values = formats::cells_to_vertices(Team::alone(), mesh, &values, kind.values());
         Ok(NamedField { name: name.to_owned(), kind, values })
     };
     let (p, t, mut u) = (read("p")?, read("T")?, read("U")?);

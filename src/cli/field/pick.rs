@@ -1,51 +1,13 @@
-//! `geo-adapt field`: fields at the vertices of a mesh, evaluated or picked out of others.
-use super::metric::common::{self, Failure, RunArguments, check_output};
-use super::table::{Table, figure};
-use super::{Outcome, print};
+//! `geo-adapt field pick`.
+use super::super::metric::common::{Failure, check_output};
+use super::super::print;
 use crate::mesh::io::{self, FieldKind, Solution, SolutionField, read_solution};
-use crate::metric::Scalar;
-use crate::tasks::{Plan, Team};
-use clap::Subcommand;
-use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Arguments of `geo-adapt field`.
-#[derive(clap::Args)]
-pub struct Arguments {
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    /// An analytic function at the vertices of a mesh, and the error of its linear interpolation there
-    Evaluate(Evaluate),
-    /// Some of the values of a file: components, or lengths of vectors
-    Pick(Pick),
-}
-
-/// Arguments of `geo-adapt field evaluate`.
-#[derive(clap::Args)]
-struct Evaluate {
-    /// The mesh: .mesh or .meshb
-    mesh: PathBuf,
-    /// The function, on the unit cube (Tsolakis 2021, equations 21 to 23)
-    #[arg(long, value_enum, value_name = "NAME")]
-    function: Scalar,
-    /// Where the field goes: .sol or .solb
-    #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
-    output: PathBuf,
-    /// Write the error as JSON
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
-    #[command(flatten)]
-    run: RunArguments,
-}
-
 /// Arguments of `geo-adapt field pick`.
 #[derive(clap::Args)]
-struct Pick {
+pub struct Arguments {
     /// Fields at vertices: .sol or .solb
     input: PathBuf,
     /// Values of each vertex, counted from 1 through all fields of the file: 5, or norm:2-4, the length of the vector of three
@@ -80,63 +42,8 @@ impl std::str::FromStr for Take {
     }
 }
 
-/// What `evaluate --report` writes.
-#[derive(Serialize)]
-struct Report {
-    version: &'static str,
-    mesh: PathBuf,
-    function: Scalar,
-    vertices: usize,
-    tets: usize,
-    /// L2 norm of the difference between the function and its linear interpolation.
-    error: f64,
-}
-
 /// Runs the subcommand.
-pub fn run(arguments: &Arguments) -> Outcome {
-    match &arguments.command {
-        Command::Evaluate(arguments) => evaluate(arguments),
-        Command::Pick(arguments) => pick(arguments),
-    }
-}
-
-fn evaluate(arguments: &Evaluate) -> Outcome {
-    let inputs = [arguments.mesh.as_path()];
-    check_output(&arguments.output, &["sol", "solb"], &inputs)?;
-    arguments.report.as_deref().map(|report| check_output(report, &["json"], &inputs)).transpose()?;
-    let pool = arguments.run.pool()?;
-    let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(&arguments.run, &arguments.mesh)?;
-    let values = arguments.function.on(team, &mesh);
-    let error = arguments.function.error(team, &mesh, &values);
-    if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-        let name = arguments.mesh.display();
-        return Err(
-            format!("{name}: the function is {} at vertex {}: it is one of the unit cube", values[at], at + 1).into()
-        );
-    }
-    let solution = Solution { vertices: values.len(), fields: vec![SolutionField { kind: FieldKind::Scalar, values }] };
-    io::write_solution_on(team, &arguments.output, &solution)?;
-    let report = Report {
-        version: env!("CARGO_PKG_VERSION"),
-        mesh: arguments.mesh.clone(),
-        function: arguments.function,
-        vertices: mesh.vertices.len(),
-        tets: mesh.tets.len(),
-        error,
-    };
-    if let Some(path) = &arguments.report {
-        common::write_json(path, &report)?;
-    }
-    let mut table = Table::new();
-    table.row("vertices", report.vertices);
-    table.row("L2 interpolation error", figure(report.error));
-    table.row("written", arguments.output.display());
-    arguments.run.print(table.text());
-    Ok(ExitCode::SUCCESS)
-}
-
-fn pick(arguments: &Pick) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     check_output(&arguments.output, &["sol", "solb"], &[&arguments.input])?;
     let read = read_solution(&arguments.input)?;
     read.notices.iter().for_each(|notice| eprintln!("geo-adapt: note: {notice}"));
