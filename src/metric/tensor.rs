@@ -173,6 +173,12 @@ impl Sym3 {
         Self::outer(a, eigen.values[0]).plus(Self::outer(b, eigen.values[1])).plus(Self::outer(c, eigen.values[2]))
     }
 
+    /// |M|: the same eigenvectors, the absolute values of the eigenvalues.
+    pub fn magnitude(&self) -> Self {
+        let eigen = self.eigen();
+        Self::from_eigen(&Eigen { values: eigen.values.map(f64::abs), ..eigen })
+    }
+
     /// P f(D) Pᵀ of a positive-definite tensor.
     #[inline]
     pub fn map_spd(&self, f: impl Fn(f64) -> f64) -> Self {

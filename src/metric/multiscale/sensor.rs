@@ -2,8 +2,8 @@
 use super::Error;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::sub;
+use crate::metric::Sym3;
 use crate::metric::recovery::{Recovery, Rings};
-use crate::metric::{Eigen, Sym3};
 use crate::tasks::{GRAIN, Team};
 
 /// Second differences that are this share of the greatest value are no more than its rounding, which a fit to points on one side multiplies.
@@ -36,7 +36,7 @@ pub fn absolute(
         range = range.max(high - low);
         let (mut hessians, count) = recovery.hessians(team, mesh, rings, values);
         unfitted = unfitted.max(count);
-        team.fill(GRAIN, &mut hessians, |_, hessians| hessians.iter_mut().for_each(|h| *h = magnitude(h)));
+        team.fill(GRAIN, &mut hessians, |_, hessians| hessians.iter_mut().for_each(|h| *h = h.magnitude()));
         if mean.is_empty() {
             mean = hessians;
         } else {
@@ -69,12 +69,6 @@ fn bounds(team: Team<'_>, values: &[f64]) -> Result<(f64, f64), usize> {
     parts
         .into_iter()
         .try_fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), part| part.map(|(l, h)| (low.min(l), high.max(h))))
-}
-
-/// |H|.
-fn magnitude(hessian: &Sym3) -> Sym3 {
-    let eigen = hessian.eigen();
-    Sym3::from_eigen(&Eigen { values: eigen.values.map(f64::abs), ..eigen })
 }
 
 /// Whether eᵀ|H|e, the second difference along an edge e, is above rounding anywhere. Measured along edges, it does not matter

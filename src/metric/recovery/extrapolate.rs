@@ -3,14 +3,6 @@ use super::rings::Rings;
 use crate::metric::Sym3;
 use crate::tasks::{GRAIN, Team};
 
-/// What was found at the vertices inside; at those on the boundary the mean of their neighbours inside, farther from it of their neighbours
-/// that have one by then, and what was found where none ever has.
-pub fn from_inside(team: Team<'_>, rings: &Rings, found: &[Sym3]) -> Vec<Sym3> {
-    let known = team.map(GRAIN, found.len(), |v| rings.is_inside(v as u32).then_some(found[v]));
-    let filled = fill(team, rings, known);
-    team.map(GRAIN, found.len(), |v| filled[v].unwrap_or(found[v]))
-}
-
 /// Fills gaps by the mean of the neighbours that are known, ring by ring, as long as that fills any.
 pub fn fill(team: Team<'_>, rings: &Rings, mut known: Vec<Option<Sym3>>) -> Vec<Option<Sym3>> {
     loop {

@@ -10,7 +10,7 @@ use crate::tasks::{GRAIN, Team};
 const VERTICES: usize = GRAIN / 8;
 
 /// The Hessian of a field at the vertices, (n,) from values (n,). At vertices on the boundary the averages are one-sided, so that the
-/// second ones are off even for a quadratic function: they take the mean of their neighbours inside, where there are any.
+/// second ones are off even for a quadratic function: they take the mean of |H| of their neighbours inside, where there are any.
 pub fn hessians(team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -> Vec<Sym3> {
     let gradients =
         team.map(VERTICES, values.len(), |v| gradient(mesh, rings, v as u32, |node| [values[node as usize]])[0]);
@@ -19,7 +19,12 @@ pub fn hessians(team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -
         let half = |a: f64, b: f64| 0.5 * (a + b);
         Sym3([x[0], half(x[1], y[0]), y[1], half(x[2], z[0]), half(y[2], z[1]), z[2]])
     });
-    super::extrapolate::from_inside(team, rings, &found)
+    let known = team.map(VERTICES, found.len(), |v| rings.is_inside(v as u32).then(|| found[v].magnitude()));
+    let filled = super::extrapolate::fill(team, rings, known);
+    team.map(VERTICES, found.len(), |v| match filled[v] {
+        Some(mean) if !rings.is_inside(v as u32) => mean,
+        _ => found[v],
+    })
 }
 
 /// Mean gradient of N fields over the tetrahedra at a vertex, weighted by volume; zero where they have none.
@@ -64,5 +69,21 @@ mod tests {
                 assert!(!is_deep || (h.0[i] - exact.0[i]).abs() < 1e-10, "{p:?} {h:?}");
             }
         }
+    }
+
+    #[test]
+    fn the_boundary_takes_what_is_inside_whatever_its_sign() {
+        let mesh = cube(8);
+        let rings = Rings::of(Team::alone(), &mesh);
+        // Bends one way below the middle and the other way above.
+        let values: Vec<f64> = mesh.vertices.iter().map(|p| (p[1] - 0.5).powi(3)).collect();
+        let found = hessians(Team::alone(), &mesh, &rings, &values);
+        let middle = mesh.vertices.iter().position(|&p| p == [0.0, 0.5, 0.5]).unwrap();
+        let inside: Vec<&u32> = rings.neighbours(middle as u32).iter().filter(|&&v| rings.is_inside(v)).collect();
+        let bends = inside.iter().map(|&&v| found[v as usize].0[2]);
+        let (least, greatest) = bends.clone().fold((0.0f64, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
+        assert!(least < -0.5 && greatest > 0.5, "both ways: {least} {greatest}");
+        let mean = bends.map(f64::abs).sum::<f64>() / inside.len() as f64;
+        assert!((found[middle].0[2] - mean).abs() < 1e-12 && mean > 0.2, "{:?} for {mean}", found[middle]);
     }
 }
