@@ -9,6 +9,7 @@ mod matched_faces;
 pub mod predicate;
 #[doc(hidden)]
 pub mod samples;
+pub mod seen;
 mod starts;
 mod tet_mesh;
 pub mod validity;

@@ -53,9 +53,22 @@ pub struct Graded {
 /// # Panics
 /// When there are not as many metrics as vertices.
 pub fn grade(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3], ratio: f64) -> Graded {
-    assert_eq!(mesh.vertices.len(), logs.len(), "one ln M a vertex");
-    let around = VertexNeighbours::of_mesh(team, mesh);
-    Grading::new(team, &mesh.vertices, &around, logs, ratio.ln()).run()
+    grade_with(team, &mesh.vertices, &VertexNeighbours::of_mesh(team, mesh), logs, ratio)
+}
+
+/// As [`grade`], with the neighbours of the vertices along the edges.
+///
+/// # Panics
+/// As [`grade`].
+pub fn grade_with(
+    team: Team<'_>,
+    vertices: &[Vec3],
+    around: &VertexNeighbours,
+    logs: &mut [Sym3],
+    ratio: f64,
+) -> Graded {
+    assert_eq!(vertices.len(), logs.len(), "one ln M a vertex");
+    Grading::new(team, vertices, around, logs, ratio.ln()).run()
 }
 
 /// Where a vertex waits to tell its neighbours.
@@ -109,35 +122,39 @@ impl<'a> Grading<'a> {
             frames: team.map(GRAIN, count, |v| Frame::of_log(&logs[v])),
             logs,
             pace,
-            places: (0..count).map(|_| AtomicU8::new(NOWHERE)).collect(),
+            places: team.map_with(GRAIN, count, || (), |(), _| AtomicU8::new(NOWHERE)),
             news: vec![0.0; count],
-            telling: (0..count).map(|_| AtomicBool::new(false)).collect(),
-            told: (0..count).map(|_| AtomicBool::new(false)).collect(),
+            telling: team.map_with(GRAIN, count, || (), |(), _| AtomicBool::new(false)),
+            told: team.map_with(GRAIN, count, || (), |(), _| AtomicBool::new(false)),
             changed: vec![false; count],
         }
     }
 
     fn run(mut self) -> Graded {
         let mut graded = Graded::default();
+        let mut waiting = self.violators(|_, _| true);
         loop {
-            // Looking at all again at the end makes sure of it, whatever the rounding.
-            let waiting = self.violators();
             let [rounds, updates] = self.settle(&waiting);
             graded.rounds += rounds;
             graded.updates += updates;
             if updates == 0 {
                 break;
             }
+            // Looking again at all edges where something may be otherwise makes sure of it, whatever the rounding.
+            let mut is_open = self.changed.clone();
+            waiting.iter().for_each(|&(p, _)| is_open[p as usize] = true);
+            waiting = self.violators(|p, q| is_open[p as usize] || self.changed[q as usize]);
         }
         graded.changed = self.changed.iter().filter(|&&changed| changed).count();
         graded
     }
 
-    /// The vertices whose metrics, grown along an edge, are not within the one at its other end, and the least size that is news there.
-    fn violators(&self) -> Vec<(u32, f64)> {
+    /// The vertices whose metrics, grown along an edge, are not within the one at its other end, and the least size that is news there. From p to
+    /// q it is looked where that `is_open`: of all others it is known that they are within.
+    fn violators(&self, is_open: impl Fn(u32, u32) -> bool + Sync) -> Vec<(u32, f64)> {
         self.team.collect(FEW, self.logs.len(), |range, found| {
             for p in range.start as u32..range.end as u32 {
-                let least = self.around.of_vertex(p).iter().filter_map(|&q| {
+                let least = self.around.of_vertex(p).iter().filter(|&&q| is_open(p, q)).filter_map(|&q| {
                     let of_q = &self.frames[q as usize];
                     self.excess(p, of_q, q).map(|relative| of_q.least_excess(&relative))
                 });
