@@ -32,8 +32,8 @@ const CLASS: f64 = 1.25;
 /// Vertices a task: one takes a microsecond or two.
 const FEW: usize = 1 << 8;
 
-/// Words of 64 vertices a task that looks for those that are told.
-const WORDS: usize = 1 << 10;
+/// Words of 64 vertices a task that looks for those that are told: most are zero.
+const WORDS: usize = 1 << 14;
 
 /// What grading did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
