@@ -31,7 +31,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let pool = super::pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mut read = io::read_mesh(&arguments.mesh)?;
+    let mut read = io::read_mesh_on(team, &arguments.mesh)?;
     let mesh = &mut read.content;
     let model = load::model(&arguments.cad)?;
     let added = complete_boundary(team, mesh);

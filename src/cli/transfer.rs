@@ -109,9 +109,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let old = common::mesh(run, &arguments.old_mesh)?;
+    let old = common::mesh(run, team, &arguments.old_mesh)?;
     let fields = arguments.fields(team, old.vertices.len())?;
-    let new = common::mesh(run, &arguments.new_mesh)?;
+    let new = common::mesh(run, team, &arguments.new_mesh)?;
     let read = start.elapsed().as_secs_f64();
     stage("read");
     let faces = MatchedFaces::of(team, &old.tets.nodes);
@@ -172,7 +172,7 @@ impl Arguments {
             // Read as a metric to refuse what is none, in the words of all commands that read one; the notes come below.
             Field::read_logs(team, &self.old_fields, vertices)?;
         }
-        common::fields(&self.run, &self.old_fields, &self.old_mesh, vertices)
+        common::fields(&self.run, team, &self.old_fields, &self.old_mesh, vertices)
     }
 
     fn method(&self) -> &'static str {

@@ -10,6 +10,7 @@ pub mod predicate;
 pub mod quadrature;
 #[doc(hidden)]
 pub mod samples;
+pub mod seen;
 mod starts;
 mod tet_mesh;
 pub mod validity;

@@ -1,6 +1,6 @@
 //! The vertices at the other ends of the edges of each vertex.
 use super::TetMesh;
-use super::adjacency::Edges;
+use super::seen::Seen;
 use crate::tasks::{Buckets, GRAIN, Team};
 
 /// For each vertex those it has an edge with, ascending; 60 bytes a vertex.
@@ -13,41 +13,45 @@ pub struct VertexNeighbours {
 impl VertexNeighbours {
     /// By the edges of a mesh's tetrahedra, or of its triangles where it has no tetrahedron.
     pub fn of_mesh(team: Team<'_>, mesh: &TetMesh) -> Self {
-        if !mesh.tets.is_empty() {
-            return Self::of(team, &mesh.tets.nodes, mesh.vertices.len());
+        let vertices = mesh.vertices.len();
+        if mesh.tets.is_empty() {
+            Self::of(team, &mesh.triangles.nodes, vertices)
+        } else {
+            Self::of(team, &mesh.tets.nodes, vertices)
         }
-        let mut edges = team.collect(GRAIN, mesh.triangles.len(), |range, found| {
-            for &[a, b, c] in &mesh.triangles.nodes[range] {
-                found.extend([[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]));
+    }
+
+    /// In a mesh of so many vertices, with elements that have fewer than 2³² corners in all.
+    pub fn of<const N: usize>(team: Team<'_>, elements: &[[u32; N]], vertices: usize) -> Self {
+        Self::at_corners(team, elements, &Buckets::of(team, vertices, elements.len(), |e| elements[e]))
+    }
+
+    /// As [`VertexNeighbours::of`], with the corners at each vertex, N·element + corner.
+    pub fn at_corners<const N: usize>(team: Team<'_>, elements: &[[u32; N]], corners: &Buckets) -> Self {
+        let vertices = corners.keys();
+        let parts = team.chunks(GRAIN, vertices, |range| {
+            let (mut seen, mut ends) = (Seen::default(), Vec::with_capacity(range.len()));
+            // Half as many and two for a vertex inside a mesh of tetrahedra, by Euler's formula; a few more where it is not.
+            let at: usize = range.clone().map(|vertex| corners.of_key(vertex).len()).sum();
+            let mut found: Vec<u32> = Vec::with_capacity(at / 2 + 3 * range.len());
+            for vertex in range {
+                let start = found.len();
+                seen.forget();
+                seen.insert(vertex as u32);
+                let nodes = corners.of_key(vertex).flat_map(|corner| elements[corner as usize / N]);
+                found.extend(nodes.filter(|&node| seen.insert(node)));
+                found[start..].sort_unstable();
+                ends.push(found.len() as u32);
             }
+            (ends, found)
         });
-        // Equal ones are beside each other then, whatever their order was.
-        team.sort_by(&mut edges, Ord::cmp);
-        edges.dedup();
-        Self::of_edges(team, &edges, mesh.vertices.len())
-    }
-
-    /// In a mesh of so many vertices, with tetrahedra of fewer than 2³¹ edges in all.
-    pub fn of(team: Team<'_>, tets: &[[u32; 4]], vertices: usize) -> Self {
-        let edges = Edges::of(team, tets);
-        let edges: Vec<[u32; 2]> =
-            team.collect(GRAIN, edges.nodes(), |range, found| edges.for_each(range, |edge| found.push(edge)));
-        Self::of_edges(team, &edges, vertices)
-    }
-
-    /// By these edges, each once, sorted.
-    fn of_edges(team: Team<'_>, edges: &[[u32; 2]], vertices: usize) -> Self {
-        // The edges are sorted by their lower ends, then by their upper ones: so an ascending row of edges is one of neighbours.
-        let rows = Buckets::of(team, vertices, edges.len(), |edge| edges[edge]);
-        let mut end = 0;
-        let ends = (0..vertices).map(|vertex| {
-            end += rows.of_key(vertex).len() as u32;
-            end
-        });
-        let starts = std::iter::once(0).chain(ends).collect();
-        let entries = rows.into_entries();
-        let other = |place: usize| edges[entries[place] as usize / 2][1 - entries[place] as usize % 2];
-        Self { starts, neighbours: team.map(GRAIN, entries.len(), other) }
+        let mut starts = Vec::with_capacity(vertices + 1);
+        starts.push(0);
+        for (ends, _) in &parts {
+            let before = *starts.last().unwrap_or(&0);
+            starts.extend(ends.iter().map(|end| before + end));
+        }
+        Self { starts, neighbours: team.join_slices(parts.iter().map(|(_, found)| found.as_slice())) }
     }
 
     /// The neighbours of a vertex.

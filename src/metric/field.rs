@@ -81,7 +81,7 @@ fn read_each(
     expected: Option<usize>,
     convert: impl Fn(Sym3) -> Option<Sym3> + Sync,
 ) -> Result<Read<Vec<Sym3>>, Error> {
-    let Read { content, notices } = io::read_solution(path)?;
+    let Read { content, notices } = io::read_solution_on(team, path)?;
     let tensors = only_tensors(path, &content)?;
     let vertices = content.vertices;
     if let Some(expected) = expected.filter(|&expected| expected != vertices) {

@@ -1,6 +1,7 @@
 //! Bounds of the sizes and of their ratio, vertex by vertex.
 use super::Sym3;
 use crate::tasks::{GRAIN, Team};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// What sizes a metric may have; none where there is no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +23,9 @@ impl Limits {
     /// ln M with its sizes within the limits: those below `hmin` are raised to it, those above `hmax` and then those above
     /// `aspect_ratio` times the least are cut. A metric within them comes back bit for bit.
     pub fn apply_to_log(&self, log: &Sym3) -> Sym3 {
+        if self.are_far_from(log) {
+            return *log;
+        }
         let eigen = log.eigen();
         let within = self.exponents(eigen.values);
         let inside = |(a, b): (&f64, &f64)| (a - b).abs() <= ROUNDING * (1.0 + b.abs());
@@ -29,6 +33,17 @@ impl Limits {
             return *log;
         }
         Sym3::from_eigen(&super::Eigen { values: within, ..eigen })
+    }
+
+    /// Whether Gershgorin's circles already tell that all sizes are within: for most, without eigenvalues.
+    #[inline]
+    fn are_far_from(&self, log: &Sym3) -> bool {
+        let [a, b, c, d, e, f] = log.0;
+        let [ab, ac, bc] = [b, d, e].map(f64::abs);
+        let rows = [(a, ab + ac), (c, ab + bc), (f, ac + bc)];
+        let least = rows.iter().fold(f64::INFINITY, |least, (x, radius)| least.min(x - radius));
+        let greatest = rows.iter().fold(f64::NEG_INFINITY, |greatest, (x, radius)| greatest.max(x + radius));
+        self.exponents([least, least, greatest]) == [least, least, greatest]
     }
 
     /// The eigenvalues ln λ = −2 ln h within the limits.
@@ -47,10 +62,15 @@ impl Limits {
         if self.are_none() {
             return 0;
         }
-        let limited = team.map(GRAIN, logs.len(), |v| self.apply_to_log(&logs[v]));
-        let changed = team.chunks(GRAIN, logs.len(), |range| range.filter(|&v| logs[v] != limited[v]).count());
-        logs.copy_from_slice(&limited);
-        changed.into_iter().sum()
+        let changed = AtomicUsize::new(0);
+        team.fill(GRAIN, logs, |_, logs| {
+            let limited = logs.iter_mut().filter_map(|log| {
+                let limited = self.apply_to_log(log);
+                (limited != *log).then(|| *log = limited)
+            });
+            changed.fetch_add(limited.count(), Relaxed);
+        });
+        changed.into_inner()
     }
 }
 

@@ -25,18 +25,19 @@ pub struct Percentiles {
 
 impl Percentiles {
     /// Of values in whichever order (nearest rank).
-    pub fn of(team: Team<'_>, mut values: Vec<f64>) -> Self {
+    pub fn of(mut values: Vec<f64>) -> Self {
         let Some(last) = values.len().checked_sub(1) else { return Self::default() };
-        team.sort_by(&mut values, f64::total_cmp);
-        let at = |share: f64| values[(share * last as f64).round() as usize];
+        let [p1, p10, p50, p90, p99] = [0.01, 0.1, 0.5, 0.9, 0.99].map(|share| (share * last as f64).round() as usize);
+        // Each is looked for among those below, or above, the one before: much less work than to sort them all.
+        let select = |values: &mut [f64], place: usize| *values.select_nth_unstable_by(place, f64::total_cmp).1;
         Self {
-            least: values[0],
-            p1: at(0.01),
-            p10: at(0.1),
-            median: at(0.5),
-            p90: at(0.9),
-            p99: at(0.99),
-            greatest: values[last],
+            median: select(&mut values, p50),
+            p10: select(&mut values[..=p50], p10),
+            p1: select(&mut values[..=p10], p1),
+            least: select(&mut values[..=p1], 0),
+            p90: select(&mut values[p50..], p90 - p50),
+            p99: select(&mut values[p90..], p99 - p90),
+            greatest: select(&mut values[p99..], last - p99),
         }
     }
 }
@@ -69,17 +70,18 @@ impl Summary {
             let [a, b, c] = logs[v].eigen().values;
             [-0.5 * c, -0.5 * b, -0.5 * a]
         });
-        let over = |f: &(dyn Fn([f64; 3]) -> f64 + Sync)| {
-            Percentiles::of(team, team.map(GRAIN, sizes.len(), |v| f(sizes[v]).exp()))
-        };
+        let logarithms: [fn(&[f64; 3]) -> f64; 4] = [|h| h[0], |h| h[2], |h| h[2] - h[0], |h| 2.0 * h[2] - h[0] - h[1]];
+        let of_each = team.chunks(1, logarithms.len(), |range| {
+            Percentiles::of(sizes.iter().map(|h| logarithms[range.start](h).exp()).collect())
+        });
         Self {
             vertices: mesh.vertices.len(),
             complexity: field::complexity_of_logs(team, mesh, logs),
             complexity_between: field::complexity_between(team, mesh, logs),
-            least_size: over(&|h| h[0]),
-            greatest_size: over(&|h| h[2]),
-            aspect_ratio: over(&|h| h[2] - h[0]),
-            anisotropic_quotient: over(&|h| 2.0 * h[2] - h[0] - h[1]),
+            least_size: of_each[0],
+            greatest_size: of_each[1],
+            aspect_ratio: of_each[2],
+            anisotropic_quotient: of_each[3],
         }
     }
 }

@@ -82,6 +82,37 @@ impl<'p> Team<'p> {
         all
     }
 
+    /// As [`Team::map`], into a list that is there: no room has to be made where it is as long.
+    pub fn remap<T: Copy + Send>(self, grain: usize, list: &mut Vec<T>, items: usize, f: impl Fn(usize) -> T + Sync) {
+        if list.len() != items {
+            *list = self.map(grain, items, f);
+            return;
+        }
+        self.fill(grain, list, |start, chunk| {
+            chunk.iter_mut().zip(start..).for_each(|(slot, item)| *slot = f(item));
+        });
+    }
+
+    /// `f` of each item, with what `state` makes for each task to work with.
+    pub fn map_with<S, T: Send>(
+        self,
+        grain: usize,
+        items: usize,
+        state: impl Fn() -> S + Sync,
+        f: impl Fn(&mut S, usize) -> T + Sync,
+    ) -> Vec<T> {
+        let mut all = Vec::with_capacity(items);
+        self.fill(grain, &mut all.spare_capacity_mut()[..items], |start, chunk| {
+            let mut state = state();
+            for (slot, item) in chunk.iter_mut().zip(start..) {
+                slot.write(f(&mut state, item));
+            }
+        });
+        // SAFETY: as in `map`.
+        unsafe { all.set_len(items) };
+        all
+    }
+
     /// What `f(range, found)` pushes to the empty list that it is given, joined in the order of the chunks.
     pub fn collect<T, F>(self, grain: usize, items: usize, f: F) -> Vec<T>
     where

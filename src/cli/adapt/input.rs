@@ -83,7 +83,7 @@ type Error = Box<dyn std::error::Error>;
 impl InputArguments {
     /// Reads the mesh and, if it comes from a file, its metric. What the user should know is added to `notices`.
     pub fn read(&self, team: Team<'_>, notices: &mut Vec<String>) -> Result<Given, Error> {
-        let read = io::read_mesh(&self.mesh)?;
+        let read = io::read_mesh_on(team, &self.mesh)?;
         stage("mesh read");
         notices.extend(read.notices);
         let mesh = read.content;

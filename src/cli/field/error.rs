@@ -69,10 +69,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let coarse = common::mesh(run, mesh)?;
-    let fields = common::fields(run, field, mesh, coarse.vertices.len())?;
-    let fine = common::mesh(run, truth)?;
-    let true_fields = common::fields(run, true_field, truth, fine.vertices.len())?;
+    let coarse = common::mesh(run, team, mesh)?;
+    let fields = common::fields(run, team, field, mesh, coarse.vertices.len())?;
+    let fine = common::mesh(run, team, truth)?;
+    let true_fields = common::fields(run, team, true_field, truth, fine.vertices.len())?;
     let kinds = |solution: &crate::mesh::io::Solution| solution.fields.iter().map(|f| f.kind).collect::<Vec<_>>();
     if kinds(&fields) != kinds(&true_fields) {
         let (a, b) = (field.display(), true_field.display());

@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     arguments.report.as_deref().map(|report| check_output(report, &["json"], &inputs)).transpose()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(&arguments.run, &arguments.mesh)?;
+    let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
     let values = arguments.function.on(team, &mesh);
     let error = arguments.function.error(team, &mesh, &values);
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {

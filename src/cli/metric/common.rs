@@ -2,7 +2,7 @@
 //!
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
 use crate::mesh::TetMesh;
-use crate::mesh::io::{self, Read, Solution, read_mesh, read_solution};
+use crate::mesh::io::{self, Read, Solution, read_mesh_on, read_solution_on};
 use crate::mesh::vector::distance;
 use crate::metric::{Field, Limits, Sym3, field};
 use crate::tasks::{Pool, Team};
@@ -165,8 +165,8 @@ fn at_least_one(text: &str) -> Result<f64, String> {
 }
 
 /// Reads a volume mesh and shows its notices.
-pub fn mesh(run: &RunArguments, path: &Path) -> Result<TetMesh, Failure> {
-    let read = read_mesh(path)?;
+pub fn mesh(run: &RunArguments, team: Team<'_>, path: &Path) -> Result<TetMesh, Failure> {
+    let read = read_mesh_on(team, path)?;
     run.note(&read.notices);
     if read.content.tets.is_empty() {
         return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
@@ -175,8 +175,14 @@ pub fn mesh(run: &RunArguments, path: &Path) -> Result<TetMesh, Failure> {
 }
 
 /// Reads fields at the vertices of a mesh of so many, one at least, and shows the notices.
-pub fn fields(run: &RunArguments, path: &Path, mesh: &Path, vertices: usize) -> Result<Solution, Failure> {
-    let Read { content, notices } = read_solution(path)?;
+pub fn fields(
+    run: &RunArguments,
+    team: Team<'_>,
+    path: &Path,
+    mesh: &Path,
+    vertices: usize,
+) -> Result<Solution, Failure> {
+    let Read { content, notices } = read_solution_on(team, path)?;
     run.note(&notices);
     let name = path.display();
     if content.vertices != vertices {

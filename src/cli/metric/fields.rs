@@ -1,7 +1,7 @@
 //! Reading the fields that a metric is made from, and the options of the multiscale metric; `adapt --field` has them too.
 use super::common::{Failure, GradationArgument, LimitArguments};
 use crate::mesh::TetMesh;
-use crate::mesh::io::{FieldKind, Read, Solution, SolutionField, read_solution};
+use crate::mesh::io::{FieldKind, Read, Solution, SolutionField, read_solution_on};
 use crate::metric::multiscale::{self, Bounds, Measure, Norm, Options, Summary, multiscale};
 use crate::metric::recovery::Recovery;
 use crate::metric::{Limits, Sym3};
@@ -97,7 +97,7 @@ impl MultiscaleArguments {
         let limits = self.limits.limits()?;
         let mut files = Vec::new();
         for path in paths {
-            let Read { content, notices: found } = read_solution(path)?;
+            let Read { content, notices: found } = read_solution_on(team, path)?;
             notices.extend(found);
             files.push(self.scalars(path, content, mesh.vertices.len())?);
         }

@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let limits = arguments.limits.limits()?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(run, &arguments.mesh)?;
+    let mesh = common::mesh(run, team, &arguments.mesh)?;
     let image = image::read(&arguments.image)?;
     let diameter = common::diameter(&mesh);
     let hmax = limits.hmax.unwrap_or(diameter).min(diameter);

@@ -31,7 +31,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     to.check(&[&arguments.mesh, &arguments.points])?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(run, &arguments.mesh)?;
+    let mesh = common::mesh(run, team, &arguments.mesh)?;
     let Read { content: points, notices } = read_points(&arguments.points)?;
     run.note(&notices);
     let found = from_points(team, &mesh.vertices, &points, arguments.neighbours as usize);

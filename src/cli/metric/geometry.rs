@@ -6,7 +6,7 @@ use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
 use crate::geometry::{Discrete, Geometry, Model};
 use crate::mesh::TetMesh;
-use crate::mesh::io::read_mesh;
+use crate::mesh::io::read_mesh_on;
 use crate::metric::Limits;
 use crate::metric::summary::Summary as Figures;
 use crate::sizing::{self, Options, Summary};
@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let limits = arguments.limits.limits()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mut read = read_mesh(&arguments.mesh)?;
+    let mut read = read_mesh_on(team, &arguments.mesh)?;
     let mesh = &mut read.content;
     let added = complete_boundary(team, mesh);
     if added > 0 {

@@ -25,7 +25,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     to.check(&[&arguments.mesh])?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(run, &arguments.mesh)?;
+    let mesh = common::mesh(run, team, &arguments.mesh)?;
     let Some(Implied { logs, flat, bare }) = implied(team, &mesh) else {
         let name = arguments.mesh.display();
         return Err(format!("{name}: all tetrahedra are flat or inverted; turn two nodes of each round").into());

@@ -29,9 +29,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     to.check(&[&arguments.old_mesh, &arguments.old_metric, &arguments.new_mesh])?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let old = common::mesh(run, &arguments.old_mesh)?;
+    let old = common::mesh(run, team, &arguments.old_mesh)?;
     let logs = common::logs(run, team, &arguments.old_metric, old.vertices.len())?;
-    let new = common::mesh(run, &arguments.new_mesh)?;
+    let new = common::mesh(run, team, &arguments.new_mesh)?;
     let Transferred { logs, outside, farthest } = transfer(team, Arc::new(old), &logs, &new.vertices);
     to.write_logs(team, &logs)?;
     let mut table = Table::new();

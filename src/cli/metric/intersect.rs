@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = mesh_path.map(|path| common::mesh(run, path)).transpose()?;
+    let mesh = mesh_path.map(|path| common::mesh(run, team, path)).transpose()?;
     let mut logs = match &mesh {
         Some(mesh) => common::logs(run, team, first, mesh.vertices.len())?,
         None => common::all_logs(run, team, first)?,

@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     stage("start");
-    let mesh = common::mesh(&arguments.run, &arguments.mesh)?;
+    let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
     stage("mesh read");
     let (mut notices, wanted) = (Vec::new(), (arguments.complexity, Measure::AtVertices));
     let (logs, made) = arguments.multiscale.make(team, &mesh, &arguments.fields, wanted, None, &mut notices)?;

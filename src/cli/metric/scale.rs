@@ -30,7 +30,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     to.check(&[&arguments.mesh, &arguments.metric])?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(run, &arguments.mesh)?;
+    let mesh = common::mesh(run, team, &arguments.mesh)?;
     let mut logs = common::logs(run, team, &arguments.metric, mesh.vertices.len())?;
     let before = common::complexity(team, &arguments.mesh, &mesh, &logs)?;
     let factor = field::complexity_factor(before, arguments.complexity);

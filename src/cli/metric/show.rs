@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(&arguments.run, &arguments.mesh)?;
+    let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
     let logs = common::logs(&arguments.run, team, &arguments.metric, mesh.vertices.len())?;
     let shown = Shown { summary: Summary::of(team, &mesh, &logs), gradation: gradation::measure(team, &mesh, &logs) };
     if let Some(json) = &arguments.json {

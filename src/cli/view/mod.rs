@@ -6,7 +6,7 @@ use super::metric::common::{Failure, RunArguments, check_output};
 use super::table::figure;
 use crate::geometry::{Evaluate, Geometry, Model, classify, fidelity, names};
 use crate::mesh::TetMesh;
-use crate::mesh::io::{Read, read_mesh, read_solution};
+use crate::mesh::io::{Read, read_mesh_on, read_solution_on};
 use crate::mesh::vector::Vec3;
 use crate::metric::{Analytic, Field, Statistics, Sym3};
 use crate::tasks::{GRAIN, Plan, Team, stage};
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let read = read_mesh(&arguments.mesh)?;
+    let read = read_mesh_on(team, &arguments.mesh)?;
     arguments.run.note(&read.notices);
     let mesh = read.content;
     if mesh.tets.is_empty() && mesh.triangles.is_empty() {
@@ -126,7 +126,7 @@ impl Arguments {
     }
 
     fn read_field(&self, team: Team<'_>, path: &Path, vertices: usize) -> Result<Vec<ScalarField>, Failure> {
-        let Read { content, notices } = read_solution(path)?;
+        let Read { content, notices } = read_solution_on(team, path)?;
         self.run.note(&notices);
         let (name, found) = (path.display(), content.vertices);
         if found != vertices {

@@ -207,6 +207,10 @@ impl<'a> Cursor<'a> for AsciiCursor<'a> {
     }
 
     #[inline]
+    fn at_row(_: &Source<'a>, _: &Section, _: usize) -> Option<Self> {
+        None
+    }
+
     fn int(&mut self) -> Result<i64, String> {
         let token = self.next()?;
         parse_int(&self.tokens.bytes[token])

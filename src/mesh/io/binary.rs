@@ -199,6 +199,12 @@ impl BinaryCursor<'_> {
         self.next += size;
         self.at
     }
+
+    /// Passes over so many reals.
+    #[inline(always)]
+    pub(super) fn skip_reals(&mut self, count: usize) {
+        self.next += count * self.words.real;
+    }
 }
 
 impl<'a> Cursor<'a> for BinaryCursor<'a> {
@@ -218,6 +224,14 @@ impl<'a> Cursor<'a> for BinaryCursor<'a> {
     fn raw_real(&mut self) -> Result<f64, String> {
         let at = self.step(self.words.real);
         self.words.real_at(self.bytes, at).ok_or_else(|| CUT.into())
+    }
+
+    fn at_row(source: &Source<'a>, section: &Section, row: usize) -> Option<Self> {
+        let mut cursor = Self::new(source, section);
+        let (ints, reals) = section.row();
+        cursor.next += row * (ints * cursor.words.int + reals * cursor.words.real);
+        cursor.at = cursor.next;
+        Some(cursor)
     }
 
     fn at(&self) -> usize {

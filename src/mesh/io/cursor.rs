@@ -2,6 +2,9 @@
 use super::Error;
 use super::keyword::Keyword;
 use super::source::{Section, Source};
+use crate::tasks::{GRAIN, Team};
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 /// Walks through the values of a section. Errors are the message alone; [`rows`] adds the place.
 pub(super) trait Cursor<'a> {
@@ -13,6 +16,10 @@ pub(super) trait Cursor<'a> {
     fn raw_real(&mut self) -> Result<f64, String>;
     /// Byte at which the last value begins.
     fn at(&self) -> usize;
+    /// At the first value of a row, counted from 0; none where that cannot be told without the rows before.
+    fn at_row(source: &Source<'a>, section: &Section, row: usize) -> Option<Self>
+    where
+        Self: Sized;
     /// An error if there are values left.
     fn finish(&mut self) -> Result<(), String>;
 
@@ -58,6 +65,78 @@ pub(super) fn rows<'a, C: Cursor<'a>>(
         row(&mut cursor).map_err(|message| source.row_error(cursor.at(), section, number, message))?;
     }
     cursor.finish().map_err(|message| source.error(cursor.at(), section.keyword.name(), message))
+}
+
+/// Rows of a binary file a task.
+const ROWS: usize = 4 * GRAIN;
+
+/// What `row` makes of each row of a section, as two lists. Where rows have their places all threads read; `none` fills the lists before.
+pub(super) fn columns<'a, C: Cursor<'a>, A: Copy + Send, B: Copy + Send>(
+    team: Team<'_>,
+    source: &Source<'a>,
+    section: &Section,
+    none: (A, B),
+    row: impl Fn(&mut C) -> Result<(A, B), String> + Sync,
+) -> Result<(Vec<A>, Vec<B>), Error> {
+    if C::at_row(source, section, 0).is_none() {
+        let room = room(section);
+        let (mut first, mut second) = (Vec::with_capacity(room), Vec::with_capacity(room));
+        rows::<C>(source, section, |cursor| {
+            let (a, b) = row(cursor)?;
+            first.push(a);
+            second.push(b);
+            Ok(())
+        })?;
+        return Ok((first, second));
+    }
+    // A binary section has as many rows as it says.
+    let (mut first, mut second) = (vec![none.0; section.count], vec![none.1; section.count]);
+    let mut blocks: Vec<_> = first.chunks_mut(ROWS).zip(second.chunks_mut(ROWS)).collect();
+    let fault = Fault::default();
+    team.fill(1, &mut blocks, |start, blocks| {
+        for ((first, second), block) in blocks.iter_mut().zip(start..) {
+            fault.in_rows::<C>(source, section, block * ROWS..block * ROWS + first.len(), |cursor, place| {
+                (first[place], second[place]) = row(cursor)?;
+                Ok(())
+            });
+        }
+    });
+    drop(blocks);
+    fault.result(source, section).map(|()| (first, second))
+}
+
+/// The first fault that several tasks find in a section: byte, row from 0, message.
+#[derive(Default)]
+pub(super) struct Fault(Mutex<Option<(usize, usize, String)>>);
+
+impl Fault {
+    /// Calls `row` for these rows of a section whose rows have places, with the number of the row among them, up to one with a fault.
+    pub(super) fn in_rows<'a, C: Cursor<'a>>(
+        &self,
+        source: &Source<'a>,
+        section: &Section,
+        range: Range<usize>,
+        mut row: impl FnMut(&mut C, usize) -> Result<(), String>,
+    ) {
+        let Some(mut cursor) = C::at_row(source, section, range.start) else { return };
+        for number in range.clone() {
+            if let Err(message) = row(&mut cursor, number - range.start) {
+                let mut fault = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+                if fault.as_ref().is_none_or(|fault| cursor.at() < fault.0) {
+                    *fault = Some((cursor.at(), number, message));
+                }
+                return;
+            }
+        }
+    }
+
+    /// The fault as an error, if there is one.
+    pub(super) fn result(self, source: &Source<'_>, section: &Section) -> Result<(), Error> {
+        match self.0.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            None => Ok(()),
+            Some((at, row, message)) => Err(source.row_error(at, section, row + 1, message)),
+        }
+    }
 }
 
 /// Rows to make room for: what the header says, but no more than the bytes can hold, for headers lie.

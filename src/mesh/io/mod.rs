@@ -5,6 +5,7 @@
 mod ascii;
 mod beside;
 mod binary;
+mod bytes;
 mod cursor;
 mod error;
 mod keyword;
@@ -39,8 +40,15 @@ pub struct Read<T> {
 /// # Errors
 /// [`Error::System`] when the file cannot be read, [`Error::Content`] when what it says cannot be true.
 pub fn read_mesh(path: &Path) -> Result<Read<TetMesh>, Error> {
-    let bytes = std::fs::read(path).map_err(|e| Error::system(path, e))?;
-    read::mesh_from(path, &bytes)
+    read_mesh_on(Team::alone(), path)
+}
+
+/// As [`read_mesh`], on the threads of a team: binary files section by section, every section by all of them.
+///
+/// # Errors
+/// As there.
+pub fn read_mesh_on(team: Team<'_>, path: &Path) -> Result<Read<TetMesh>, Error> {
+    read::mesh_from(team, path, &bytes::of_file(team, path)?)
 }
 
 /// As [`read_mesh`], from the bytes of such a file; `path` is what errors say.
@@ -48,7 +56,7 @@ pub fn read_mesh(path: &Path) -> Result<Read<TetMesh>, Error> {
 /// # Errors
 /// As there.
 pub fn mesh_of_bytes(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
-    read::mesh_from(path, bytes)
+    read::mesh_from(Team::alone(), path, bytes)
 }
 
 /// As [`read_solution`], from the bytes of such a file; `path` is what errors say.
@@ -56,7 +64,7 @@ pub fn mesh_of_bytes(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> 
 /// # Errors
 /// As there.
 pub fn solution_of_bytes(path: &Path, bytes: &[u8]) -> Result<Read<Solution>, Error> {
-    read::solution_from(path, bytes)
+    read::solution_from(Team::alone(), path, bytes)
 }
 
 /// Writes .mesh or .meshb by the extension: beside the target first, then renamed.
@@ -73,8 +81,15 @@ pub fn write_mesh(path: &Path, mesh: &TetMesh) -> Result<(), Error> {
 /// # Errors
 /// [`Error::System`] when the file cannot be read, [`Error::Content`] when what it says cannot be true.
 pub fn read_solution(path: &Path) -> Result<Read<Solution>, Error> {
-    let bytes = std::fs::read(path).map_err(|e| Error::system(path, e))?;
-    read::solution_from(path, &bytes)
+    read_solution_on(Team::alone(), path)
+}
+
+/// As [`read_solution`], on the threads of a team.
+///
+/// # Errors
+/// As there.
+pub fn read_solution_on(team: Team<'_>, path: &Path) -> Result<Read<Solution>, Error> {
+    read::solution_from(team, path, &bytes::of_file(team, path)?)
 }
 
 /// Writes .sol or .solb by the extension: beside the target first, then renamed.

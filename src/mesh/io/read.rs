@@ -1,15 +1,16 @@
 //! From a file's sections to a mesh or a solution; the same for texts and binary files.
 use super::ascii::AsciiCursor;
 use super::binary::BinaryCursor;
-use super::cursor::{Cursor, room, rows};
+use super::cursor::{Cursor, Fault, columns, room, rows};
 use super::keyword::Keyword;
 use super::source::{Contents, Encoding, Section, Source};
 use super::{Error, Read, Solution, SolutionField};
 use crate::mesh::{Elements, OnEdge, OnFace, OnVertex, TetMesh};
+use crate::tasks::{GRAIN, Team};
 use std::path::Path;
 
 /// A mesh from the bytes of a file.
-pub(super) fn mesh_from(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
+pub(super) fn mesh_from(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
     let contents = Contents::of(path, bytes)?;
     let Some(vertices) = contents.section(Keyword::Vertices).filter(|s| s.count > 0) else {
         let message = "no Vertices: a mesh is expected (a solution file is none)";
@@ -20,8 +21,8 @@ pub(super) fn mesh_from(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Erro
         return Err(Error::content(path, "Vertices", message));
     }
     let content = match contents.source.encoding {
-        Encoding::Ascii => mesh::<AsciiCursor>(&contents)?,
-        Encoding::Binary(_) => mesh::<BinaryCursor>(&contents)?,
+        Encoding::Ascii => mesh::<AsciiCursor>(team, &contents)?,
+        Encoding::Binary(_) => mesh::<BinaryCursor>(team, &contents)?,
     };
     let mut notices = contents.notices;
     notices.extend(
@@ -35,7 +36,7 @@ pub(super) fn mesh_from(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Erro
 }
 
 /// A solution from the bytes of a file.
-pub(super) fn solution_from(path: &Path, bytes: &[u8]) -> Result<Read<Solution>, Error> {
+pub(super) fn solution_from(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<Solution>, Error> {
     let contents = Contents::of(path, bytes)?;
     let Some(section) = contents.section(Keyword::SolAtVertices) else {
         let message = "no SolAtVertices: a solution with values at vertices is expected (a mesh file is none)";
@@ -43,7 +44,7 @@ pub(super) fn solution_from(path: &Path, bytes: &[u8]) -> Result<Read<Solution>,
     };
     let content = match contents.source.encoding {
         Encoding::Ascii => solution::<AsciiCursor>(&contents.source, section)?,
-        Encoding::Binary(_) => solution::<BinaryCursor>(&contents.source, section)?,
+        Encoding::Binary(_) => binary_solution(team, &contents.source, section)?,
     };
     let mut notices = contents.notices;
     notices.extend(contents.sections.iter().filter(|s| s.keyword != Keyword::SolAtVertices).map(|section| {
@@ -52,15 +53,18 @@ pub(super) fn solution_from(path: &Path, bytes: &[u8]) -> Result<Read<Solution>,
     Ok(Read { content, notices })
 }
 
-fn mesh<'a, C: Cursor<'a>>(contents: &Contents<'a>) -> Result<TetMesh, Error> {
+fn mesh<'a, C: Cursor<'a>>(team: Team<'_>, contents: &Contents<'a>) -> Result<TetMesh, Error> {
     let source = &contents.source;
     let mut mesh = TetMesh::default();
     for section in &contents.sections {
         match section.keyword {
-            Keyword::Vertices => vertices::<C>(source, section, &mut mesh)?,
-            Keyword::Edges => mesh.edges = elements::<C, 2>(contents, section)?,
-            Keyword::Triangles => mesh.triangles = elements::<C, 3>(contents, section)?,
-            Keyword::Tetrahedra => mesh.tets = elements::<C, 4>(contents, section)?,
+            Keyword::Vertices => {
+                let row = |row: &mut C| Ok((row.reals()?, row.reference()?));
+                (mesh.vertices, mesh.vertex_refs) = columns(team, source, section, ([0.0; 3], 0), row)?;
+            }
+            Keyword::Edges => mesh.edges = elements::<C, 2>(team, contents, section)?,
+            Keyword::Triangles => mesh.triangles = elements::<C, 3>(team, contents, section)?,
+            Keyword::Tetrahedra => mesh.tets = elements::<C, 4>(team, contents, section)?,
             Keyword::Corners => mesh.corners = indices::<C>(contents, section, Keyword::Vertices)?,
             Keyword::Ridges => mesh.ridges = indices::<C>(contents, section, Keyword::Edges)?,
             Keyword::RequiredVertices => mesh.required_vertices = indices::<C>(contents, section, Keyword::Vertices)?,
@@ -77,32 +81,21 @@ fn mesh<'a, C: Cursor<'a>>(contents: &Contents<'a>) -> Result<TetMesh, Error> {
     Ok(mesh)
 }
 
-fn vertices<'a, C: Cursor<'a>>(source: &Source<'a>, section: &Section, mesh: &mut TetMesh) -> Result<(), Error> {
-    mesh.vertices.reserve_exact(room(section));
-    mesh.vertex_refs.reserve_exact(room(section));
-    rows::<C>(source, section, |row| {
-        mesh.vertices.push(row.reals()?);
-        mesh.vertex_refs.push(row.reference()?);
-        Ok(())
-    })
-}
-
 fn elements<'a, C: Cursor<'a>, const N: usize>(
+    team: Team<'_>,
     contents: &Contents<'a>,
     section: &Section,
 ) -> Result<Elements<N>, Error> {
     let vertices = contents.count(Keyword::Vertices);
-    let room = room(section);
-    let mut elements = Elements { nodes: Vec::with_capacity(room), refs: Vec::with_capacity(room) };
-    rows::<C>(&contents.source, section, |row| {
+    let row = |row: &mut C| {
         let mut nodes = [0; N];
         for node in &mut nodes {
             *node = row.index(vertices, Keyword::Vertices)?;
         }
-        elements.push(nodes, row.reference()?);
-        Ok(())
-    })?;
-    Ok(elements)
+        Ok((nodes, row.reference()?))
+    };
+    let (nodes, refs) = columns(team, &contents.source, section, ([0; N], 0), row)?;
+    Ok(Elements { nodes, refs })
 }
 
 fn indices<'a, C: Cursor<'a>>(contents: &Contents<'a>, section: &Section, of: Keyword) -> Result<Vec<u32>, Error> {
@@ -151,4 +144,28 @@ fn solution<'a, C: Cursor<'a>>(source: &Source<'a>, section: &Section) -> Result
         Ok(())
     })?;
     Ok(Solution { vertices: section.count, fields })
+}
+
+/// As [`solution`], field by field on all threads.
+fn binary_solution(team: Team<'_>, source: &Source<'_>, section: &Section) -> Result<Solution, Error> {
+    let width: usize = section.kinds.iter().map(|kind| kind.values()).sum();
+    let (mut fields, mut before, fault) = (Vec::with_capacity(section.kinds.len()), 0, Fault::default());
+    for &kind in &section.kinds {
+        let own = kind.values();
+        let mut values = vec![0.0; own * section.count];
+        team.fill(GRAIN * own, &mut values, |start, values| {
+            let range = start / own..(start + values.len()) / own;
+            fault.in_rows::<BinaryCursor>(source, section, range, |row, place| {
+                row.skip_reals(before);
+                for value in &mut values[own * place..own * (place + 1)] {
+                    *value = row.real()?;
+                }
+                row.skip_reals(width - before - own);
+                Ok(())
+            });
+        });
+        fields.push(SolutionField { kind, values });
+        before += own;
+    }
+    fault.result(source, section).map(|()| Solution { vertices: section.count, fields })
 }

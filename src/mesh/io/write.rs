@@ -283,11 +283,11 @@ mod tests {
             write_sections(&mut bytes, true, version, &mesh_sections(&mesh), &Content::Mesh(&mesh)).unwrap();
             let rows = 4 * (24 + int) + 5 * int + 2 * int + 24;
             assert_eq!(bytes.len(), 8 + 5 * (4 + position) + 4 + 3 * int + rows, "version {version}");
-            assert_eq!(mesh_from(Path::new("m"), &bytes).unwrap().content, mesh);
+            assert_eq!(mesh_from(Team::alone(), Path::new("m"), &bytes).unwrap().content, mesh);
             let (sections, content) = (solution_sections(&solution), Content::Solution(Team::alone(), &solution));
             let mut bytes = Vec::new();
             write_sections(&mut bytes, true, version, &sections, &content).unwrap();
-            assert_eq!(solution_from(Path::new("s"), &bytes).unwrap().content, solution);
+            assert_eq!(solution_from(Team::alone(), Path::new("s"), &bytes).unwrap().content, solution);
         }
     }
 }

@@ -36,7 +36,7 @@ pub fn measure(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Growths {
     let greatest = team.chunks(GRAIN, edges.len(), |range| {
         edges[range].iter().fold(0.0, |least, &edge| needed(least, |pace| is_graded(edge, pace)))
     });
-    let mut growths = Percentiles::of(team, sample);
+    let mut growths = Percentiles::of(sample);
     growths.greatest = greatest.into_iter().fold(growths.greatest, |a, pace| a.max(pace.exp()));
     growths
 }

@@ -20,7 +20,7 @@ use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::tasks::{GRAIN, Team};
 pub use measure::{Growths, measure};
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicU8, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering::Relaxed};
 
 /// An intersection that raises no eigenvalue by more than this share, half of it in size, is no change. (With 1e-6 a field of strong and
 /// turning anisotropy takes half as many updates more, for sizes that no mesh can tell apart.)
@@ -32,8 +32,8 @@ const CLASS: f64 = 1.25;
 /// Vertices a task: one takes a microsecond or two.
 const FEW: usize = 1 << 8;
 
-/// Vertices of a task that writes updates back, and updates from which on tasks do.
-const OWN: usize = 1 << 14;
+/// Words of 64 vertices a task that looks for those that are told: most are zero.
+const WORDS: usize = 1 << 14;
 
 /// What grading did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -53,9 +53,22 @@ pub struct Graded {
 /// # Panics
 /// When there are not as many metrics as vertices.
 pub fn grade(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3], ratio: f64) -> Graded {
-    assert_eq!(mesh.vertices.len(), logs.len(), "one ln M a vertex");
-    let around = VertexNeighbours::of_mesh(team, mesh);
-    Grading::new(team, &mesh.vertices, &around, logs, ratio.ln()).run()
+    grade_with(team, &mesh.vertices, &VertexNeighbours::of_mesh(team, mesh), logs, ratio)
+}
+
+/// As [`grade`], with the neighbours of the vertices along the edges.
+///
+/// # Panics
+/// As [`grade`].
+pub fn grade_with(
+    team: Team<'_>,
+    vertices: &[Vec3],
+    around: &VertexNeighbours,
+    logs: &mut [Sym3],
+    ratio: f64,
+) -> Graded {
+    assert_eq!(vertices.len(), logs.len(), "one ln M a vertex");
+    Grading::new(team, vertices, around, logs, ratio.ln()).run()
 }
 
 /// Where a vertex waits to tell its neighbours.
@@ -88,8 +101,8 @@ struct Grading<'a> {
     news: Vec<f64>,
     /// Who tells its neighbours in this round.
     telling: Vec<AtomicBool>,
-    /// Who is told.
-    told: Vec<AtomicBool>,
+    /// Who is told, a bit each.
+    told: Vec<AtomicU64>,
     changed: Vec<bool>,
 }
 
@@ -109,35 +122,39 @@ impl<'a> Grading<'a> {
             frames: team.map(GRAIN, count, |v| Frame::of_log(&logs[v])),
             logs,
             pace,
-            places: (0..count).map(|_| AtomicU8::new(NOWHERE)).collect(),
+            places: team.map_with(GRAIN, count, || (), |(), _| AtomicU8::new(NOWHERE)),
             news: vec![0.0; count],
-            telling: (0..count).map(|_| AtomicBool::new(false)).collect(),
-            told: (0..count).map(|_| AtomicBool::new(false)).collect(),
+            telling: team.map_with(GRAIN, count, || (), |(), _| AtomicBool::new(false)),
+            told: (0..count.div_ceil(64)).map(|_| AtomicU64::new(0)).collect(),
             changed: vec![false; count],
         }
     }
 
     fn run(mut self) -> Graded {
         let mut graded = Graded::default();
+        let mut waiting = self.violators(|_, _| true);
         loop {
-            // Looking at all again at the end makes sure of it, whatever the rounding.
-            let waiting = self.violators();
             let [rounds, updates] = self.settle(&waiting);
             graded.rounds += rounds;
             graded.updates += updates;
             if updates == 0 {
                 break;
             }
+            // Looking again at all edges where something may be otherwise makes sure of it, whatever the rounding.
+            let mut is_open = self.changed.clone();
+            waiting.iter().for_each(|&(p, _)| is_open[p as usize] = true);
+            waiting = self.violators(|p, q| is_open[p as usize] || self.changed[q as usize]);
         }
         graded.changed = self.changed.iter().filter(|&&changed| changed).count();
         graded
     }
 
-    /// The vertices whose metrics, grown along an edge, are not within the one at its other end, and the least size that is news there.
-    fn violators(&self) -> Vec<(u32, f64)> {
+    /// The vertices whose metrics, grown along an edge, are not within the one at its other end, and the least size that is news there. From p to
+    /// q it is looked where that `is_open`: of all others it is known that they are within.
+    fn violators(&self, is_open: impl Fn(u32, u32) -> bool + Sync) -> Vec<(u32, f64)> {
         self.team.collect(FEW, self.logs.len(), |range, found| {
             for p in range.start as u32..range.end as u32 {
-                let least = self.around.of_vertex(p).iter().filter_map(|&q| {
+                let least = self.around.of_vertex(p).iter().filter(|&&q| is_open(p, q)).filter_map(|&q| {
                     let of_q = &self.frames[q as usize];
                     self.excess(p, of_q, q).map(|relative| of_q.least_excess(&relative))
                 });
@@ -214,7 +231,8 @@ impl<'a> Grading<'a> {
     /// Takes over the metrics of these, ascending; returns who is now near, and who is now far.
     fn write_back(&mut self, updated: &[Update], limit: f64) -> [Vec<u32>; 2] {
         // A task owns the vertices of a chunk, of all that is kept for them.
-        let own = if updated.len() < OWN { self.logs.len().max(1) } else { OWN };
+        let tasks = if updated.len() < 2 * FEW || self.team.threads() == 1 { 1 } else { 4 * self.team.threads() };
+        let own = self.logs.len().div_ceil(tasks).max(1);
         let kept = self.logs.chunks_mut(own).zip(self.frames.chunks_mut(own));
         let kept = kept.zip(self.news.chunks_mut(own)).zip(self.changed.chunks_mut(own));
         let kept = kept.zip(self.places.chunks_mut(own));
@@ -250,27 +268,37 @@ impl<'a> Grading<'a> {
 
     /// The new metrics of the neighbours of `tellers`, where they change, in the order of the vertices.
     fn round(&self, tellers: &[u32]) -> Vec<Update> {
-        self.team.for_each(GRAIN, tellers.len(), |range| {
+        self.team.for_each(FEW, tellers.len(), |range| {
             for &p in &tellers[range] {
                 self.places[p as usize].store(NOWHERE, Relaxed);
                 self.telling[p as usize].store(true, Relaxed);
+                for &q in self.around.of_vertex(p) {
+                    let (word, bit) = (&self.told[q as usize / 64], 1 << (q % 64));
+                    if word.load(Relaxed) & bit == 0 {
+                        word.fetch_or(bit, Relaxed);
+                    }
+                }
             }
         });
-        let mut told = self.team.collect(FEW, tellers.len(), |range, told| {
-            let neighbours = tellers[range].iter().flat_map(|&p| self.around.of_vertex(p));
-            told.extend(neighbours.filter(|&&q| !self.told[q as usize].swap(true, Relaxed)));
+        let told = self.team.collect(WORDS, self.told.len(), |range, told| {
+            for at in range {
+                let mut word = self.told[at].load(Relaxed);
+                if word == 0 {
+                    continue;
+                }
+                self.told[at].store(0, Relaxed);
+                while word != 0 {
+                    told.push(64 * at as u32 + word.trailing_zeros());
+                    word &= word - 1;
+                }
+            }
         });
-        self.team.sort(&mut told);
         let updated = self.team.collect(FEW, told.len(), |range, updated| {
             updated.extend(told[range].iter().filter_map(|&q| self.updated(q)));
         });
-        let end = |flags: &[AtomicBool], list: &[u32]| {
-            self.team.for_each(GRAIN, list.len(), |range| {
-                list[range].iter().for_each(|&v| flags[v as usize].store(false, Relaxed));
-            });
-        };
-        end(&self.told, &told);
-        end(&self.telling, tellers);
+        self.team.for_each(GRAIN, tellers.len(), |range| {
+            tellers[range].iter().for_each(|&p| self.telling[p as usize].store(false, Relaxed));
+        });
         updated
     }
 

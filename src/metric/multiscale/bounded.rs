@@ -2,6 +2,7 @@
 use super::reach::{NEARLY, Unreachable, reach, reach_within};
 use super::{Error, Measure, Summary};
 use crate::mesh::TetMesh;
+use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::{Limits, Sym3, gradation, intersect_all};
 use crate::tasks::{GRAIN, Team, stage};
 
@@ -44,28 +45,42 @@ pub fn bounded(
     raw: &[Sym3],
     bounds: &Bounds<'_>,
 ) -> Result<(Vec<Sym3>, Summary), Error> {
+    bounded_with(team, mesh, None, raw, bounds)
+}
+
+/// As [`bounded`], with the neighbours of the vertices, if they are known.
+pub(super) fn bounded_with(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    around: Option<VertexNeighbours>,
+    raw: &[Sym3],
+    bounds: &Bounds<'_>,
+) -> Result<(Vec<Sym3>, Summary), Error> {
     let target = bounds.complexity;
-    let scaled = |logs: &[Sym3], scale: f64| {
-        let mut scaled = team.map(GRAIN, logs.len(), |v| logs[v].plus_identity(scale));
-        let limited = bounds.apply(team, &mut scaled);
-        (scaled, limited)
+    let scaled = |logs: &[Sym3], scale: f64, to: &mut Vec<Sym3>| {
+        team.remap(GRAIN, to, logs.len(), |v| logs[v].plus_identity(scale));
+        bounds.apply(team, to)
     };
     let complexity = |logs: &[Sym3]| bounds.measure.of(team, mesh, logs);
     let unreachable = |Unreachable { nearest }| Error::Unreachable { target, nearest };
-    let (mut logs, mut scale, mut rounds) = (Vec::new(), 0.0, 0);
+    let (mut of, mut scale, mut rounds) = (Vec::new(), 0.0, 0);
     if let Some(ratio) = bounds.gradation {
-        (logs, scale, rounds) = graded(team, mesh, raw, (ratio, bounds)).map_err(unreachable)?;
+        let around = around.unwrap_or_else(|| VertexNeighbours::of_mesh(team, mesh));
+        (of, scale, rounds) = graded(team, mesh, &around, raw, (ratio, bounds)).map_err(unreachable)?;
     }
-    let of = if bounds.gradation.is_some() { std::mem::take(&mut logs) } else { raw.to_vec() };
+    let of = if bounds.gradation.is_some() { &of } else { raw };
+    let (mut logs, mut reached) = (Vec::new(), 0.0);
     let (more, again) = reach(target, |more| {
-        logs = scaled(&of, more).0;
-        complexity(&logs)
+        scaled(of, more, &mut logs);
+        reached = complexity(&logs);
+        reached
     })
     .map_err(unreachable)?;
-    let (before, limited) = scaled(raw, scale + more);
+    let mut before = Vec::new();
+    let limited = scaled(raw, scale + more, &mut before);
     let summary = Summary {
         complexity_before_gradation: complexity(&before),
-        complexity: complexity(&logs),
+        complexity: reached,
         limited,
         unfitted: 0,
         rounds: if bounds.gradation.is_some() { rounds } else { again },
@@ -82,6 +97,7 @@ pub fn bounded(
 fn graded(
     team: Team<'_>,
     mesh: &TetMesh,
+    around: &VertexNeighbours,
     raw: &[Sym3],
     (ratio, bounds): (f64, &Bounds<'_>),
 ) -> Result<(Vec<Sym3>, f64, u32), Unreachable> {
@@ -93,11 +109,11 @@ fn graded(
                 logs.iter_mut().for_each(|log| *log = log.plus_identity(scale - last));
             });
         } else {
-            logs = team.map(GRAIN, raw.len(), |v| raw[v].plus_identity(scale));
+            team.remap(GRAIN, &mut logs, raw.len(), |v| raw[v].plus_identity(scale));
         }
         last = scale;
         bounds.apply(team, &mut logs);
-        gradation::grade(team, mesh, &mut logs, ratio);
+        gradation::grade_with(team, &mesh.vertices, around, &mut logs, ratio);
         stage("graded");
         bounds.measure.of(team, mesh, &logs)
     })?;

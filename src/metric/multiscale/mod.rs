@@ -15,6 +15,7 @@ mod sensor;
 #[cfg(test)]
 mod tests;
 
+use bounded::bounded_with;
 pub use bounded::{Bounds, bounded};
 pub use norm::Norm;
 
@@ -141,8 +142,7 @@ pub fn multiscale(
             intersect_all(team, &mut raw, &logs);
         }
     }
-    drop(rings);
-    let (logs, summary) = bounded(team, mesh, &raw, &bounds)?;
+    let (logs, summary) = bounded_with(team, mesh, Some(rings.into_neighbours()), &raw, &bounds)?;
     Ok((logs, Summary { unfitted, ..summary }))
 }
 
@@ -158,7 +158,8 @@ fn optimal_logs(
     let mut logs = Vec::new();
     // Without sizes at their bound the second round is right.
     let reached = reach(options.bounds.complexity, |scale| {
-        logs = team.map(GRAIN, spectra.len(), |v| spectra[v].log_metric(options.norm, scale, hmax));
+        let log = |v: usize| spectra[v].log_metric(options.norm, scale, hmax);
+        team.remap(GRAIN, &mut logs, spectra.len(), log);
         options.bounds.measure.of(team, mesh, &logs)
     });
     reached.map_err(|Unreachable { nearest }| Error::Unreachable { target: options.bounds.complexity, nearest })?;

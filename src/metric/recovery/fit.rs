@@ -2,12 +2,13 @@
 use super::limiter::{self, Limiter};
 use super::quadratic::{Fitted, Quadratic};
 use super::rings::Rings;
-use super::seen::Seen;
 use super::{extrapolate, l2};
 use crate::mesh::TetMesh;
+use crate::mesh::seen::Seen;
 use crate::mesh::vector::sub;
 use crate::metric::Sym3;
 use crate::tasks::{GRAIN, Team};
+use std::ops::Range;
 
 /// Vertices a task: one takes some microseconds.
 const VERTICES: usize = GRAIN / 16;
@@ -32,29 +33,28 @@ pub fn hessians(
     values: &[f64],
     limiter: Option<Limiter>,
 ) -> (Vec<Sym3>, usize) {
-    let mut found = vec![(None, false); values.len()];
-    team.fill(VERTICES, &mut found, |start, found| {
-        let mut around = Around {
-            mesh,
-            rings,
-            values,
-            limiter,
-            seen: Seen::default(),
-            stencil: Vec::new(),
-            fit: Quadratic::telling(limiter.is_some()),
-            span: [0.0; 2],
-        };
-        for (slot, vertex) in found.iter_mut().zip(start as u32..) {
-            *slot = around.hessian(vertex);
-        }
-    });
-    let both = found;
-    let mut found: Vec<Option<Sym3>> = team.map(GRAIN, both.len(), |v| both[v].0);
+    let around = || Around {
+        mesh,
+        rings,
+        values,
+        limiter,
+        seen: Seen::default(),
+        stencil: Vec::new(),
+        fit: Quadratic::telling(limiter.is_some()),
+        span: [0.0; 2],
+    };
+    let fitted = team.map_with(VERTICES, values.len(), around, |around, vertex| around.hessian(vertex as u32));
+    let count = |range: Range<usize>| fitted[range].iter().filter(|(hessian, _)| hessian.is_none()).count();
+    let unfitted = team.chunks(GRAIN, fitted.len(), count).into_iter().sum();
+    if unfitted == 0 && limiter.is_none() {
+        return (team.map(GRAIN, fitted.len(), |v| fitted[v].0.unwrap_or(Sym3::ZERO)), 0);
+    }
+    let mut found: Vec<Option<Sym3>> = team.map(GRAIN, fitted.len(), |v| fitted[v].0);
     if limiter.is_some() {
-        let is_jump = team.map(GRAIN, both.len(), |v| both[v].1);
+        let is_jump = team.map(GRAIN, fitted.len(), |v| fitted[v].1);
         limiter::average(team, rings, &mut found, &is_jump);
     }
-    let unfitted = found.iter().filter(|hessian| hessian.is_none()).count();
+    drop(fitted);
     if unfitted == 0 {
         return (team.map(GRAIN, found.len(), |v| found[v].unwrap_or(Sym3::ZERO)), 0);
     }

@@ -5,7 +5,7 @@ mod l2;
 mod limiter;
 mod quadratic;
 mod rings;
-mod seen;
+
 #[cfg(test)]
 mod tests;
 

@@ -1,13 +1,11 @@
-//! The neighbours of every vertex over an edge, as rows one after the other, and the tetrahedra at it.
-use super::seen::Seen;
+//! The neighbours of every vertex over an edge, and the tetrahedra at it.
 use crate::mesh::TetMesh;
-use crate::tasks::{Buckets, GRAIN, Team};
+use crate::mesh::vertex_neighbours::VertexNeighbours;
+use crate::tasks::{Buckets, Team};
 
 /// Which vertices and tetrahedra are at each vertex.
 pub struct Rings {
-    /// Where the neighbours of each vertex begin, and the end of the last.
-    starts: Vec<u32>,
-    neighbours: Vec<u32>,
+    neighbours: VertexNeighbours,
     /// 4·tet + corner of the tetrahedra at each vertex.
     corners: Buckets,
 }
@@ -15,34 +13,20 @@ pub struct Rings {
 impl Rings {
     /// Of a mesh of fewer than 2³⁰ tetrahedra.
     pub fn of(team: Team<'_>, mesh: &TetMesh) -> Self {
-        let (vertices, tets) = (mesh.vertices.len(), &mesh.tets.nodes);
-        let corners = Buckets::of(team, vertices, tets.len(), |t| tets[t]);
-        let parts = team.chunks(GRAIN, vertices, |range| {
-            let (mut seen, mut ends, mut found) = (Seen::default(), Vec::with_capacity(range.len()), Vec::new());
-            for vertex in range {
-                seen.forget();
-                seen.insert(vertex as u32);
-                let nodes = corners.of_key(vertex).flat_map(|corner| tets[corner as usize / 4]);
-                nodes.filter(|&node| seen.insert(node)).for_each(|node| found.push(node));
-                ends.push(found.len() as u32);
-            }
-            (ends, found)
-        });
-        let mut starts = Vec::with_capacity(vertices + 1);
-        starts.push(0);
-        for (ends, _) in &parts {
-            let before = *starts.last().unwrap_or(&0);
-            starts.extend(ends.iter().map(|end| before + end));
-        }
-        let neighbours = team.join_slices(parts.iter().map(|(_, found)| found.as_slice()));
-        Self { starts, neighbours, corners }
+        let tets = &mesh.tets.nodes;
+        let corners = Buckets::of(team, mesh.vertices.len(), tets.len(), |t| tets[t]);
+        Self { neighbours: VertexNeighbours::at_corners(team, tets, &corners), corners }
     }
 
-    /// The vertices that share an edge with this one.
+    /// The neighbours over an edge alone.
+    pub fn into_neighbours(self) -> VertexNeighbours {
+        self.neighbours
+    }
+
+    /// The vertices that share an edge with this one, ascending.
     #[inline]
     pub fn neighbours(&self, vertex: u32) -> &[u32] {
-        let [start, end] = [vertex, vertex + 1].map(|v| self.starts[v as usize] as usize);
-        &self.neighbours[start..end]
+        self.neighbours.of_vertex(vertex)
     }
 
     /// The tetrahedra at a vertex.

@@ -1,0 +1,65 @@
+//! The bytes of a file.
+use super::Error;
+use crate::tasks::Team;
+use std::path::Path;
+
+/// All bytes of a file; of a large one every thread of the team reads parts.
+pub(super) fn of_file(team: Team<'_>, path: &Path) -> Result<Vec<u8>, Error> {
+    match in_parts(team, path) {
+        Some(bytes) => Ok(bytes),
+        None => std::fs::read(path).map_err(|error| Error::system(path, error)),
+    }
+}
+
+/// Bytes a task reads at once.
+#[cfg(unix)]
+const PART: usize = 1 << 22;
+
+/// The bytes by many threads; none where that is not worth it or not possible, whatever the reason.
+#[cfg(unix)]
+fn in_parts(team: Team<'_>, path: &Path) -> Option<Vec<u8>> {
+    use std::os::unix::fs::FileExt;
+    use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+    if team.threads() == 1 {
+        return None;
+    }
+    let file = std::fs::File::open(path).ok()?;
+    let metadata = file.metadata().ok()?;
+    let size = usize::try_from(metadata.len()).ok()?;
+    if !metadata.is_file() || size < 2 * PART {
+        return None;
+    }
+    let mut bytes: Vec<u8> = bytemuck::allocation::try_zeroed_vec(size).ok()?;
+    let is_whole = AtomicBool::new(true);
+    team.fill(PART, &mut bytes, |start, part| {
+        if file.read_exact_at(part, start as u64).is_err() {
+            is_whole.store(false, Relaxed);
+        }
+    });
+    is_whole.into_inner().then_some(bytes)
+}
+
+#[cfg(not(unix))]
+fn in_parts(_: Team<'_>, _: &Path) -> Option<Vec<u8>> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tasks::{Plan, Pool};
+
+    #[test]
+    fn many_threads_read_what_one_does() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        let pool = Pool::new(3).unwrap();
+        let team = Team::new(&pool, Plan::default());
+        for size in [0, 5, (9 << 20) + 7] {
+            let bytes: Vec<u8> = (0..size).map(|i: usize| (i * 31 % 251) as u8).collect();
+            std::fs::write(&path, &bytes).unwrap();
+            assert!(of_file(team, &path).unwrap() == bytes && of_file(Team::alone(), &path).unwrap() == bytes);
+        }
+        assert!(of_file(team, &folder.path().join("none")).unwrap_err().to_string().contains("none: "));
+    }
+}
