@@ -213,6 +213,7 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
   if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) {
     throw std::runtime_error("the model has no faces; export the solid's surfaces, not only curves or a mesh");
   }
+  shape = without_hollow(shape);
   BRepLib::BuildCurves3d(shape);
   return std::make_shared<Model>(connected(closed(shape, labels, format == 1), labels), labels);
 }

@@ -33,7 +33,11 @@ void hand_on(Labels& labels, const TopoDS_Shape& from, const TopoDS_Shape& to);
 /// The labels of a STEP file whose shapes were transferred.
 Labels step_labels(const STEPControl_Reader& reader);
 
-/// A file of several solids that touch: their common faces, edges and vertices are made one, and there once. Labels are handed on.
+/// A shape without the solids that have no faces: some programs write such, and meshers number or refuse them.
+TopoDS_Shape without_hollow(const TopoDS_Shape& shape);
+
+/// A file of several solids that touch in faces: these, their edges and vertices are made one, and there once. Solids that touch in edges
+/// or points alone stay as they are. Labels are handed on.
 TopoDS_Shape connected(const TopoDS_Shape& shape, Labels& labels);
 
 } // namespace geo_adapt

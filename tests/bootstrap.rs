@@ -228,6 +228,46 @@ fn a_solid_that_touches_a_part_of_a_face_shares_that_part() {
     assert_eq!(mesh.triangles.refs.iter().collect::<BTreeSet<_>>().len(), 12);
 }
 
+/// Cut by each other, the balls and the groove that they touch along half circles would have a chain of slivers in common.
+#[test]
+fn solids_that_touch_along_curves_stay_as_they_are() {
+    if !is_set_up() {
+        return;
+    }
+    let place = Place::new();
+    let mesh = place.mesh(&model("zoo/rolling.step"), &[]);
+    let of_region = volumes(&mesh);
+    assert_eq!(of_region.keys().collect::<Vec<_>>(), [&1, &2, &3, &4]);
+    let ball = 4.0 / 3.0 * std::f64::consts::PI * 0.1f64.powi(3);
+    near(of_region[&3], ball, 0.05);
+    near(of_region[&4], ball, 0.05);
+    // The cap lies on the three sectors of the shaft's end.
+    let between = interfaces(&mesh);
+    assert_eq!(between.len(), 3);
+    near(area(&mesh, |reference| between.contains(&reference)), std::f64::consts::PI * 0.25f64.powi(2), 0.01);
+    assert_eq!(mesh.triangles.refs.iter().collect::<BTreeSet<_>>().len(), 25);
+    // No vertex belongs to a ball and to something else.
+    let of_balls: BTreeSet<u32> = nodes_of(&mesh, |region| region > 2);
+    assert!(of_balls.is_disjoint(&nodes_of(&mesh, |region| region <= 2)));
+}
+
+/// Vertices of the tetrahedra of some regions.
+fn nodes_of(mesh: &TetMesh, is_meant: impl Fn(i32) -> bool) -> BTreeSet<u32> {
+    mesh.tets.iter().filter(|(_, region)| is_meant(*region)).flat_map(|(nodes, _)| nodes).collect()
+}
+
+#[test]
+fn a_solid_without_faces_is_left_out() {
+    if !is_set_up() {
+        return;
+    }
+    let place = Place::new();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/hollow-solid.brep");
+    let of_region = volumes(&place.mesh(&model, &[]));
+    assert_eq!(of_region.len(), 1);
+    near(of_region[&1], 1.0, 1e-9);
+}
+
 #[test]
 fn names_and_colours_go_through_bootstrap_and_adapt() {
     if !is_set_up() {
@@ -459,6 +499,22 @@ fn what_cannot_be_meshed_is_refused_before_the_work() {
     }
     let message = complaint(&place.run(&place.path("none.step"), &[]));
     assert!(message.contains("none.step"), "{message}");
+}
+
+/// A mesher that hangs costs a quarter of the time limit when another rung makes a mesh.
+#[test]
+fn a_mesher_that_hangs_is_passed_by() {
+    if !is_set_up() {
+        return;
+    }
+    let place = Place::new();
+    let hangs = "case \"$1\" in *model.geo) exec sleep 600;; esac\nexec gmsh \"$@\"";
+    let gmsh = place.script("hanging", hangs);
+    let arguments = ["--mesher", "gmsh", "--time-limit", "40"];
+    let run = place.command(&model("cube.step"), &arguments).env("GEO_ADAPT_GMSH", gmsh).output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    assert!(stderr(&run).contains("had not ended after 10 s"), "{}", stderr(&run));
+    near(volumes(&place.written("out.meshb"))[&1], 1.0, 1e-9);
 }
 
 /// gmsh finds no end on the cone of this one: OpenCASCADE's own triangles are filled instead.

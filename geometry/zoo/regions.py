@@ -65,10 +65,29 @@ def named_assembly():
     return assembly
 
 
+def rolling():
+    """A shaft with a cap on it and two balls in its groove, which they touch along half circles. The surfaces are tangent there: cut by each
+    other, off the origin and with the groove in several faces, they meet in a chain of edges down to 1e-3 of a ball."""
+    import cadquery
+
+    whole = cadquery.Workplane().circle(0.425).extrude(0.6).translate((0, 0, -0.3))
+    whole = whole.cut(cadquery.Workplane().add(cadquery.Solid.makeTorus(0.475, 0.1)))
+    wedge = cadquery.Workplane().add(cadquery.Solid.makeCylinder(1, 1, angleDegrees=120))
+    shaft = None
+    for bottom, turn in ((-1, 0), (-1, 120), (-1, 240), (0, 0), (0, 120), (0, 240)):
+        part = whole.intersect(wedge.rotate((0, 0, 0), (0, 0, 1), turn).translate((0, 0, bottom)), clean=False)
+        shaft = shaft.union(part, clean=False) if shaft else part
+    cap = cadquery.Workplane().circle(0.25).extrude(0.2).translate((0, 0, 0.3))
+    ball = cadquery.Workplane().sphere(0.1).translate((0.475, 0, 0))
+    parts = [shaft, cap, *(ball.rotate((0, 0, 0), (0, 0, 1), turn) for turn in (60, 180))]
+    return [part.translate((-3.6, -1.66, 0.07)).val() for part in parts]
+
+
 MODELS = {
     "two-regions": two_regions,
     "inclusion": inclusion,
     "three-regions": three_regions,
     "coated-pipe": coated_pipe,
     "named-assembly": named_assembly,
+    "rolling": rolling,
 }

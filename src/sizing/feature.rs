@@ -15,6 +15,7 @@ use crate::mesh::vector::{Vec3, distance, dot, lerp, norm, scale, sub, unit};
 use crate::metric::Sym3;
 use crate::tasks::Team;
 use serde::Serialize;
+use std::cmp::Ordering;
 
 /// A gap goes across a face if its direction makes at most 60° with the normal,
 const ACROSS: f64 = 0.5;
@@ -54,9 +55,16 @@ pub struct Place {
 /// Another entity, as a place sees it.
 #[derive(Clone, Copy)]
 struct Other {
+    /// How far it is; before it is asked, a bound from below.
     length: f64,
     to: Entity,
-    /// Its closest point.
+    /// What it answered; none before it is asked.
+    found: Option<Found>,
+}
+
+/// The closest point of another entity.
+#[derive(Clone, Copy)]
+struct Found {
     there: Vec3,
     /// Its normal there, if it is a face.
     normal: Option<Vec3>,
@@ -65,7 +73,8 @@ struct Other {
 /// Scratch of one thread.
 #[derive(Default)]
 pub struct Pad {
-    entities: Vec<Entity>,
+    /// Pieces of other entities that may limit the metric, those of an entity one after the other.
+    pieces: Vec<(Entity, u32)>,
     others: Vec<Other>,
 }
 
@@ -117,38 +126,43 @@ impl<'a> Near<'a> {
 
     /// The metric at a place, limited across the gaps there; and the nearest of those that limit it. `local` tells how the entities at
     /// the place lie.
+    ///
+    /// The nearest limits first: it often leaves nothing to do for those behind it. Closest points cost most, so an entity is asked for its
+    /// own only when its boxes say that it is the next, and that it could still limit what is left of the metric.
     pub fn limit(
         &self,
         evaluator: &mut Evaluator,
         at: &Place,
         local: &Local,
         mut metric: Sym3,
-        Pad { entities, others }: &mut Pad,
+        Pad { pieces, others }: &mut Pad,
     ) -> (Sym3, Option<Gap>) {
         let reach = self.cells / metric.eigen().values[0].sqrt();
-        entities.clear();
-        self.pieces.each_in(&[at.point.map(|x| x - reach), at.point.map(|x| x + reach)], |piece| {
-            let owner = self.owners[piece as usize];
-            if entities.last() != Some(&owner) && may_face(at, local, &self.boxes[piece as usize], owner) {
-                entities.push(owner);
-            }
-            true
-        });
-        entities.sort_unstable();
-        entities.dedup();
-        others.clear();
-        for &to in entities.iter().filter(|&&to| !self.touch.touches(at.entity, to)) {
-            let Some((there, normal)) = self.closest(evaluator, at, to) else { continue };
-            let length = distance(at.point, there);
-            if length < reach && length > self.touching {
-                others.push(Other { length, to, there, normal });
-            }
-        }
-        // The nearest first: it often leaves nothing to do for those behind it.
-        others.sort_unstable_by(|a, b| a.length.total_cmp(&b.length).then(a.to.cmp(&b.to)));
+        self.collect(at, local, metric, reach, pieces, others);
         let mut nearest: Option<Gap> = None;
         let mut thinnest = f64::INFINITY;
-        for &Other { length, to, there, normal } in others.iter() {
+        while let Some(next) = (0..others.len()).min_by(|&a, &b| order(&others[a], &others[b])) {
+            let Other { length, to, found } = others[next];
+            let Some(Found { there, normal }) = found else {
+                let begin = pieces.partition_point(|piece| piece.0 < to);
+                let own = pieces[begin..].iter().take_while(|piece| piece.0 == to);
+                let bound = Bound::new(at, local, metric, self.cells);
+                let found = if own.clone().any(|piece| bound.may_limit(&self.boxes[piece.1 as usize])) {
+                    self.closest(evaluator, at, to)
+                } else {
+                    None
+                };
+                match found.map(|found| (distance(at.point, found.there), found)) {
+                    Some((length, found)) if length < reach && length > self.touching => {
+                        others[next] = Other { length, to, found: Some(found) };
+                    }
+                    _ => {
+                        others.swap_remove(next);
+                    }
+                }
+                continue;
+            };
+            others.swap_remove(next);
             let way = scale(sub(there, at.point), 1.0 / length);
             let across = across(way, at, local);
             let share = norm(across);
@@ -167,16 +181,54 @@ impl<'a> Near<'a> {
         (unbent(metric, thinnest, local.bend), nearest)
     }
 
-    /// The closest point of another entity, and the normal there of a face. From inside a face edges are not asked: the faces beside
-    /// them are.
-    fn closest(&self, evaluator: &mut Evaluator, at: &Place, to: Entity) -> Option<(Vec3, Option<Vec3>)> {
+    /// The entities within reach that may limit the metric, and their pieces in the entities' order.
+    fn collect(
+        &self,
+        at: &Place,
+        local: &Local,
+        metric: Sym3,
+        reach: f64,
+        pieces: &mut Vec<(Entity, u32)>,
+        others: &mut Vec<Other>,
+    ) {
+        let bound = Bound::new(at, local, metric, self.cells);
+        pieces.clear();
+        others.clear();
+        self.pieces.each_in(&[at.point.map(|x| x - reach), at.point.map(|x| x + reach)], |piece| {
+            let (owner, piece_box) = (self.owners[piece as usize], &self.boxes[piece as usize]);
+            // From inside a face edges are not asked: the faces beside them are.
+            let is_asked = owner.dimension() == 2 || at.entity.dimension() < 2;
+            if is_asked && bound.may_limit(piece_box) && may_face(at, local, piece_box, owner) {
+                pieces.push((owner, piece));
+            }
+            true
+        });
+        pieces.sort_unstable();
+        let mut last = None;
+        for &(to, piece) in pieces.iter() {
+            let length = away(at.point, &self.boxes[piece as usize]);
+            if last == Some(to) {
+                if let Some(other) = others.last_mut().filter(|other| other.to == to) {
+                    other.length = other.length.min(length);
+                }
+                continue;
+            }
+            last = Some(to);
+            if !self.touch.touches(at.entity, to) {
+                others.push(Other { length, to, found: None });
+            }
+        }
+    }
+
+    /// The closest point of another entity, and the normal there of a face.
+    fn closest(&self, evaluator: &mut Evaluator, at: &Place, to: Entity) -> Option<Found> {
         match to {
             Entity::Face(face) => {
                 let on = evaluator.closest_on_face(face, at.point, None);
-                Some((on.point, Some(evaluator.face_normal(face, on.uv))))
+                Some(Found { there: on.point, normal: Some(evaluator.face_normal(face, on.uv)) })
             }
-            Entity::Edge(edge) if at.entity.dimension() < 2 => {
-                Some((evaluator.closest_on_edge(edge, at.point, None).point, None))
+            Entity::Edge(edge) => {
+                Some(Found { there: evaluator.closest_on_edge(edge, at.point, None).point, normal: None })
             }
             _ => None,
         }
@@ -211,6 +263,44 @@ impl<'a> Near<'a> {
         beside || here
     }
 }
+
+/// The nearest first; of two as near what is not asked yet, since it may be farther.
+fn order(a: &Other, b: &Other) -> Ordering {
+    a.length.total_cmp(&b.length).then(a.found.is_some().cmp(&b.found.is_some())).then(a.to.cmp(&b.to))
+}
+
+/// How far a box is.
+fn away(point: Vec3, piece: &Box3) -> f64 {
+    norm(std::array::from_fn(|i| (piece[0][i] - point[i]).max(point[i] - piece[1][i]).max(0.0)))
+}
+
+/// What a gap must be like to limit a metric: with w the part across of the way there, |w|/cells < √(gᵀM⁻¹g), g = w/|w|.
+struct Bound<'a> {
+    at: &'a Place,
+    local: &'a Local,
+    metric: Sym3,
+    cells: f64,
+    /// Greatest size.
+    greatest: f64,
+}
+
+impl<'a> Bound<'a> {
+    fn new(at: &'a Place, local: &'a Local, metric: Sym3, cells: f64) -> Self {
+        Self { at, local, metric, cells, greatest: metric.eigen().values[0].sqrt().recip() }
+    }
+
+    /// Whether a gap to a point of this box may limit it: |w|² < cells √(wᵀM⁻¹w) for no w within the box's radius of its middle's.
+    fn may_limit(&self, piece: &Box3) -> bool {
+        let middle = across(sub(lerp(piece[0], piece[1], 0.5), self.at.point), self.at, self.local);
+        let radius = 0.5 * distance(piece[0], piece[1]);
+        let least = (norm(middle) - radius).max(0.0);
+        let most = dot(middle, self.metric.solve(middle)).sqrt() + radius * self.greatest;
+        least * least < self.cells * most * (1.0 + SLACK)
+    }
+}
+
+/// Rounding of bounds.
+const SLACK: f64 = 1e-9;
 
 /// No size such that what bends leaves a cell as thin as `across`: the middle of an edge of this size is that far from its arc. Cells
 /// along a sliver of a face on a curved wall would stand out of it else, and no mesh follows them.

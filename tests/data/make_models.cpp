@@ -12,12 +12,15 @@
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <Geom_BezierCurve.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TColgp_Array1OfPnt.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
+#include <TopoDS_Solid.hxx>
 #include <TopoDS_Wire.hxx>
 #include <gp_Elips.hxx>
 
@@ -60,6 +63,16 @@ int main()
     duct.AddWire(BRepBuilderAPI_MakeWire(edge).Wire());
   }
   BRepTools::Write(duct.Shape(), "duct.brep");
+
+  // A cube beside a solid without faces, which some programs leave behind.
+  BRep_Builder builder;
+  TopoDS_Compound compound;
+  TopoDS_Solid hollow;
+  builder.MakeCompound(compound);
+  builder.MakeSolid(hollow);
+  builder.Add(compound, hollow);
+  builder.Add(compound, BRepPrimAPI_MakeBox(1.0, 1.0, 1.0).Solid());
+  BRepTools::Write(compound, "hollow-solid.brep");
 
   // A block in inches, as loose faces: what IGES is mostly.
   IGESControl_Writer iges("INCH", 0);

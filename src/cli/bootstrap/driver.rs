@@ -18,7 +18,7 @@ pub enum Choice {
 }
 
 /// What one run of a mesher is to do; sizes are divided by `finer`.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rung {
     /// gmsh, with its numbers of the algorithms in two and in three dimensions.
     Gmsh { surface: u32, volume: u32, finer: f64, least: Least },
@@ -29,7 +29,7 @@ pub enum Rung {
 }
 
 /// How small curvature may make sizes.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Least {
     /// As small as those of the metric of the geometry.
     Usual,

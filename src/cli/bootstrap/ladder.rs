@@ -1,6 +1,7 @@
 //! One mesher after the other, one algorithm after the other, until a mesh is valid and lies on the whole model.
 use super::driver::{Choice, Rung, gmsh_places, netgen_places};
 use super::process::{self, Failure, Workplace};
+use super::queue::Queue;
 use super::{gmsh, netgen};
 use crate::cli::adapt::progress::Stop;
 use crate::formats;
@@ -60,14 +61,11 @@ pub struct Ladder<'a> {
     log: &'a Path,
     place: Workplace,
     brep: PathBuf,
-    rungs: std::vec::IntoIter<Rung>,
+    queue: Queue,
     /// What is not there, for the user.
     missing: Vec<String>,
     /// Rungs without a good mesh, and why.
     failed: Vec<(Rung, String)>,
-    /// Programs that are not there, and those that took too long.
-    gone: Vec<&'static str>,
-    slow: Vec<&'static str>,
 }
 
 impl<'a> Ladder<'a> {
@@ -86,9 +84,9 @@ impl<'a> Ladder<'a> {
         process::begin(log).map_err(|error| error.to_string())?;
         let brep = place.file("model.brep");
         model.write_brep(&brep).map_err(|error| error.to_string())?;
-        let rungs: Vec<Rung> = Rung::of(choice).collect();
-        let (missing, failed, gone, slow) = Default::default();
-        Ok(Self { team, model, wish, log, place, brep, rungs: rungs.into_iter(), missing, failed, gone, slow })
+        let queue = Queue::new(Rung::of(choice), wish.limit);
+        let (missing, failed) = Default::default();
+        Ok(Self { team, model, wish, log, place, brep, queue, missing, failed })
     }
 
     /// The mesh of the next rung that gives a good one.
@@ -96,30 +94,46 @@ impl<'a> Ladder<'a> {
     /// # Errors
     /// When none is left, with what the last ones said; when there is no mesher, with what to install; when the user ended it.
     pub fn climb(&mut self) -> Result<Meshed, String> {
-        for rung in self.rungs.by_ref() {
+        while let Some((rung, limit)) = self.queue.next() {
             let program = rung.program();
-            if self.gone.contains(&program) || !rung.is_light() && self.slow.contains(&program) {
-                continue;
-            }
-            match attempt(self.team, self.model, self.wish, rung, &self.place, &self.brep, self.log) {
+            match self.attempt(rung, limit) {
                 Ok((mesh, place)) => {
                     let told = self.failed.iter();
                     let notices = told.map(|(rung, why)| format!("{rung} gave no good mesh: {why}")).collect();
                     return Ok(Meshed { mesh, place, by: rung, notices });
                 }
                 Err(Miss::NotThere(why)) => {
-                    self.gone.push(program);
+                    self.queue.is_gone(program);
                     self.missing.push(why);
                 }
                 Err(Miss::Interrupted) => return Err(format!("{program} was interrupted; no mesh was written")),
                 Err(Miss::TooLong(why)) => {
-                    self.slow.push(program);
+                    self.queue.took_too_long(rung, limit);
                     self.failed.push((rung, why));
                 }
                 Err(Miss::Failed(why)) => self.failed.push((rung, why)),
             }
         }
         Err(describe(&self.missing, &self.failed, self.log))
+    }
+
+    /// One rung: the mesh, valid and on the model.
+    fn attempt(&self, rung: Rung, limit: Duration) -> Result<(TetMesh, Classification), Miss> {
+        let out = self.place.file("out.msh");
+        let _ = std::fs::remove_file(&out);
+        if matches!(rung, Rung::Triangles) {
+            gmsh::write_triangles(self.model, self.wish, &self.place).map_err(Miss::Failed)?;
+        }
+        start((self.wish, limit), rung, &self.place, [&self.brep, &out], self.log)?;
+        let failed = |why: String| {
+            let told = process::last_lines(self.log);
+            Miss::Failed(if told.contains("rror") { format!("{why} ({told})") } else { why })
+        };
+        if !out.is_file() {
+            return Err(failed("it wrote no mesh".into()));
+        }
+        let mesh = formats::read_msh(&out).map_err(|error| failed(error.to_string()))?;
+        judge(self.team, mesh, self.model).map_err(failed)
     }
 
     /// Remembers why the mesh of a rung would not do.
@@ -143,35 +157,14 @@ fn describe(missing: &[String], failed: &[(Rung, String)], log: &Path) -> String
     )
 }
 
-/// One rung: the mesh, valid and on the model.
-fn attempt(
-    team: Team<'_>,
-    model: &Model,
-    wish: &Wish,
+/// Runs the program, wherever it is found first.
+fn start(
+    (wish, limit): (&Wish, Duration),
     rung: Rung,
     place: &Workplace,
-    brep: &Path,
+    files: [&Path; 2],
     log: &Path,
-) -> Result<(TetMesh, Classification), Miss> {
-    let out = place.file("out.msh");
-    let _ = std::fs::remove_file(&out);
-    if matches!(rung, Rung::Triangles) {
-        gmsh::write_triangles(model, wish, place).map_err(Miss::Failed)?;
-    }
-    start(wish, rung, place, [brep, &out], log)?;
-    let failed = |why: String| {
-        let told = process::last_lines(log);
-        Miss::Failed(if told.contains("rror") { format!("{why} ({told})") } else { why })
-    };
-    if !out.is_file() {
-        return Err(failed("it wrote no mesh".into()));
-    }
-    let mesh = formats::read_msh(&out).map_err(|error| failed(error.to_string()))?;
-    judge(team, mesh, model).map_err(failed)
-}
-
-/// Runs the program, wherever it is found first.
-fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Path) -> Result<(), Miss> {
+) -> Result<(), Miss> {
     let (variable, remedy, places) = match rung {
         Rung::Gmsh { .. } | Rung::Triangles => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
         Rung::Netgen { .. } => (netgen::VARIABLE, netgen::REMEDY, netgen_places()),
@@ -179,7 +172,7 @@ fn start(wish: &Wish, rung: Rung, place: &Workplace, files: [&Path; 2], log: &Pa
     for program in places {
         let command = command(&program, wish, rung, place, files);
         let mut command = command.map_err(|error| Miss::Failed(format!("no file for it: {error}")))?;
-        match process::run(&mut command, log, wish.limit, &wish.stop) {
+        match process::run(&mut command, log, limit, &wish.stop) {
             Ok(()) => return Ok(()),
             Err(Failure::NotStarted(_)) => {}
             Err(Failure::Interrupted) => return Err(Miss::Interrupted),
