@@ -81,9 +81,11 @@ mod tests {
         let middle = mesh.vertices.iter().position(|&p| p == [0.0, 0.5, 0.5]).unwrap();
         let inside: Vec<&u32> = rings.neighbours(middle as u32).iter().filter(|&&v| rings.is_inside(v)).collect();
         let bends = inside.iter().map(|&&v| found[v as usize].0[2]);
-        let (least, greatest) = bends.clone().fold((0.0f64, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
-        assert!(least < -0.5 && greatest > 0.5, "both ways: {least} {greatest}");
-        let mean = bends.map(f64::abs).sum::<f64>() / inside.len() as f64;
-        assert!((found[middle].0[2] - mean).abs() < 1e-9 && mean > 1.0, "{:?} for {mean}", found[middle]);
+        let (least, greatest) = bends.fold((0.0f64, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
+        assert!(least < -1.0 && greatest > 1.0, "both ways: {least} {greatest}");
+        let sum = inside.iter().fold(Sym3::ZERO, |sum, &&v| sum.plus(found[v as usize].magnitude()));
+        let mean = sum.times(1.0 / inside.len() as f64);
+        assert!((0..6).all(|i| (found[middle].0[i] - mean.0[i]).abs() < 1e-12), "{:?} for {mean:?}", found[middle]);
+        assert!(mean.0[2] > 1.0, "{mean:?}");
     }
 }
