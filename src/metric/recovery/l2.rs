@@ -75,15 +75,17 @@ mod tests {
     fn the_boundary_takes_what_is_inside_whatever_its_sign() {
         let mesh = cube(8);
         let rings = Rings::of(Team::alone(), &mesh);
-        // Bends one way below the middle and the other way above.
-        let values: Vec<f64> = mesh.vertices.iter().map(|p| (p[1] - 0.5).powi(3)).collect();
+        // Bends one way up to y = 9/16 and the other way from there on, between two layers of vertices.
+        let values: Vec<f64> = mesh.vertices.iter().map(|p| 4.0 * (p[1] - 0.5625).powi(3)).collect();
         let found = hessians(Team::alone(), &mesh, &rings, &values);
         let middle = mesh.vertices.iter().position(|&p| p == [0.0, 0.5, 0.5]).unwrap();
         let inside: Vec<&u32> = rings.neighbours(middle as u32).iter().filter(|&&v| rings.is_inside(v)).collect();
         let bends = inside.iter().map(|&&v| found[v as usize].0[2]);
-        let (least, greatest) = bends.clone().fold((0.0f64, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
-        assert!(least < -0.5 && greatest > 0.5, "both ways: {least} {greatest}");
-        let mean = bends.map(f64::abs).sum::<f64>() / inside.len() as f64;
-        assert!((found[middle].0[2] - mean).abs() < 1e-12 && mean > 0.2, "{:?} for {mean}", found[middle]);
+        let (least, greatest) = bends.fold((0.0f64, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
+        assert!(least < -1.0 && greatest > 1.0, "both ways: {least} {greatest}");
+        let sum = inside.iter().fold(Sym3::ZERO, |sum, &&v| sum.plus(found[v as usize].magnitude()));
+        let mean = sum.times(1.0 / inside.len() as f64);
+        assert!((0..6).all(|i| (found[middle].0[i] - mean.0[i]).abs() < 1e-12), "{:?} for {mean:?}", found[middle]);
+        assert!(mean.0[2] > 1.0, "{mean:?}");
     }
 }
