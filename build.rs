@@ -39,10 +39,11 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 10] = [
+    const SOURCES: [&str; 11] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
         "cpp/connect.cpp",
+        "cpp/separate.cpp",
         "cpp/domain.cpp",
         "cpp/damage.cpp",
         "cpp/model.cpp",

@@ -215,7 +215,9 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
   }
   shape = without_hollow(shape);
   BRepLib::BuildCurves3d(shape);
-  return std::make_shared<Model>(connected(closed(shape, labels, format == 1), labels), labels);
+  const TopoDS_Shape solids = connected(closed(shape, labels, format == 1), labels);
+  const TopoDS_Shape apart = separated(solids, labels);
+  return std::make_shared<Model>(apart, labels, solids);
 }
 
 } // namespace geo_adapt

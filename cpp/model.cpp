@@ -57,7 +57,8 @@ bool has_exact_box(const TopoDS_Edge& edge, const TopoDS_Face& face)
 
 } // namespace
 
-Model::Model(const TopoDS_Shape& loaded, const Labels& given) : shape(loaded), labels(given)
+Model::Model(const TopoDS_Shape& loaded, const Labels& given, const TopoDS_Shape& whole)
+  : shape(loaded), joined(whole.IsNull() ? loaded : whole), labels(given)
 {
   TopExp::MapShapes(shape, TopAbs_SOLID, solids);
   TopExp::MapShapes(shape, TopAbs_FACE, faces);

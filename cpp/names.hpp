@@ -40,4 +40,7 @@ TopoDS_Shape without_hollow(const TopoDS_Shape& shape);
 /// or points alone stay as they are. Labels are handed on.
 TopoDS_Shape connected(const TopoDS_Shape& shape, Labels& labels);
 
+/// Where solids touch in an edge or a vertex alone, each of them has one of its own. Labels are handed on.
+TopoDS_Shape separated(const TopoDS_Shape& shape, Labels& labels);
+
 } // namespace geo_adapt

@@ -52,7 +52,7 @@ struct DomainRecord;
 class Model
 {
 public:
-  explicit Model(const TopoDS_Shape& shape, const Labels& labels = Labels());
+  explicit Model(const TopoDS_Shape& shape, const Labels& labels = Labels(), const TopoDS_Shape& joined = TopoDS_Shape());
 
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces.Extent()); }
   std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.Extent()); }
@@ -79,6 +79,9 @@ public:
 
 private:
   TopoDS_Shape shape;
+  /// The same, with edges and vertices in common where solids touch in these alone: what a mesher is to mesh. Its faces have the same
+  /// numbers.
+  TopoDS_Shape joined;
   TopTools_IndexedMapOfShape solids, faces, edges, vertices;
   Labels labels;
 };

@@ -148,7 +148,7 @@ private:
 void Model::write_tessellation(rust::Str path, double deflection, double angle) const
 {
   // Triangles stay with a shape: this one is not to change.
-  BRepBuilderAPI_Copy copy(shape, Standard_False, Standard_False);
+  BRepBuilderAPI_Copy copy(joined, Standard_False, Standard_False);
   const TopoDS_Shape own = copy.Shape();
   BRepMesh_IncrementalMesh(own, deflection, Standard_False, angle, Standard_False);
   TopTools_IndexedMapOfShape own_faces;

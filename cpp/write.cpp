@@ -10,7 +10,7 @@ namespace geo_adapt {
 
 void Model::write_brep(rust::Str path) const
 {
-  if (!BRepTools::Write(shape, std::string(path).c_str())) {
+  if (!BRepTools::Write(joined, std::string(path).c_str())) {
     throw std::runtime_error("OpenCASCADE cannot write the model there; is the disk full?");
   }
 }

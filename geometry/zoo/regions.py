@@ -83,6 +83,15 @@ def rolling():
     return [part.translate((-3.6, -1.66, 0.07)).val() for part in parts]
 
 
+def knife_edge():
+    """A block with a step, and on the step another one, whose side leans over until it touches the step's wall along a line."""
+    import cadquery
+
+    stairs = cadquery.Workplane("XZ").polyline([(0, 0), (2, 0), (2, 1), (1, 1), (1, 0.5), (0, 0.5)]).close().extrude(1)
+    leaning = cadquery.Workplane("XZ").polyline([(0.2, 0.5), (0.8, 0.5), (1, 0.8), (0.2, 0.8)]).close().extrude(1)
+    return [stairs.val(), leaning.val()]
+
+
 MODELS = {
     "two-regions": two_regions,
     "inclusion": inclusion,
@@ -90,4 +99,5 @@ MODELS = {
     "coated-pipe": coated_pipe,
     "named-assembly": named_assembly,
     "rolling": rolling,
+    "knife-edge": knife_edge,
 }

@@ -1,8 +1,10 @@
 //! Thin parts and gaps: entities that come near each other and do not touch.
 //!
 //! Each point of the boundary asks the other entities for their closest points, by the model itself and not by the mesh, so that a
-//! coarse mesh sees a gap as it is. Which entities may be near tells a tree of boxes over pieces of the model. The size is limited along
+//! coarse mesh sees a gap as it is. Bodies that do not hang together do not see each other: nothing is meshed between them, and where they
+//! touch (a ball in its race) a gap has no end. Which entities may be near tells a tree of boxes over pieces of the model. The size is limited along
 //! the direction of the gap alone.
+use super::bodies::Bodies;
 use super::curvature::{Local, cut};
 use super::pieces::pieces;
 use super::sight::Sight;
@@ -84,6 +86,7 @@ pub struct Near<'a> {
     mesh: &'a TetMesh,
     place: &'a Classification,
     touch: Touch<'a>,
+    bodies: Bodies<'a>,
     sight: Sight<'a>,
     pieces: Tree,
     boxes: Vec<Box3>,
@@ -113,6 +116,7 @@ impl<'a> Near<'a> {
             mesh,
             place,
             touch: Touch::new(topology),
+            bodies: Bodies::new(topology, mesh, place),
             sight: Sight::new(team, mesh),
             pieces: Tree::new(team, &boxes),
             boxes,
@@ -214,7 +218,7 @@ impl<'a> Near<'a> {
                 continue;
             }
             last = Some(to);
-            if !self.touch.touches(at.entity, to) {
+            if !self.touch.touches(at.entity, to) && !self.bodies.are_apart(at.entity, to) {
                 others.push(Other { length, to, found: None });
             }
         }

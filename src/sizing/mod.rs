@@ -2,7 +2,8 @@
 //!
 //! `curvature` makes the tensor of an entity at a point, `estimate` does where the model is a mesh's own surface; `feature` finds the
 //! entities that come near without touching (`touch`), by boxes over samples of the model (`pieces`, `tree`), where nothing stands between
-//! (`sight`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together.
+//! (`sight`), of the same body (`bodies`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together.
+mod bodies;
 mod coarse;
 mod curvature;
 mod estimate;

@@ -64,7 +64,8 @@ pub struct Arguments {
     /// Who makes the mesh that is adapted; by default gmsh, and netgen where gmsh fails
     #[arg(long, value_enum, default_value_t = Choice::default())]
     mesher: Choice,
-    /// Seconds that one run of the mesher may take; a quarter of them at first, all where nothing else made a mesh
+    /// Seconds that one run of the mesher may take, without waiting for a busy machine; a third of them at first, all where nothing else
+    /// made a mesh
     #[arg(long, value_name = "S", value_parser = super::positive, default_value = "120", allow_negative_numbers = true)]
     time_limit: f64,
     /// Threads [default: all cores]

@@ -3,9 +3,9 @@ use super::driver::Rung;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// A rung gets this part of the time at first: a mesher that does not end on a model (gmsh's volumes between walls that are much thinner
+/// A rung gets a third of the time at first: a mesher that does not end on a model (gmsh's volumes between walls that are much thinner
 /// than wide, its surfaces at an apex) would keep the user waiting, and mostly another rung is done at once.
-const FIRST: u32 = 4;
+const FIRST: u32 = 3;
 
 /// The rungs that are left. What took too long comes once more behind all others, with the whole time.
 pub struct Queue {

@@ -1,0 +1,61 @@
+//! Which entities lie on the same body: a part of the mesh that hangs together.
+use crate::geometry::classify::Classification;
+use crate::geometry::{Entity, Topology};
+use crate::mesh::TetMesh;
+
+/// The bodies of a mesh, by the entities of its model.
+pub struct Bodies<'a> {
+    topology: &'a Topology,
+    /// A vertex that stands for the body of each face; none where the mesh has no triangles of it.
+    of_face: Vec<Option<u32>>,
+}
+
+impl<'a> Bodies<'a> {
+    /// Of a mesh. A mesh of triangles alone is one body: what lies between its surfaces is not known.
+    pub fn new(topology: &'a Topology, mesh: &TetMesh, place: &Classification) -> Self {
+        let mut of_face = vec![None; topology.faces.len()];
+        if !mesh.tets.nodes.is_empty() {
+            let mut parents: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+            for &[a, b, c, d] in &mesh.tets.nodes {
+                let first = root(&mut parents, a);
+                for other in [b, c, d] {
+                    let other = root(&mut parents, other) as usize;
+                    parents[other] = first;
+                }
+            }
+            for (nodes, &face) in mesh.triangles.nodes.iter().zip(&place.faces) {
+                let body = &mut of_face[face as usize];
+                if body.is_none() {
+                    *body = Some(root(&mut parents, nodes[0]));
+                }
+            }
+        }
+        Self { topology, of_face }
+    }
+
+    /// Whether two entities lie on different bodies: then nothing is meshed between them.
+    pub fn are_apart(&self, a: Entity, b: Entity) -> bool {
+        matches!((self.of(a), self.of(b)), (Some(a), Some(b)) if a != b)
+    }
+
+    fn of(&self, entity: Entity) -> Option<u32> {
+        let of_edge = |edge: u32| self.topology.edges[edge as usize].faces.first().copied();
+        let face = match entity {
+            Entity::Face(face) => Some(face),
+            Entity::Edge(edge) => of_edge(edge),
+            Entity::Vertex(vertex) => {
+                self.topology.vertices[vertex as usize].edges.first().and_then(|&edge| of_edge(edge))
+            }
+            Entity::Interior => None,
+        };
+        face.and_then(|face| self.of_face[face as usize])
+    }
+}
+
+fn root(parents: &mut [u32], mut at: u32) -> u32 {
+    while parents[at as usize] != at {
+        parents[at as usize] = parents[parents[at as usize] as usize];
+        at = parents[at as usize];
+    }
+    at
+}
