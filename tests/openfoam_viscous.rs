@@ -7,9 +7,10 @@ use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::io::write_mesh;
 use geo_adapt::mesh::samples::with_boundary;
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// Cells along the flow, across the slab, and away from the plate.
-const CELLS: [u32; 3] = [30, 1, 20];
+const CELLS: [u32; 3] = [30, 1, 28];
 /// The slab: from half a length before the plate to its end, so wide and so high.
 const WIDTH: f64 = 0.05;
 const HEIGHT: f64 = 0.6;
@@ -21,8 +22,8 @@ const REYNOLDS: f64 = 1000.0;
 /// Mach 0.2 over a plate along z = 0. 1 to 6 are the sides of the slab, 7 to 9 the plate.
 const CONFIG: &str = r#"
 processes = 1
-steps = 1500
-still = 1e-6
+steps = 1200
+still = 5e-4
 [flow]
 mach = 0.2
 reynolds = 1000
@@ -44,7 +45,9 @@ fn slab() -> TetMesh {
     }
     for cell in 0..nx * ny * nz {
         let corner = [cell / (ny * nz), cell / nz % ny, cell % nz];
-        for (order, odd) in [([0, 1, 2], 0), ([1, 2, 0], 0), ([2, 0, 1], 0), ([1, 0, 2], 1), ([0, 2, 1], 1), ([2, 1, 0], 1)] {
+        for (order, odd) in
+            [([0, 1, 2], 0), ([1, 2, 0], 0), ([2, 0, 1], 0), ([1, 0, 2], 1), ([0, 2, 1], 1), ([2, 1, 0], 1)]
+        {
             let mut at = corner;
             let mut nodes = [index(at); 4];
             for (node, axis) in nodes[1..].iter_mut().zip(order) {
@@ -108,6 +111,12 @@ fn solve(processes: u32) -> Found {
     Found { part, drag: solved.functionals["CD"], pressure }
 }
 
+/// What one process finds, solved once for both tests.
+fn alone() -> &'static Found {
+    static FOUND: OnceLock<Found> = OnceLock::new();
+    FOUND.get_or_init(|| solve(1))
+}
+
 /// The friction coefficient at x is 0.664/√(Re x) (Blasius 1908; Schlichting, Boundary-Layer Theory, section 7e).
 #[test]
 fn friction_on_a_flat_plate_is_that_of_blasius() {
@@ -115,7 +124,7 @@ fn friction_on_a_flat_plate_is_that_of_blasius() {
         return;
     }
     let exact = 2.0 * 0.664 * (PART[1].sqrt() - PART[0].sqrt()) / REYNOLDS.sqrt();
-    let found = solve(1).part;
+    let found = alone().part;
     assert!((found / exact - 1.0).abs() < 0.03, "{found}, not {exact}");
 }
 
@@ -124,7 +133,7 @@ fn two_processes_find_what_one_does() {
     if !installed(&["rhoSimpleFoam", "decomposePar", "reconstructPar", "mpirun"]) {
         return;
     }
-    let (one, two) = (solve(1), solve(2));
+    let (one, two) = (alone(), solve(2));
     assert!((two.drag / one.drag - 1.0).abs() < 1e-4, "{} and {}", one.drag, two.drag);
     // In units of the pressure outside, 1; that of the flow is ½ γ M² = 0.028.
     let apart = one.pressure.iter().zip(&two.pressure).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

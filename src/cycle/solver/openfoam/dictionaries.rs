@@ -90,7 +90,8 @@ mod tests {
     fn each_program_has_what_it_reads() {
         let folder = tempfile::tempdir().unwrap();
         let flow: Flow = toml::from_str("mach = 0.3\nreynolds = 4000.0").unwrap();
-        let stage = |method: Method| Stage { method, scheme: method.scheme(), courant: 0.4, smoothing: 0.3, relaxation: 0.7 };
+        let stage =
+            |method: Method| Stage { method, scheme: method.scheme(), courant: 0.4, smoothing: 0.3, relaxation: 0.7 };
         write_stage(folder.path(), &flow, stage(Method::Simple), 50, 100).unwrap();
         let control = words(folder.path(), "system/controlDict");
         assert!(control.contains("application rhoSimpleFoam; startFrom startTime; startTime 50;"), "{control}");

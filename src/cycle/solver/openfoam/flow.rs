@@ -108,7 +108,8 @@ impl Flow {
         }
         if self.wall_temperature.is_some() && self.reynolds.is_none() {
             return Err(
-                "[solver.openfoam.flow] wall_temperature: without viscosity no heat goes to a wall; give reynolds too".into()
+                "[solver.openfoam.flow] wall_temperature: without viscosity no heat goes to a wall; give reynolds too"
+                    .into(),
             );
         }
         if self.walls.len() + self.farfield.len() + self.inflow.len() == 0 {

@@ -195,7 +195,8 @@ impl Solver for Config {
         }
         if self.method() == Method::Central && self.scheme == Some(Scheme::LinearUpwind) {
             return Err(
-                "[solver.openfoam] scheme linearupwind is of method simple; give upwind, minmod, vanalbada or vanleer".into()
+                "[solver.openfoam] scheme linearupwind is of method simple; give upwind, minmod, vanalbada or vanleer"
+                    .into(),
             );
         }
         if find_program(self.program(), base).is_none() {
