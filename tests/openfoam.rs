@@ -130,7 +130,7 @@ fn a_solve_that_blows_up_always_ends_with_its_log() {
     let run = place.run();
     assert_eq!(run.status.code(), Some(2));
     let said = stderr(&run);
-    assert!(said.contains("however small the time steps, ") && said.contains("the temperature is negative"), "{said}");
+    assert!(said.contains("however small the steps, ") && said.contains("the temperature is negative"), "{said}");
 }
 
 #[test]

@@ -31,6 +31,12 @@ def last(loop, folder):
     return folder / f"cycle-{loop[-2]['cycle']:02}/adapt/mesh.meshb", folder / f"cycle-{loop[-1]['cycle']:02}/solve/solution.solb"
 
 
+def adaptation(loop):
+    """The share of metric, adaptation and transfer in the seconds of the loop without its pictures."""
+    seconds = [(name, value) for step in loop for name, value in step["seconds"].items() if name != "picture"]
+    return 1 - sum(value for name, value in seconds if name == "solve") / sum(value for _, value in seconds)
+
+
 def judged(bounds, figures, lost=()):
     """Says each bound on the figures, and what is lost besides; the exit code."""
     for bound in bounds:

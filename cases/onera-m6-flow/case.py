@@ -58,17 +58,11 @@ def main():
         cycles.say(f"y/b {line['share']:.2f}  {line['within']:6.1%} of {line['points']} points within 0.1, {line['left_out']} at shocks left out")
     result = {"within": min(line["within"] for line in lines), "inner": min(line["within"] for line in lines if line["share"] < 0.99),
               "lift": loop[-1]["functionals"]["CL"], "drag": loop[-1]["functionals"]["CD"],
-              "vertices": len(mesh.points), "adaptation": adaptation(loop)}
+              "vertices": len(mesh.points), "adaptation": loops.adaptation(loop)}
     (OUT / f"{name}.json").write_text(json.dumps(result, indent=1))
     cycles.say("  ".join(f"{key} {value:.5g}" for key, value in result.items()))
     cycles.say(f"{folder}/report.html, {folder}/sections.png")
     return loops.judged(SHORT if options.short else BOUNDS, result)
-
-
-def adaptation(loop):
-    """The share of metric, adaptation and transfer in the seconds of the loop without its pictures."""
-    seconds = [(name, value) for step in loop for name, value in step["seconds"].items() if name != "picture"]
-    return 1 - sum(value for name, value in seconds if name == "solve") / sum(value for _, value in seconds)
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ pub enum Choice {
     Command(command::Config),
     /// SU2.
     Su2(su2::Config),
-    /// OpenFOAM's rhoCentralFoam.
+    /// OpenFOAM's rhoCentralFoam or rhoSimpleFoam.
     Openfoam(openfoam::Config),
 }
 

@@ -1,33 +1,10 @@
-//! The dictionaries of rhoCentralFoam (OpenFOAM v1912).
+//! The dictionaries of a case (OpenFOAM v1912): what both programs read here, of each its own in `central` and `simple`.
+mod central;
+mod simple;
+
 use super::flow::Flow;
-use serde::{Deserialize, Serialize};
+use super::method::{Method, Stage};
 use std::path::Path;
-
-/// How values at the faces are found from those of the cells.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Scheme {
-    /// First order.
-    Upwind,
-    /// The most careful of second order.
-    Minmod,
-    /// Between the others: what lasts on stretched tetrahedra.
-    #[default]
-    VanAlbada,
-    /// The sharpest.
-    VanLeer,
-}
-
-/// Steps with the same settings.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stage {
-    /// How values at the faces are found.
-    pub scheme: Scheme,
-    /// Greatest Courant number of the local time steps.
-    pub courant: f64,
-    /// Greatest growth of the local time step from a cell to the next, less 1.
-    pub smoothing: f64,
-}
 
 fn write(case: &Path, folder: &str, name: &str, body: &str) -> Result<(), String> {
     let path = case.join(folder).join(name);
@@ -38,49 +15,99 @@ fn write(case: &Path, folder: &str, name: &str, body: &str) -> Result<(), String
     std::fs::write(&path, head + body).map_err(named)
 }
 
-/// What does not change in a solve: gas and solvers of linear systems.
-pub fn write_constant(case: &Path, flow: &Flow) -> Result<(), String> {
+/// What does not change in a solve: the gas, of constant viscosity and Prandtl number.
+pub fn write_constant(case: &Path, flow: &Flow, method: Method) -> Result<(), String> {
     let heat = flow.gamma * flow.r() / (flow.gamma - 1.0);
     // J/(kmol K), the value that OpenFOAM divides by.
     let weight = 8_314.462_618 / flow.r();
+    let energy = match method {
+        Method::Central => "sensibleInternalEnergy",
+        Method::Simple => "sensibleEnthalpy",
+    };
     let gas = format!(
         "thermoType\n{{\n    type hePsiThermo;\n    mixture pureMixture;\n    transport const;\n    thermo hConst;\n    \
-         equationOfState perfectGas;\n    specie specie;\n    energy sensibleInternalEnergy;\n}}\n\
+         equationOfState perfectGas;\n    specie specie;\n    energy {energy};\n}}\n\
          mixture\n{{\n    specie {{ molWeight {weight:.12}; }}\n    thermodynamics {{ Cp {heat:.12}; Hf 0; }}\n    \
          transport {{ mu {:?}; Pr {:?}; }}\n}}\n",
         flow.viscosity(),
         flow.prandtl
     );
     write(case, "constant", "thermophysicalProperties", &gas)?;
-    write(case, "constant", "turbulenceProperties", "simulationType laminar;\n")?;
-    let solution = "solvers\n{\n    \"(rho|rhoU|rhoE)\" { solver diagonal; }\n    \
-        \"(U|e|h)\" { solver smoothSolver; smoother GaussSeidel; nSweeps 2; tolerance 1e-12; relTol 0.01; }\n}\n";
-    write(case, "system", "fvSolution", solution)
+    if method == Method::Simple {
+        write(case, "constant", "fvOptions", &simple::options(flow))?;
+    }
+    write(case, "constant", "turbulenceProperties", "simulationType laminar;\n")
 }
 
 /// What is done from step `start` to step `end`, where it is written.
-pub fn write_stage(case: &Path, stage: Stage, start: usize, end: usize) -> Result<(), String> {
-    let Stage { scheme, courant, smoothing } = stage;
-    let interval = end - start;
+pub fn write_stage(case: &Path, flow: &Flow, stage: Stage, start: usize, end: usize) -> Result<(), String> {
+    let (program, interval) = (stage.method.program(), end - start);
     let control = format!(
-        "application rhoCentralFoam;\nstartFrom startTime;\nstartTime {start};\nstopAt endTime;\nendTime {end};\ndeltaT 1;\n\
+        "application {program};\nstartFrom startTime;\nstartTime {start};\nstopAt endTime;\nendTime {end};\ndeltaT 1;\n\
          adjustTimeStep no;\nwriteControl runTime;\nwriteInterval {interval};\npurgeWrite 0;\nwriteFormat binary;\nwritePrecision 12;\n\
-         writeCompression off;\ntimeFormat general;\ntimePrecision 12;\nrunTimeModifiable no;\n\
-         maxCo {courant};\nmaxDeltaT 1e30;\nrDeltaTSmoothingCoeff {smoothing};\n"
+         writeCompression off;\ntimeFormat general;\ntimePrecision 12;\nrunTimeModifiable no;\n"
     );
-    write(case, "system", "controlDict", &control)?;
-    let name = match scheme {
-        Scheme::Upwind => "upwind",
-        Scheme::Minmod => "Minmod",
-        Scheme::VanAlbada => "vanAlbada",
-        Scheme::VanLeer => "vanLeer",
+    let (control, schemes, solution) = match stage.method {
+        Method::Central => (control + &central::steps(stage), central::schemes(stage.scheme), central::solution()),
+        Method::Simple => (control, simple::schemes(stage.scheme), simple::solution(flow, stage)),
     };
-    let of_vectors = if scheme == Scheme::Upwind { "" } else { "V" };
-    let schemes = format!(
-        "fluxScheme Kurganov;\nddtSchemes {{ default localEuler; }}\ngradSchemes {{ default Gauss linear; }}\n\
-         divSchemes {{ default none; div(tauMC) Gauss linear; }}\nlaplacianSchemes {{ default Gauss linear limited 0.5; }}\n\
-         interpolationSchemes\n{{\n    default linear;\n    reconstruct(rho) {name};\n    reconstruct(U) {name}{of_vectors};\n    \
-         reconstruct(T) {name};\n}}\nsnGradSchemes {{ default limited 0.5; }}\n"
-    );
-    write(case, "system", "fvSchemes", &schemes)
+    write(case, "system", "controlDict", &control)?;
+    write(case, "system", "fvSchemes", &schemes)?;
+    write(case, "system", "fvSolution", &solution)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cycle::solver::openfoam::method::Scheme;
+
+    /// The words of a dictionary as they stand in a folder, one space between two.
+    fn words(case: &Path, name: &str) -> String {
+        let text = std::fs::read_to_string(case.join(name)).unwrap();
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn the_gas_has_the_viscosity_of_the_reynolds_number() {
+        let folder = tempfile::tempdir().unwrap();
+        let flow: Flow = toml::from_str("mach = 0.3\nreynolds = 4000.0\nlength = 2.0\nprandtl = 0.71").unwrap();
+        write_constant(folder.path(), &flow, Method::Simple).unwrap();
+        let gas = words(folder.path(), "constant/thermophysicalProperties");
+        // μ = ρ U L / Re = 1.4 · 0.3 · 2 / 4000.
+        let of = |name: &str| -> f64 {
+            let rest = gas.split_once(&format!("{name} ")).unwrap().1;
+            rest.split(';').next().unwrap().parse().unwrap()
+        };
+        assert!((of("mu") - 2.1e-4).abs() < 1e-16 && of("Pr") == 0.71 && (of("Cp") - 2.5).abs() < 1e-12, "{gas}");
+        assert!(gas.contains("transport const;") && gas.contains("energy sensibleEnthalpy;"), "{gas}");
+        assert!(words(folder.path(), "constant/fvOptions").contains("min 0.5; max 2.036;"));
+        assert!(words(folder.path(), "constant/turbulenceProperties").ends_with("simulationType laminar;"));
+        write_constant(folder.path(), &flow, Method::Central).unwrap();
+        assert!(words(folder.path(), "constant/thermophysicalProperties").contains("energy sensibleInternalEnergy;"));
+    }
+
+    #[test]
+    fn each_program_has_what_it_reads() {
+        let folder = tempfile::tempdir().unwrap();
+        let flow: Flow = toml::from_str("mach = 0.3\nreynolds = 4000.0").unwrap();
+        let stage =
+            |method: Method| Stage { method, scheme: method.scheme(), courant: 0.4, smoothing: 0.3, relaxation: 0.7 };
+        write_stage(folder.path(), &flow, stage(Method::Simple), 50, 100).unwrap();
+        let control = words(folder.path(), "system/controlDict");
+        assert!(control.contains("application rhoSimpleFoam; startFrom startTime; startTime 50;"), "{control}");
+        assert!(control.contains("endTime 100;") && control.contains("writeInterval 50;"), "{control}");
+        let schemes = words(folder.path(), "system/fvSchemes");
+        assert!(schemes.contains("default steadyState;"), "{schemes}");
+        assert!(schemes.contains("div(phi,U) bounded Gauss linearUpwind grad(U);"), "{schemes}");
+        assert!(schemes.contains(r#""laplacian\(.*,U\)" Gauss linear corrected;"#), "{schemes}");
+        assert!(words(folder.path(), "system/fvSolution").contains("equations { U 0.7; h 0.7; }"));
+        let first = Stage { scheme: Scheme::Upwind, ..stage(Method::Simple) };
+        write_stage(folder.path(), &flow, first, 0, 50).unwrap();
+        assert!(words(folder.path(), "system/fvSchemes").contains("div(phi,U) bounded Gauss upwind;"));
+        write_stage(folder.path(), &flow, stage(Method::Central), 0, 100).unwrap();
+        let control = words(folder.path(), "system/controlDict");
+        assert!(control.contains("application rhoCentralFoam;") && control.contains("maxCo 0.4;"), "{control}");
+        let schemes = words(folder.path(), "system/fvSchemes");
+        assert!(schemes.contains("default localEuler;") && schemes.contains("reconstruct(U) vanAlbadaV;"), "{schemes}");
+    }
 }

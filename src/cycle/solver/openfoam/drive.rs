@@ -1,7 +1,8 @@
 //! Runs a prepared case, some steps at a time, until it stands still; what blows up is repeated with smaller steps.
-use super::dictionaries::{Scheme, Stage, write_stage};
+use super::dictionaries::write_stage;
 use super::flow::Flow;
 use super::forces::{Coefficients, Walls};
+use super::method::{Scheme, Stage};
 use super::programs::solve;
 use crate::formats::foam;
 use crate::mesh::TetMesh;
@@ -15,16 +16,16 @@ pub const PLAN: &str = "plan.json";
 /// The file of the results there.
 pub const RESULT: &str = "coefficients.json";
 
-/// How often the Courant number is halved at most before it is given up.
+/// How often the Courant number, or the relaxation, is halved at most before it is given up.
 const HALVINGS: i32 = 5;
 
-/// Blocks without trouble after which a halved Courant number is doubled again.
+/// Blocks without trouble after which what was halved is doubled again.
 const CALM: usize = 3;
 
 /// What is to be done with a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// The program, rhoCentralFoam.
+    /// The program, that of the stage's method.
     pub program: String,
     /// Processes of it; above 1 by mpirun.
     pub processes: u32,
@@ -131,25 +132,27 @@ impl<'a> Run<'a> {
     fn block(&mut self, stage: Stage, end: usize, tell: &mut dyn FnMut(&str)) -> Result<bool, String> {
         let next = (self.at + self.plan.block).min(end);
         loop {
-            let courant = stage.courant * 0.5f64.powi(self.halvings);
-            write_stage(self.case, Stage { courant, ..stage }, self.at, next)?;
+            let slower = stage.slower(self.halvings);
+            write_stage(self.case, &self.plan.flow, slower, self.at, next)?;
             let ended = self.start(next).and_then(|()| state(&self.case.join(next.to_string()), self.volumes.len()));
             match ended {
                 Ok(state) => {
                     self.take(next, state)?;
                     let Coefficients { lift, drag } = self.coefficients;
                     tell(&format!(
-                        "step {next:>6}  CL {lift:>10.6}  CD {drag:>10.6}  change {:>9.2e}  Courant {courant} {:?}",
-                        self.change, stage.scheme
+                        "step {next:>6}  CL {lift:>10.6}  CD {drag:>10.6}  change {:>9.2e}  {} {:?}",
+                        self.change,
+                        slower.pace(),
+                        stage.scheme
                     ));
                     return Ok(self.change < self.plan.still);
                 }
                 Err(error) if self.halvings >= HALVINGS => {
-                    return Err(format!("however small the time steps, {error}"));
+                    return Err(format!("however small the steps, {error}"));
                 }
                 Err(_) => {
                     (self.halvings, self.calm, self.repeated) = (self.halvings + 1, 0, self.repeated + 1);
-                    tell(&format!("step {next:>6}  blew up at Courant {courant}: half of that from step {}", self.at));
+                    tell(&format!("step {next:>6}  blew up at {}: half of that from step {}", slower.pace(), self.at));
                     remove(&self.case.join(next.to_string()));
                 }
             }

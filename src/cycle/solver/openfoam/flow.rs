@@ -34,6 +34,8 @@ pub struct Flow {
     /// Length of the Reynolds number, model units.
     #[serde(default = "one")]
     pub length: f64,
+    /// Temperature of the walls, where a viscous flow has walls of a constant one; without, no heat goes through them.
+    pub wall_temperature: Option<f64>,
     /// Area of the coefficients, model units².
     #[serde(default = "one")]
     pub area: f64,
@@ -96,12 +98,19 @@ impl Flow {
             ("prandtl", self.prandtl),
             ("length", self.length),
             ("area", self.area),
+            ("wall_temperature", self.wall_temperature.unwrap_or(1.0)),
         ];
         if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
             return Err(format!("[solver.openfoam.flow] {name} is {value}: give a positive number"));
         }
         if !(self.gamma > 1.0 && self.gamma.is_finite()) {
             return Err(format!("[solver.openfoam.flow] gamma is {}: give a number above 1", self.gamma));
+        }
+        if self.wall_temperature.is_some() && self.reynolds.is_none() {
+            return Err(
+                "[solver.openfoam.flow] wall_temperature: without viscosity no heat goes to a wall; give reynolds too"
+                    .into(),
+            );
         }
         if self.walls.len() + self.farfield.len() + self.inflow.len() == 0 {
             return Err(
@@ -179,6 +188,9 @@ impl Flow {
             (Kind::Symmetry, _) => "type symmetry;".into(),
             (Kind::Wall, "U") if self.reynolds.is_some() => "type noSlip;".into(),
             (Kind::Wall, "U") => "type slip;".into(),
+            (Kind::Wall, "T") if self.wall_temperature.is_some() => {
+                format!("type fixedValue; value uniform {:?};", self.wall_temperature.unwrap_or(self.temperature))
+            }
             (Kind::Wall | Kind::Outflow, _) => "type zeroGradient;".into(),
             (Kind::Inflow, _) => format!("type fixedValue; value uniform {value};"),
             (Kind::Farfield, "p") => {
@@ -227,6 +239,10 @@ mod tests {
         assert_eq!(flow.kind(3, Some("other")), None);
         assert_eq!(flow.entries("U", Kind::Wall), "type noSlip;");
         assert!(flow.entries("U", Kind::Inflow).starts_with("type fixedValue; value uniform (1.73"));
+        assert_eq!(flow.entries("T", Kind::Wall), "type zeroGradient;");
+        let flow = Flow { wall_temperature: Some(1.25), ..flow };
+        assert_eq!(flow.entries("T", Kind::Wall), "type fixedValue; value uniform 1.25;");
+        assert_eq!(flow.entries("p", Kind::Wall), "type zeroGradient;");
     }
 
     #[test]
@@ -238,5 +254,8 @@ mod tests {
         assert!(message("mach = -1.0\nwalls = ['a']").contains("mach is -1"));
         assert!(message("mach = 1.0\ngamma = 1.0\nwalls = ['a']").contains("gamma is 1"));
         assert!(message("mach = 1.0").contains("names no surface"));
+        let heated = "mach = 1.0\nwalls = ['a']\nwall_temperature = ";
+        assert!(message(&format!("{heated}1.0")).contains("give reynolds too"));
+        assert!(message(&format!("{heated}-1.0\nreynolds = 10.0")).contains("wall_temperature is -1"));
     }
 }

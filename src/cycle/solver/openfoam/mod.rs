@@ -1,16 +1,18 @@
-//! OpenFOAM's rhoCentralFoam: a case is made of a few flow conditions, run with local time steps until it stands still, and read.
+//! OpenFOAM: a case is made of a few flow conditions, run until it stands still, and read.
 //!
-//! `flow` says what holds where, `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
+//! `flow` says what holds where, `method` which program solves it (rhoCentralFoam with local time steps, or rhoSimpleFoam where the flow is
+//! slow and viscous), `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
 //! `programs`, and `forces` sums up what acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
 mod dictionaries;
 pub mod drive;
 mod flow;
 mod forces;
+mod method;
 mod programs;
 
-pub use dictionaries::{Scheme, Stage};
 pub use flow::{Flow, Kind};
 pub use forces::{Coefficients, Walls};
+pub use method::{Method, Scheme, Stage};
 
 use super::{Call, Job, Solved, Solver, find_program};
 use crate::formats::foam::{self, CellField};
@@ -27,9 +29,10 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Config {
-    /// The program, on the PATH or with its folder.
-    #[serde(default = "program")]
-    pub program: String,
+    /// Which of OpenFOAM's programs; by default what suits the flow.
+    pub method: Option<Method>,
+    /// The program, on the PATH or with its folder; by default that of the method.
+    pub program: Option<String>,
     /// Processes: above 1 the mesh is cut into as many parts, and mpirun starts them.
     #[serde(default = "single")]
     pub processes: u32,
@@ -38,28 +41,24 @@ pub struct Config {
     /// Steps of a solve at most.
     #[serde(default = "thousand")]
     pub steps: usize,
-    /// Steps of first order before those of the first solve.
-    #[serde(default = "start")]
-    pub start_steps: usize,
-    /// Steps between two looks at it.
-    #[serde(default = "hundred")]
-    pub block: usize,
+    /// Steps of first order before those of the first solve; by default 300, with `simple` none.
+    pub start_steps: Option<usize>,
+    /// Steps between two looks at it; by default 100, with `simple` 50.
+    pub block: Option<usize>,
     /// A solve ends when pressure and coefficients change by less over two blocks in a row, relatively.
     #[serde(default = "still")]
     pub still: f64,
-    /// How values at faces are found.
-    #[serde(default)]
-    pub scheme: Scheme,
-    /// Greatest Courant number; it is halved where a solve blows up.
+    /// How values at faces are found; by default the best that lasts on stretched tetrahedra.
+    pub scheme: Option<Scheme>,
+    /// Greatest Courant number, of `central`; it is halved where a solve blows up.
     #[serde(default = "courant")]
     pub courant: f64,
-    /// Greatest growth of the local time step from a cell to the next, less 1.
+    /// Greatest growth of the local time step from a cell to the next, less 1; of `central`.
     #[serde(default = "courant")]
     pub smoothing: f64,
-}
-
-fn program() -> String {
-    "rhoCentralFoam".into()
+    /// Relaxation of velocity and energy, of `simple`; it is halved where a solve blows up.
+    #[serde(default = "relaxation")]
+    pub relaxation: f64,
 }
 
 fn single() -> u32 {
@@ -70,14 +69,6 @@ fn thousand() -> usize {
     1000
 }
 
-fn start() -> usize {
-    300
-}
-
-fn hundred() -> usize {
-    100
-}
-
 fn still() -> f64 {
     1e-4
 }
@@ -86,10 +77,24 @@ fn courant() -> f64 {
     0.3
 }
 
+fn relaxation() -> f64 {
+    0.7
+}
+
 /// The folder of the case in that of a step.
 const CASE: &str = "case";
 
 impl Config {
+    /// The method.
+    pub fn method(&self) -> Method {
+        self.method.unwrap_or_else(|| Method::of(&self.flow))
+    }
+
+    /// The program.
+    pub fn program(&self) -> &str {
+        self.program.as_deref().unwrap_or(self.method().program())
+    }
+
     /// What holds at each surface of a mesh.
     fn kinds(&self, data: &Dataset) -> Result<BTreeMap<i32, Kind>, String> {
         let references: BTreeSet<i32> = data.mesh.triangles.refs.iter().copied().collect();
@@ -153,15 +158,18 @@ impl Config {
     }
 
     fn plan(&self, walls: Vec<i32>, begins: bool) -> Plan {
+        let method = self.method();
+        let &Self { courant, smoothing, relaxation, .. } = self;
+        let scheme = self.scheme.unwrap_or(method.scheme());
         Plan {
-            program: self.program.clone(),
+            program: self.program().to_owned(),
             processes: self.processes,
             flow: self.flow.clone(),
             walls,
-            stage: Stage { scheme: self.scheme, courant: self.courant, smoothing: self.smoothing },
-            start_steps: if begins { self.start_steps } else { 0 },
+            stage: Stage { method, scheme, courant, smoothing, relaxation },
+            start_steps: if begins { self.start_steps.unwrap_or(method.start_steps()) } else { 0 },
             steps: self.steps,
-            block: self.block,
+            block: self.block.unwrap_or(method.block()),
             still: self.still,
         }
     }
@@ -170,7 +178,7 @@ impl Config {
 impl Solver for Config {
     fn check(&self, base: &Path) -> Result<(), String> {
         self.flow.check()?;
-        if self.block == 0 || self.steps == 0 || self.processes == 0 {
+        if self.block == Some(0) || self.steps == 0 || self.processes == 0 {
             return Err("[solver.openfoam] steps, block and processes: give 1 or more".into());
         }
         if self.processes > 1 && find_program("mpirun", base).is_none() {
@@ -182,10 +190,19 @@ impl Solver for Config {
                     .into(),
             );
         }
-        if find_program(&self.program, base).is_none() {
+        if !(self.relaxation > 0.0 && self.relaxation < 1.0) {
+            return Err("[solver.openfoam] relaxation: give a number between 0 and 1 (0.7 is usual)".into());
+        }
+        if self.method() == Method::Central && self.scheme == Some(Scheme::LinearUpwind) {
+            return Err(
+                "[solver.openfoam] scheme linearupwind is of method simple; give upwind, minmod, vanalbada or vanleer"
+                    .into(),
+            );
+        }
+        if find_program(self.program(), base).is_none() {
             return Err(format!(
                 "[solver.openfoam] {} is not there: install OpenFOAM (sudo apt install openfoam), or give program with its folder",
-                self.program
+                self.program()
             ));
         }
         Ok(())
@@ -207,9 +224,9 @@ impl Solver for Config {
             foam::write_cell_field(&time.join(name), field, data.mesh.tets.len(), &entries, false)
                 .map_err(|error| error.to_string())?;
         }
-        dictionaries::write_constant(&case, &self.flow)?;
+        dictionaries::write_constant(&case, &self.flow, self.method())?;
         let mut plan = self.plan(self.walls(&data)?, data.fields.is_empty());
-        if let Some(program) = find_program(&self.program, job.base) {
+        if let Some(program) = find_program(self.program(), job.base) {
             plan.program = program.to_string_lossy().into_owned();
         }
         let text = serde_json::to_string_pretty(&plan).map_err(|error| error.to_string())?;

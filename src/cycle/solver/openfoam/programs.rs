@@ -46,8 +46,10 @@ fn run(case: &Path, log: &Path, words: &[&str]) -> Result<(), String> {
     let mut command = Command::new(words[0]);
     command.args(&words[1..]).current_dir(case).stdin(Stdio::null());
     command.stdout(sink.try_clone().map_err(named)?).stderr(sink);
-    // Ends where a number is none, instead of going on with it. The others let OpenMPI work for root, as in containers.
+    // Ends where a number is none, instead of going on with it. The others let OpenMPI work for root, as in containers, and start more
+    // processes than there are cores, as it was asked to.
     command.env("FOAM_SIGFPE", "true").env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+    command.env("OMPI_MCA_rmaps_base_oversubscribe", "1");
     if let Some(folder) = installation() {
         command.env("WM_PROJECT_DIR", folder);
     }

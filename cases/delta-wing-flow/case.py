@@ -1,0 +1,69 @@
+"""The delta wing of the high-order workshops, laminar, Mach 0.3, Re 4000 and 12.5°, by OpenFOAM in the loop: lift and drag beside the published ones.
+
+Runs loop.toml (--restart: anew), compares C_D and C_L with those of Tsolakis 2021 (section 4.2.2, at 5.7 million vertices), and draws the vortex and
+the way to the coefficients. --short: coarse, with its own floors, two minutes. Exit code: 0 when every floor is held, else 1.
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import pictures  # noqa: E402
+from comparing.expected import Bound  # noqa: E402
+from judging import cycles, loops, meshfile  # noqa: E402
+
+HERE = Path(__file__).resolve().parent
+OUT = cycles.ROOT / "out" / "delta-wing-flow"
+# C_D and C_L of the dissertation's last mesh.
+PUBLISHED = {"CD": 0.165396, "CL": 0.346937}
+# (target, floor of today): relative differences from the published ones, which are within 0.55 % of each other.
+BOUNDS = [Bound("drag, error", "≤", 0.0055, 0.02), Bound("lift, error", "≤", 0.0055, 0.02), Bound("adaptation", "≤", 0.05, 0.1)]
+SHORT = [Bound("drag, error", "≤", 0.0055, 0.06), Bound("lift, error", "≤", 0.0055, 0.06), Bound("adaptation", "≤", 0.05, 0.3)]
+SHORTER = {"complexity": "1000", "max_complexity": "1500", "every": "1", "factor": "1.5", "folder": '"../../out/delta-wing-flow/short"'}
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path, default=cycles.ROOT / "target/release/geo-adapt")
+    parser.add_argument("--short", action="store_true", help="coarse, two minutes")
+    parser.add_argument("--restart", action="store_true", help="throw away what is there")
+    parser.add_argument("--complexity", type=float, help="of the end (default: of loop.toml)")
+    parser.add_argument("--processes", type=int, help="of the solver (default: 1)")
+    return parser.parse_args()
+
+
+def main():
+    options = arguments()
+    name = "short" if options.short else "loop"
+    folder = OUT / name
+    folder.mkdir(parents=True, exist_ok=True)
+    changed = dict(SHORTER) if options.short else {}
+    if options.complexity:
+        changed["max_complexity"] = f"{options.complexity:g}"
+    if options.processes:
+        changed["processes"] = options.processes
+    config = OUT / f"{name}.toml"
+    config.write_text(loops.replaced((HERE / "loop.toml").read_text(), changed))
+    words = ["--restart"] if options.restart or options.short else []
+    loop = loops.run(options.program, config, folder, *words)[1]
+    for step in loop:
+        found = step["functionals"]
+        shown = "  ".join(f"{key} {found[key]:.6f} ({found[key] / value - 1:+.2%})" for key, value in PUBLISHED.items())
+        cycles.say(f"cycle {step['cycle']:>2}  {step['vertices']:>8} vertices  {shown}  {found['steps']:.0f} steps, change {found['change']:.1e}")
+    mesh, solution = loops.last(loop, folder)
+    mesh, values = meshfile.read_mesh(mesh), meshfile.read_fields(solution)[1]
+    pictures.vortex(mesh, values[:, -1], folder / "vortex.png")
+    pictures.way(loop, PUBLISHED, folder / "coefficients.png")
+    last = loop[-1]["functionals"]
+    result = {"vertices": len(mesh.points), "CD": last["CD"], "CL": last["CL"], "adaptation": loops.adaptation(loop),
+              "drag, error": abs(last["CD"] / PUBLISHED["CD"] - 1), "lift, error": abs(last["CL"] / PUBLISHED["CL"] - 1)}
+    (OUT / f"{name}.json").write_text(json.dumps(result, indent=1))
+    cycles.say("  ".join(f"{key} {value:.5g}" for key, value in result.items()))
+    cycles.say(f"{folder}/report.html, {folder}/vortex.png, {folder}/coefficients.png")
+    return loops.judged(SHORT if options.short else BOUNDS, result)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
