@@ -1,7 +1,7 @@
 """The delta wing of the high-order workshops, laminar, Mach 0.3, Re 4000 and 12.5°, by OpenFOAM in the loop: lift and drag beside the published ones.
 
 Runs loop.toml (--restart: anew), compares C_D and C_L with those of Tsolakis 2021 (section 4.2.2, at 5.7 million vertices), and draws the vortex and
-the way to the coefficients. --short: coarse, with its own floors, two minutes. Exit code: 0 when every floor is held, else 1.
+the way to the coefficients. --short: coarse, with its own floors, half a minute. Exit code: 0 when every floor is held, else 1.
 """
 
 import argparse
@@ -27,7 +27,7 @@ SHORTER = {"complexity": "1000", "max_complexity": "1500", "every": "1", "factor
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, default=cycles.ROOT / "target/release/geo-adapt")
-    parser.add_argument("--short", action="store_true", help="coarse, two minutes")
+    parser.add_argument("--short", action="store_true", help="coarse, half a minute")
     parser.add_argument("--restart", action="store_true", help="throw away what is there")
     parser.add_argument("--complexity", type=float, help="of the end (default: of loop.toml)")
     parser.add_argument("--processes", type=int, help="of the solver (default: 1)")
