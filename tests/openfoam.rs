@@ -147,6 +147,27 @@ fn surfaces_must_be_those_of_the_mesh() {
 }
 
 #[test]
+fn a_slow_viscous_flow_is_solved_by_pressure_correction() {
+    let place = Place::new("./stand-in", "walls = ['3']\nsymmetry = ['4', '5', '6']\nfarfield = ['1', '2']");
+    let viscous = "mach = 0.3\nreynolds = 100\nlength = 2\nwall_temperature = 1.1";
+    std::fs::write(place.path("loop.toml"), place.text("loop.toml").replace("mach = 2.0", viscous)).unwrap();
+    let run = place.run();
+    assert!(run.status.success(), "{}", stderr(&run));
+    let case = |name: &str| place.text(&format!("out/cycle-01/solve/case/{name}"));
+    assert!(case("system/controlDict").contains("application rhoSimpleFoam;"));
+    assert!(case("0/U").contains("type noSlip;") && case("0/T").contains("type fixedValue; value uniform 1.1;"));
+    // ρ U L / Re.
+    assert!(case("constant/thermophysicalProperties").contains("mu 0.0084;"));
+    let log = place.text("out/cycle-01/solve/log.txt");
+    assert!(log.contains("relaxation 0.7 Upwind") && log.contains("relaxation 0.7 LinearUpwind"), "{log}");
+    let scheme = place.text("loop.toml").replace("courant = 0.4", "method = \"central\"\nscheme = \"linearupwind\"");
+    std::fs::write(place.path("loop.toml"), scheme).unwrap();
+    let run = place.run();
+    assert_eq!(run.status.code(), Some(2));
+    assert!(stderr(&run).contains("scheme linearupwind is of method simple"), "{}", stderr(&run));
+}
+
+#[test]
 fn a_free_stream_through_a_channel_stays() {
     let installed =
         std::env::split_paths(&std::env::var_os("PATH").unwrap()).any(|folder| folder.join("rhoCentralFoam").is_file());

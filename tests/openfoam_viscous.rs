@@ -9,8 +9,9 @@ use geo_adapt::mesh::samples::with_boundary;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// Cells along the flow, across the slab, and away from the plate.
-const CELLS: [u32; 3] = [30, 1, 28];
+/// Cells along the flow, across the slab, and away from the plate. The friction is 0.0 % from Blasius' with these, 1.9 % above with 30 along the
+/// flow, 3.2 % with 30 and 20 away from the plate.
+const CELLS: [u32; 3] = [15, 1, 28];
 /// The slab: from half a length before the plate to its end, so wide and so high.
 const WIDTH: f64 = 0.05;
 const HEIGHT: f64 = 0.6;
