@@ -25,6 +25,7 @@ enum Need {
 pub(super) fn find(fit: &Fit, ridges: &Ridges) -> Result<Vec<Option<u32>>, Error> {
     let mut evaluator = fit.model.evaluator();
     let on_ridges = Points::new(fit, ridges.list.iter().flat_map(|(nodes, _)| *nodes).collect());
+    let on_edges = OnEdges::new(ridges);
     let mut on_surface = None;
     let mut taken: HashMap<u32, u32> = HashMap::new();
     let mut found = vec![None; fit.topology.vertices.len()];
@@ -41,7 +42,14 @@ pub(super) fn find(fit: &Fit, ridges: &Ridges) -> Result<Vec<Option<u32>>, Error
                 .get_or_insert_with(|| Points::new(fit, fit.mesh.triangles.nodes.iter().flatten().copied().collect()))
         };
         let tolerance = fit.allowed(Entity::Vertex(model));
-        let (nearest, away) = points.nearest(fit, vertex.point);
+        let (mut nearest, mut away) = points.nearest(fit, vertex.point);
+        // Where solids touch, vertices of several lie at one place: each goes with its edges.
+        if nearest.is_some_and(|mesh| !on_edges.has(mesh, &vertex.edges))
+            && let Some((own, at)) = on_edges.nearest(fit, &vertex.edges, vertex.point)
+            && at <= tolerance
+        {
+            (nearest, away) = (Some(own), at);
+        }
         match nearest.filter(|_| away <= tolerance) {
             Some(mesh) => {
                 if let Some(other) = taken.insert(mesh, model) {
@@ -79,6 +87,36 @@ impl Points {
             Some(i) => (Some(self.vertices[i as usize]), away(i)),
             None => (None, f64::INFINITY),
         }
+    }
+}
+
+/// Mesh vertices by the model edges that their ridges lie on.
+struct OnEdges {
+    /// Model edge and vertex, sorted.
+    list: Vec<(u32, u32)>,
+}
+
+impl OnEdges {
+    fn new(ridges: &Ridges) -> Self {
+        let mut list: Vec<_> = ridges.list.iter().flat_map(|&(nodes, edge)| nodes.map(|v| (edge, v))).collect();
+        list.sort_unstable();
+        list.dedup();
+        Self { list }
+    }
+
+    /// Whether a vertex lies on one of these edges.
+    fn has(&self, vertex: u32, edges: &[u32]) -> bool {
+        edges.iter().any(|&edge| self.list.binary_search(&(edge, vertex)).is_ok())
+    }
+
+    /// The vertex on these edges that is nearest to a point, and how far it is.
+    fn nearest(&self, fit: &Fit, edges: &[u32], point: Vec3) -> Option<(u32, f64)> {
+        let on = |edge: u32| {
+            let begin = self.list.partition_point(|entry| entry.0 < edge);
+            self.list[begin..].iter().take_while(move |entry| entry.0 == edge)
+        };
+        let all = edges.iter().flat_map(|&edge| on(edge)).map(|&(_, v)| (v, distance(fit.point(v), point)));
+        all.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)))
     }
 }
 
