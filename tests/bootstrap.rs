@@ -239,12 +239,13 @@ fn solids_that_touch_along_curves_stay_as_they_are() {
     let of_region = volumes(&mesh);
     assert_eq!(of_region.keys().collect::<Vec<_>>(), [&1, &2, &3, &4]);
     let ball = 4.0 / 3.0 * std::f64::consts::PI * 0.1f64.powi(3);
-    near(of_region[&3], ball, 0.05);
-    near(of_region[&4], ball, 0.05);
+    // Edges of half a radius, as the curvature asks for, cut a tenth off a ball and a twentieth off a disc.
+    near(of_region[&3], ball, 0.12);
+    near(of_region[&4], ball, 0.12);
     // The cap lies on the three sectors of the shaft's end.
     let between = interfaces(&mesh);
     assert_eq!(between.len(), 3);
-    near(area(&mesh, |reference| between.contains(&reference)), std::f64::consts::PI * 0.25f64.powi(2), 0.01);
+    near(area(&mesh, |reference| between.contains(&reference)), std::f64::consts::PI * 0.25f64.powi(2), 0.06);
     assert_eq!(mesh.triangles.refs.iter().collect::<BTreeSet<_>>().len(), 25);
     // No vertex belongs to a ball and to something else.
     let of_balls: BTreeSet<u32> = nodes_of(&mesh, |region| region > 2);

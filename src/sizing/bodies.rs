@@ -59,3 +59,42 @@ fn root(parents: &mut [u32], mut at: u32) -> u32 {
     }
     at
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Discrete, Geometry};
+    use crate::mesh::samples::cube;
+    use crate::tasks::Team;
+
+    #[test]
+    fn two_cubes_are_apart_and_one_is_not() {
+        let mut mesh = cube(2);
+        let count = mesh.vertices.len() as u32;
+        let other = cube(2);
+        mesh.vertices.extend(other.vertices.iter().map(|p| [p[0] + 3.0, p[1], p[2]]));
+        mesh.vertex_refs.extend(&other.vertex_refs);
+        other.tets.iter().for_each(|(nodes, reference)| mesh.tets.push(nodes.map(|v| v + count), reference));
+        other
+            .triangles
+            .iter()
+            .for_each(|(nodes, reference)| mesh.triangles.push(nodes.map(|v| v + count), reference + 6));
+        let (model, place) = Discrete::from_mesh(Team::alone(), &mesh, 30.0).unwrap();
+        let topology = model.topology();
+        let is_first = |face: u32| {
+            let triangle = place.faces.iter().position(|&f| f == face).unwrap();
+            mesh.triangles.nodes[triangle][0] < count
+        };
+        let bodies = Bodies::new(topology, &mesh, &place);
+        let faces = topology.faces.len() as u32;
+        assert_eq!(faces, 12);
+        for (a, b) in (0..faces).flat_map(|a| (0..faces).map(move |b| (a, b))) {
+            assert_eq!(bodies.are_apart(Entity::Face(a), Entity::Face(b)), is_first(a) != is_first(b));
+            let edge = topology.faces[a as usize].edges[0];
+            assert_eq!(bodies.are_apart(Entity::Edge(edge), Entity::Face(b)), is_first(a) != is_first(b));
+        }
+        mesh.tets = Default::default();
+        let bodies = Bodies::new(topology, &mesh, &place);
+        assert!(!bodies.are_apart(Entity::Face(0), Entity::Face(11)), "triangles alone");
+    }
+}

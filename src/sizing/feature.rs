@@ -5,6 +5,7 @@
 //! touch (a ball in its race) a gap has no end. Which entities may be near tells a tree of boxes over pieces of the model. The size is limited along
 //! the direction of the gap alone.
 use super::bodies::Bodies;
+use super::bound::{Bound, across, away, may_face};
 use super::curvature::{Local, cut};
 use super::pieces::pieces;
 use super::sight::Sight;
@@ -13,18 +14,18 @@ use super::tree::{Box3, Tree};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
-use crate::mesh::vector::{Vec3, distance, dot, lerp, norm, scale, sub, unit};
+use crate::mesh::vector::{Vec3, distance, dot, norm, scale, sub, unit};
 use crate::metric::Sym3;
 use crate::tasks::Team;
 use serde::Serialize;
 use std::cmp::Ordering;
 
 /// A gap goes across a face if its direction makes at most 60° with the normal,
-const ACROSS: f64 = 0.5;
+pub(super) const ACROSS: f64 = 0.5;
 /// and the other face looks back, or at least not away by more than this cosine.
 const AWAY: f64 = 0.25;
 /// A gap goes across an edge if its direction makes at least 45° with the tangent.
-const ALONG: f64 = 0.707;
+pub(super) const ALONG: f64 = 0.707;
 /// What is nearer than this share of the diagonal touches, whether the model says so or not.
 const TOUCHING: f64 = 1e-7;
 
@@ -273,77 +274,12 @@ fn order(a: &Other, b: &Other) -> Ordering {
     a.length.total_cmp(&b.length).then(a.found.is_some().cmp(&b.found.is_some())).then(a.to.cmp(&b.to))
 }
 
-/// How far a box is.
-fn away(point: Vec3, piece: &Box3) -> f64 {
-    norm(std::array::from_fn(|i| (piece[0][i] - point[i]).max(point[i] - piece[1][i]).max(0.0)))
-}
-
-/// What a gap must be like to limit a metric: with w the part across of the way there, |w|/cells < √(gᵀM⁻¹g), g = w/|w|.
-struct Bound<'a> {
-    at: &'a Place,
-    local: &'a Local,
-    metric: Sym3,
-    cells: f64,
-    /// Greatest size.
-    greatest: f64,
-}
-
-impl<'a> Bound<'a> {
-    fn new(at: &'a Place, local: &'a Local, metric: Sym3, cells: f64) -> Self {
-        Self { at, local, metric, cells, greatest: metric.eigen().values[0].sqrt().recip() }
-    }
-
-    /// Whether a gap to a point of this box may limit it: |w|² < cells √(wᵀM⁻¹w) for no w within the box's radius of its middle's.
-    fn may_limit(&self, piece: &Box3) -> bool {
-        let middle = across(sub(lerp(piece[0], piece[1], 0.5), self.at.point), self.at, self.local);
-        let radius = 0.5 * distance(piece[0], piece[1]);
-        let least = (norm(middle) - radius).max(0.0);
-        let most = dot(middle, self.metric.solve(middle)).sqrt() + radius * self.greatest;
-        least * least < self.cells * most * (1.0 + SLACK)
-    }
-}
-
-/// Rounding of bounds.
-const SLACK: f64 = 1e-9;
-
 /// No size such that what bends leaves a cell as thin as `across`: the middle of an edge of this size is that far from its arc. Cells
 /// along a sliver of a face on a curved wall would stand out of it else, and no mesh follows them.
 fn unbent(metric: Sym3, across: f64, bend: f64) -> Sym3 {
     let along = (8.0 * across / bend).sqrt();
     let reaches = along.is_finite() && metric.eigen().values[0] * along * along < 1.0;
     if reaches { metric.intersect(&Sym3::IDENTITY.times(along.max(across).powi(-2))) } else { metric }
-}
-
-/// Whether a gap to a point of this box may go across what lies at the place: if not for any piece of an entity, its closest point
-/// need not be looked for.
-fn may_face(at: &Place, local: &Local, piece: &Box3, owner: Entity) -> bool {
-    let middle = sub(lerp(piece[0], piece[1], 0.5), at.point);
-    let (radius, away) = (0.5 * distance(piece[0], piece[1]), norm(middle));
-    if away <= 1.5 * radius {
-        return true;
-    }
-    // Seen from the place the box is within this angle β of its middle.
-    let sine = radius / away;
-    let cosine = (1.0 - sine * sine).sqrt();
-    let along = |axis: Vec3| dot(axis, middle).abs() / away;
-    let beside = match (at.entity, &local.tangents[..]) {
-        // At least 45° − β from the tangent,
-        (Entity::Edge(_), &[tangent, ..]) => along(tangent) <= ALONG * (cosine + sine),
-        _ => true,
-    };
-    // and at most 60° + β from a normal; of an edge that is not asked.
-    let least = ACROSS * cosine - (1.0 - ACROSS * ACROSS).sqrt() * sine;
-    let faces = || local.normals.is_empty() || local.normals.iter().any(|&normal| along(normal) >= least);
-    beside && (owner.dimension() < 2 || faces())
-}
-
-/// What of a direction goes across the edge that a place lies on: near its end the way to another edge leans along it, and sizes along it
-/// are not the gap's.
-fn across(direction: Vec3, at: &Place, local: &Local) -> Vec3 {
-    match (at.entity, &local.tangents[..]) {
-        (Entity::Edge(_), &[tangent, ..]) => sub(direction, scale(tangent, dot(direction, tangent))),
-        _ => direction,
-    }
 }
 
 fn edge_of(entity: Entity) -> u32 {

@@ -4,6 +4,7 @@
 //! entities that come near without touching (`touch`), by boxes over samples of the model (`pieces`, `tree`), where nothing stands between
 //! (`sight`), of the same body (`bodies`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together.
 mod bodies;
+mod bound;
 mod coarse;
 mod curvature;
 mod estimate;
