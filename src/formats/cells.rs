@@ -4,6 +4,9 @@ use crate::mesh::vector::{Vec3, dot, sub};
 use crate::metric::Sym3;
 use crate::tasks::{Buckets, GRAIN, Team};
 
+/// Mean weight below which the weights are what rounding left of them.
+const LEAST: f64 = 0.1;
+
 /// The centroid of a tetrahedron.
 fn centroid(vertices: &[Vec3], nodes: [u32; 4]) -> Vec3 {
     let p = nodes.map(|v| vertices[v as usize]);
@@ -15,7 +18,8 @@ fn centroid(vertices: &[Vec3], nodes: [u32; 4]) -> Vec3 {
 ///
 /// A mean with the weights 1 + λ·d of Holmes & Connell (*Solution of the 2D Navier-Stokes equations on unstructured adaptive grids*, AIAA 89-1932),
 /// d the way to a centroid: those nearest to 1 that meet linear functions, whatever the anisotropy of the cells. They are held to
-/// [0, 2], so that there is no new extremum; on the boundary, where all centroids lie to one side, a mean is left.
+/// [0, 2], so that there is no new extremum; on the boundary, where all centroids lie to one side, a mean is left. Where hardly any weight is (all centroids
+/// lie in one direction) all are the same.
 pub fn cells_to_vertices(team: Team<'_>, mesh: &TetMesh, values: &[f64], width: usize) -> Vec<f64> {
     let (vertices, tets) = (&mesh.vertices, &mesh.tets.nodes);
     let at = Buckets::of::<4>(team, vertices.len(), tets.len(), |t| tets[t]);
@@ -26,11 +30,15 @@ pub fn cells_to_vertices(team: Team<'_>, mesh: &TetMesh, values: &[f64], width: 
             ways.extend(
                 at.of_key(vertex).map(|entry| sub(centroid(vertices, tets[entry as usize / 4]), vertices[vertex])),
             );
-            let slope = slope(&ways);
+            let mut slope = slope(&ways);
+            let weight = |slope: Vec3, way: Vec3| (1.0 + dot(slope, way)).clamp(0.0, 2.0);
+            if ways.iter().map(|&way| weight(slope, way)).sum::<f64>() < LEAST * ways.len() as f64 {
+                slope = [0.0; 3];
+            }
             sum.fill(0.0);
             let mut total = 0.0;
             for (entry, &way) in at.of_key(vertex).zip(&ways) {
-                let weight = (1.0 + dot(slope, way)).clamp(0.0, 2.0);
+                let weight = weight(slope, way);
                 total += weight;
                 let cell = &values[entry as usize / 4 * width..][..width];
                 sum.iter_mut().zip(cell).for_each(|(sum, value)| *sum += weight * value);
@@ -125,5 +133,9 @@ mod tests {
         let found = cells_to_vertices(Team::alone(), &mesh, &cells, 1);
         assert!(found.iter().all(|x| (0.0..=1.0).contains(x)));
         assert_eq!(found.last(), Some(&0.0), "without a tetrahedron");
+        // One tetrahedron: all its vertices have its value.
+        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let single = crate::mesh::samples::with_boundary(corners.to_vec(), vec![[0, 1, 2, 3]]);
+        assert_eq!(cells_to_vertices(Team::alone(), &single, &[7.0], 1), [7.0; 4]);
     }
 }
