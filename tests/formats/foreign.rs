@@ -37,8 +37,8 @@ fn what_vtk_writes_is_read_in_all_its_modes() {
         let name = format!("vtk-{mode}.vtu");
         let found = read(&data(&name));
         check(&name, &found, mode == "ascii");
-        // Volumes are 1 and 2.
-        let wanted = [1.0, 5.0 / 3.0, 5.0 / 3.0, 5.0 / 3.0, 2.0];
+        // Of two cells no weights but the same keep linear functions any better.
+        let wanted = [1.0, 1.5, 1.5, 1.5, 2.0];
         assert_eq!(found.fields[2].name, "density");
         assert!(
             found.fields[2].values.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-14),

@@ -162,8 +162,7 @@ fn data_is_read_however_it_is_stored() {
             // XX YY ZZ XY YZ XZ is what VTK has.
             assert_eq!(data.fields[1].values[..6], [0.0, 3.0, 1.0, 5.0, 4.0, 2.0]);
             assert_eq!(data.fields[2].values[..6], [0.0, 1.0, 0.0, 2.0, 3.0, 0.0]);
-            // Volumes are 1 to 2.
-            assert_eq!(data.fields[3].values, [3.0, 3.0, 3.0, 1.0, 4.0]);
+            assert_eq!(data.fields[3].values, [2.5, 2.5, 2.5, 1.0, 4.0]);
         }
     }
 }
