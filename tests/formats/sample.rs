@@ -117,3 +117,15 @@ pub fn refusal(name: &str, bytes: impl AsRef<[u8]>) -> String {
     let text = error.to_string();
     text.strip_prefix(&format!("{name}: ")).unwrap_or_else(|| panic!("{text} does not name the file")).to_owned()
 }
+
+/// The mean of the values of two cells at a vertex, with the squares of the distances of their centroids.
+pub fn by_distance([(a, far_a), (b, far_b)]: [(f64, f64); 2]) -> f64 {
+    let (from_a, from_b) = (far_a.sqrt().recip(), far_b.sqrt().recip());
+    (a * from_a + b * from_b) / (from_a + from_b)
+}
+
+/// Whether these are the values at the vertices (0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, -2) of two cells with 1 above and 4 below.
+pub fn is_mean_of_both(values: &[f64]) -> bool {
+    let (corner, side) = (by_distance([(1.0, 0.1875), (4.0, 0.375)]), by_distance([(1.0, 0.6875), (4.0, 0.875)]));
+    values.len() == 5 && values.iter().zip([corner, side, side, 1.0, 4.0]).all(|(a, b)| (a - b).abs() < 1e-14)
+}
