@@ -4,7 +4,6 @@ Runs loop.toml (--restart: anew), compares C_D and C_L with those of Tsolakis 20
 the way to the coefficients. --short: coarse, with its own floors, half a minute. Exit code: 0 when every floor is held, else 1.
 """
 
-import argparse
 import json
 import sys
 from pathlib import Path
@@ -24,30 +23,9 @@ SHORT = [Bound("drag, error", "≤", 0.0055, 0.02), Bound("lift, error", "≤", 
 SHORTER = {"complexity": "1000", "max_complexity": "1500", "every": "1", "factor": "1.5", "folder": '"../../out/delta-wing-flow/short"'}
 
 
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, default=cycles.ROOT / "target/release/geo-adapt")
-    parser.add_argument("--short", action="store_true", help="coarse, half a minute")
-    parser.add_argument("--restart", action="store_true", help="throw away what is there")
-    parser.add_argument("--complexity", type=float, help="of the end (default: of loop.toml)")
-    parser.add_argument("--processes", type=int, help="of the solver (default: 1)")
-    return parser.parse_args()
-
-
 def main():
-    options = arguments()
-    name = "short" if options.short else "loop"
-    folder = OUT / name
-    folder.mkdir(parents=True, exist_ok=True)
-    changed = dict(SHORTER) if options.short else {}
-    if options.complexity:
-        changed["max_complexity"] = f"{options.complexity:g}"
-    if options.processes:
-        changed["processes"] = options.processes
-    config = OUT / f"{name}.toml"
-    config.write_text(loops.replaced((HERE / "loop.toml").read_text(), changed))
-    words = ["--restart"] if options.restart or options.short else []
-    loop = loops.run(options.program, config, folder, *words)[1]
+    options = loops.arguments(__doc__, short="coarse, half a minute")
+    folder, loop = loops.ran(options, HERE, OUT, SHORTER)
     for step in loop:
         found = step["functionals"]
         shown = "  ".join(f"{key} {found[key]:.6f} ({found[key] / value - 1:+.2%})" for key, value in PUBLISHED.items())
@@ -59,7 +37,7 @@ def main():
     last = loop[-1]["functionals"]
     result = {"vertices": len(mesh.points), "CD": last["CD"], "CL": last["CL"], "adaptation": loops.adaptation(loop),
               "drag, error": abs(last["CD"] / PUBLISHED["CD"] - 1), "lift, error": abs(last["CL"] / PUBLISHED["CL"] - 1)}
-    (OUT / f"{name}.json").write_text(json.dumps(result, indent=1))
+    folder.with_suffix(".json").write_text(json.dumps(result, indent=1))
     cycles.say("  ".join(f"{key} {value:.5g}" for key, value in result.items()))
     cycles.say(f"{folder}/report.html, {folder}/vortex.png, {folder}/coefficients.png")
     return loops.judged(SHORT if options.short else BOUNDS, result)

@@ -4,7 +4,6 @@ Runs loop.toml (--restart: anew), compares Cp with test 2308 of AGARD AR-138, dr
 adaptation's. --short: one coarse cycle, with its own floors. Exit code: 0 when every floor is held, else 1. Half an hour to two hours.
 """
 
-import argparse
 import json
 import sys
 from pathlib import Path
@@ -26,30 +25,9 @@ SHORT = [Bound("within", "≥", 0.8), Bound("inner", "≥", 0.8, 0.65), Bound("a
 SHORTER = {"complexity": "4000", "max_complexity": "4000", "every": "1", "steps": "800", "folder": '"../../out/onera-m6-flow/short"'}
 
 
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, default=cycles.ROOT / "target/release/geo-adapt")
-    parser.add_argument("--short", action="store_true", help="one coarse cycle")
-    parser.add_argument("--restart", action="store_true", help="throw away what is there")
-    parser.add_argument("--complexity", type=float, help="of the end (default: of loop.toml)")
-    parser.add_argument("--processes", type=int, help="of the solver (default: 1)")
-    return parser.parse_args()
-
-
 def main():
-    options = arguments()
-    name = "short" if options.short else "loop"
-    folder = OUT / name
-    folder.mkdir(parents=True, exist_ok=True)
-    changed = dict(SHORTER) if options.short else {}
-    if options.complexity:
-        changed["max_complexity"] = f"{options.complexity:g}"
-    if options.processes:
-        changed["processes"] = options.processes
-    config = OUT / f"{name}.toml"
-    config.write_text(loops.replaced((HERE / "loop.toml").read_text(), changed))
-    words = ["--restart"] if options.restart or options.short else []
-    loop = loops.run(options.program, config, folder, *words)[1]
+    options = loops.arguments(__doc__, short="one coarse cycle")
+    folder, loop = loops.ran(options, HERE, OUT, SHORTER)
     mesh, solution = loops.last(loop, folder)
     mesh, values = meshfile.read_mesh(mesh), meshfile.read_fields(solution)[1]
     lines = pressure.compared(mesh, pressure.coefficient(values[:, 0], MACH))
@@ -59,7 +37,7 @@ def main():
     result = {"within": min(line["within"] for line in lines), "inner": min(line["within"] for line in lines if line["share"] < 0.99),
               "lift": loop[-1]["functionals"]["CL"], "drag": loop[-1]["functionals"]["CD"],
               "vertices": len(mesh.points), "adaptation": loops.adaptation(loop)}
-    (OUT / f"{name}.json").write_text(json.dumps(result, indent=1))
+    folder.with_suffix(".json").write_text(json.dumps(result, indent=1))
     cycles.say("  ".join(f"{key} {value:.5g}" for key, value in result.items()))
     cycles.say(f"{folder}/report.html, {folder}/sections.png")
     return loops.judged(SHORT if options.short else BOUNDS, result)

@@ -6,6 +6,7 @@ pub mod hilbert;
 pub mod io;
 pub mod locate;
 mod matched_faces;
+pub mod parts;
 pub mod pinch;
 pub mod predicate;
 pub mod quadrature;

@@ -1,5 +1,6 @@
 //! Takes a mesh apart where it hangs together in edges or vertices alone.
 use super::adjacency::{sorted_faces, sorted3};
+use super::parts::Parts;
 use super::{Association, Elements, TetMesh};
 
 /// Gives each part of the tetrahedra at a vertex that hang together by faces a vertex of its own: then no edge has four triangles of the
@@ -9,23 +10,22 @@ pub fn unpinch(mesh: &mut TetMesh) -> usize {
     let tets = &mesh.tets.nodes;
     // Corner i of tetrahedron t is 4t + i.
     let corner = |tet: u32, node: u32| tets[tet as usize].iter().position(|&v| v == node).map(|i| 4 * tet + i as u32);
-    let mut parents: Vec<u32> = (0..4 * tets.len() as u32).collect();
+    let mut parts = Parts::new(4 * tets.len());
     let faces = sorted_faces(tets);
     for pair in faces.windows(2).filter(|pair| pair[0].nodes == pair[1].nodes) {
         for node in pair[0].nodes {
             if let [Some(a), Some(b)] = [pair[0].side, pair[1].side].map(|side| corner(side / 4, node)) {
-                let (a, b) = (root(&mut parents, a), root(&mut parents, b));
-                parents[a.max(b) as usize] = a.min(b);
+                parts.join(a, b);
             }
         }
     }
-    // Roots are the first corners of their parts; the first part at a vertex keeps it.
+    // The first part at a vertex keeps it.
     let mut owner = vec![u32::MAX; mesh.vertices.len()];
-    let mut own = vec![u32::MAX; parents.len()];
+    let mut own = vec![u32::MAX; parts.count()];
     let old = mesh.vertices.len();
-    for at in 0..parents.len() as u32 {
+    for at in 0..parts.count() as u32 {
         let node = tets[at as usize / 4][at as usize % 4];
-        if root(&mut parents, at) != at {
+        if parts.first(at) != at {
             continue;
         }
         own[at as usize] = if owner[node as usize] == u32::MAX {
@@ -41,7 +41,7 @@ pub fn unpinch(mesh: &mut TetMesh) -> usize {
     if added == 0 {
         return 0;
     }
-    let mut now = |at: u32| own[root(&mut parents, at) as usize];
+    let mut now = |at: u32| own[parts.first(at) as usize];
     // A triangle goes with the first tetrahedron that has it: that of its other side is of the same part.
     for nodes in &mut mesh.triangles.nodes {
         let key = sorted3(*nodes);
@@ -57,15 +57,6 @@ pub fn unpinch(mesh: &mut TetMesh) -> usize {
     mesh.ridges.clear();
     mesh.required_edges.clear();
     added
-}
-
-/// The first corner of a part.
-fn root(parents: &mut [u32], mut at: u32) -> u32 {
-    while parents[at as usize] != at {
-        parents[at as usize] = parents[parents[at as usize] as usize];
-        at = parents[at as usize];
-    }
-    at
 }
 
 #[cfg(test)]

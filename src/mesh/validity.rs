@@ -1,6 +1,7 @@
 //! Whether a mesh is one: positive tetrahedra, a closed manifold boundary that its triangles tell, nothing twice, nothing loose.
 use super::adjacency::{FACES, FaceKey, sorted_faces, sorted3, unique_edges};
 use super::flaw::{Flaw, FlawKind, Offender};
+use super::parts::Parts;
 use super::predicate::orientation;
 use super::vector::{add, scale};
 use super::{Elements, TetMesh};
@@ -193,21 +194,21 @@ fn check_tagged_edges(found: &mut Findings) {
 fn check_vertices(found: &mut Findings, faces: &[FaceKey]) {
     let mesh = found.mesh;
     // A corner is a pair (tetrahedron, node): 4t + i. Corners of one vertex are joined across common faces.
-    let mut corners: Vec<u32> = (0..4 * mesh.tets.len() as u32).collect();
+    let mut corners = Parts::new(4 * mesh.tets.len());
     for same in faces.chunk_by(|a, b| a.nodes == b.nodes) {
         for other in &same[1..] {
             for node in same[0].nodes {
-                join(&mut corners, corner_of(mesh, same[0].side, node), corner_of(mesh, other.side, node));
+                corners.join(corner_of(mesh, same[0].side, node), corner_of(mesh, other.side, node));
             }
         }
     }
     let mut group = vec![u32::MAX; mesh.vertices.len()];
     let mut pinched = vec![false; mesh.vertices.len()];
-    for corner in 0..corners.len() as u32 {
+    for corner in 0..corners.count() as u32 {
         let vertex = mesh.tets.nodes[corner as usize / 4][corner as usize % 4] as usize;
-        let root = root(&mut corners, corner);
-        pinched[vertex] |= group[vertex] != u32::MAX && group[vertex] != root;
-        group[vertex] = root;
+        let part = corners.first(corner);
+        pinched[vertex] |= group[vertex] != u32::MAX && group[vertex] != part;
+        group[vertex] = part;
     }
     for vertex in 0..mesh.vertices.len() {
         if group[vertex] == u32::MAX {
@@ -222,20 +223,6 @@ fn corner_of(mesh: &TetMesh, side: u32, node: u32) -> u32 {
     let tet = side / 4;
     let at = mesh.tets.nodes[tet as usize].iter().position(|&v| v == node);
     4 * tet + at.unwrap_or(0) as u32
-}
-
-/// Root of a corner's group, halving the way to it.
-fn root(corners: &mut [u32], mut corner: u32) -> u32 {
-    while corners[corner as usize] != corner {
-        corners[corner as usize] = corners[corners[corner as usize] as usize];
-        corner = corners[corner as usize];
-    }
-    corner
-}
-
-fn join(corners: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(corners, a), root(corners, b));
-    corners[a.max(b) as usize] = a.min(b);
 }
 
 #[cfg(test)]

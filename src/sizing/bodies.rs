@@ -2,6 +2,7 @@
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Topology};
 use crate::mesh::TetMesh;
+use crate::mesh::parts::Parts;
 
 /// The bodies of a mesh, by the entities of its model.
 pub struct Bodies<'a> {
@@ -15,18 +16,14 @@ impl<'a> Bodies<'a> {
     pub fn new(topology: &'a Topology, mesh: &TetMesh, place: &Classification) -> Self {
         let mut of_face = vec![None; topology.faces.len()];
         if !mesh.tets.nodes.is_empty() {
-            let mut parents: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+            let mut parts = Parts::new(mesh.vertices.len());
             for &[a, b, c, d] in &mesh.tets.nodes {
-                let first = root(&mut parents, a);
-                for other in [b, c, d] {
-                    let other = root(&mut parents, other) as usize;
-                    parents[other] = first;
-                }
+                [b, c, d].into_iter().for_each(|other| parts.join(a, other));
             }
             for (nodes, &face) in mesh.triangles.nodes.iter().zip(&place.faces) {
                 let body = &mut of_face[face as usize];
                 if body.is_none() {
-                    *body = Some(root(&mut parents, nodes[0]));
+                    *body = Some(parts.first(nodes[0]));
                 }
             }
         }
@@ -50,14 +47,6 @@ impl<'a> Bodies<'a> {
         };
         face.and_then(|face| self.of_face[face as usize])
     }
-}
-
-fn root(parents: &mut [u32], mut at: u32) -> u32 {
-    while parents[at as usize] != at {
-        parents[at as usize] = parents[parents[at as usize] as usize];
-        at = parents[at as usize];
-    }
-    at
 }
 
 #[cfg(test)]
