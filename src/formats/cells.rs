@@ -9,8 +9,12 @@ fn centroid(vertices: &[Vec3], nodes: [u32; 4]) -> Vec3 {
     std::array::from_fn(|k| 0.25 * (p[0][k] + p[1][k] + p[2][k] + p[3][k]))
 }
 
+/// How often what the values at boundary vertices leave of those of the cells is added to them.
+const PASSES: usize = 2;
+
 /// Values at the vertices, shape (vertices, width): the mean of those of the cells at each, shape (tetrahedra, width), weighted by the
-/// inverse of the distance to their centroids. Zero at a vertex without a tetrahedron. The same to the bit on any number of threads.
+/// inverse of the distance to their centroids; at the boundary, where all cells lie on one side, carried on to the vertex. Never beyond the
+/// values of the cells at the vertex. Zero at a vertex without a tetrahedron. The same to the bit on any number of threads.
 ///
 /// Weights that keep linear functions (Holmes & Connell, AIAA 89-1932) smooth less, and a solver's values have noise from cell to cell, which the
 /// metric takes for curvature: with them the shock of cases/ramp (`--short`) was 1.3 times as thick, and the lift of
@@ -18,22 +22,82 @@ fn centroid(vertices: &[Vec3], nodes: [u32; 4]) -> Vec3 {
 pub fn cells_to_vertices(team: Team<'_>, mesh: &TetMesh, values: &[f64], width: usize) -> Vec<f64> {
     let (vertices, tets) = (&mesh.vertices, &mesh.tets.nodes);
     let at = Buckets::of::<4>(team, vertices.len(), tets.len(), |t| tets[t]);
-    team.collect(GRAIN, vertices.len(), |range, found| {
+    let cells = Cells { mesh, at: &at, values, width };
+    let mut found = team.collect(GRAIN, vertices.len(), |range, found| {
         let mut sum = vec![0.0; width];
         for vertex in range {
-            sum.fill(0.0);
-            let mut total = 0.0;
-            for entry in at.of_key(vertex) {
-                let tet = entry as usize / 4;
-                let far = distance(vertices[vertex], centroid(vertices, tets[tet]));
-                // A tetrahedron of no extent counts as much as all others together could.
-                let weight = 1.0 / far.max(f64::MIN_POSITIVE.sqrt());
-                total += weight;
-                sum.iter_mut().zip(&values[tet * width..]).for_each(|(sum, value)| *sum += weight * value);
-            }
-            found.extend(sum.iter().map(|&sum| if total > 0.0 { sum / total } else { 0.0 }));
+            cells.mean(vertex, &mut sum, |value, _, _| value);
+            found.extend_from_slice(&sum);
         }
-    })
+    });
+    carry_to_boundary(team, &cells, &mut found);
+    found
+}
+
+/// Values of cells, those at a vertex in buckets.
+struct Cells<'a> {
+    mesh: &'a TetMesh,
+    at: &'a Buckets,
+    values: &'a [f64],
+    width: usize,
+}
+
+impl Cells<'_> {
+    /// The cells at a vertex.
+    fn around(&self, vertex: usize) -> impl Iterator<Item = usize> {
+        self.at.of_key(vertex).map(|entry| entry as usize / 4)
+    }
+
+    /// The weighted mean over the cells at a vertex of what `of` makes of (value, cell, component); zero without cells.
+    fn mean(&self, vertex: usize, sum: &mut [f64], of: impl Fn(f64, usize, usize) -> f64) {
+        sum.fill(0.0);
+        let mut total = 0.0;
+        for tet in self.around(vertex) {
+            let far = distance(self.mesh.vertices[vertex], centroid(&self.mesh.vertices, self.mesh.tets.nodes[tet]));
+            // A tetrahedron of no extent counts as much as all others together could.
+            let weight = 1.0 / far.max(f64::MIN_POSITIVE.sqrt());
+            total += weight;
+            for (k, (sum, &value)) in sum.iter_mut().zip(&self.values[tet * self.width..]).enumerate() {
+                *sum += weight * of(value, tet, k);
+            }
+        }
+        if total > 0.0 {
+            sum.iter_mut().for_each(|sum| *sum /= total);
+        }
+    }
+}
+
+/// Adds to the values at the vertices of boundary triangles the mean of what they leave of the cells there: value of the cell less the mean of
+/// those at its vertices. That carries them along the gradient from the cells' centroids, which lie to one side, to the wall: on the nose of
+/// the ONERA M6 wing pressure rises away from the wall, and without it 85 % of cases/onera-m6-flow's points lay within 0.1 of the measured ones,
+/// with it 92 to 100 %.
+fn carry_to_boundary(team: Team<'_>, cells: &Cells<'_>, values: &mut [f64]) {
+    let (width, tets) = (cells.width, &cells.mesh.tets.nodes);
+    let mut boundary: Vec<u32> = cells.mesh.triangles.nodes.iter().flatten().copied().collect();
+    boundary.sort_unstable();
+    boundary.dedup();
+    for _ in 0..PASSES {
+        let before = &*values;
+        let carried = team.collect(GRAIN, boundary.len(), |range, found| {
+            let mut sum = vec![0.0; width];
+            for &vertex in &boundary[range] {
+                let vertex = vertex as usize;
+                cells.mean(vertex, &mut sum, |value, tet, k| {
+                    value - 0.25 * tets[tet].iter().map(|&v| before[v as usize * width + k]).sum::<f64>()
+                });
+                for (k, &left) in sum.iter().enumerate() {
+                    let ends = cells.around(vertex).map(|tet| cells.values[tet * width + k]);
+                    let (low, high) =
+                        ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+                    let value = before[vertex * width + k];
+                    found.push(if low <= high { (value + left).max(low).min(high) } else { value });
+                }
+            }
+        });
+        for (&vertex, row) in boundary.iter().zip(carried.chunks(width.max(1))) {
+            values[vertex as usize * width..][..width].copy_from_slice(row);
+        }
+    }
 }
 
 /// Values of the cells, shape (tetrahedra, width): the mean of those at the vertices of each, shape (vertices, width), which is the
@@ -68,6 +132,18 @@ mod tests {
             // Where there are cells all around it is the function's, to within the mesh's lack of symmetry.
             let inside = p.iter().all(|&x| x > 0.0 && x < 1.0);
             assert!(!inside || (value[0] - (1.0 + p[0] - 2.0 * p[2])).abs() < 0.05, "{p:?}: {}", value[0]);
+        }
+    }
+
+    #[test]
+    fn values_are_carried_on_to_walls() {
+        // The cells at a face of the cube, 1/6 thick, have the values 1/24 and 3/24 of x there; their means alone come to a tenth.
+        let mesh = cube(6);
+        let cells: Vec<f64> = mesh.tets.nodes.iter().map(|&nodes| centroid(&mesh.vertices, nodes)[0]).collect();
+        let found = cells_to_vertices(Team::alone(), &mesh, &cells, 1);
+        for (p, value) in mesh.vertices.iter().zip(found) {
+            assert!(p[0] != 0.0 || (1.0 / 24.0 - 1e-15..1.1 / 24.0).contains(&value), "{p:?}: {value}");
+            assert!(p[0] != 1.0 || (22.9 / 24.0..23.0 / 24.0 + 1e-15).contains(&value), "{p:?}: {value}");
         }
     }
 
