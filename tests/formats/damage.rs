@@ -87,6 +87,14 @@ const TELLING: &[&[u8]] = &[
     b"</DataArray>",
     b"<Piece ",
     b"offset=\"",
+    b"nonuniform",
+    b"List<scalar>",
+    b"nFaces",
+    b"format",
+    b"(",
+    b"}",
+    b";",
+    b"/*",
     b"\xc3",
 ];
 
@@ -251,6 +259,43 @@ fn no_bytes_make_fields_panic() {
             Ok(_) => Some(data),
             Err(error) => {
                 assert!(error.to_string().starts_with(&format!("{}: ", path.display())), "{error}");
+                None
+            }
+        }
+    });
+}
+
+/// Each file of a case of OpenFOAM, the others whole beside it.
+#[test]
+fn no_bytes_make_openfoam_panic() {
+    let place = Place::new();
+    let mut files = Vec::new();
+    for text in [true, false] {
+        let case = if text { "text" } else { "binary" };
+        place.write(&format!("{case}/"), &dataset(), text);
+        for folder in ["constant/polyMesh", "0"] {
+            for file in std::fs::read_dir(place.path(case).join(folder)).unwrap() {
+                let path = file.unwrap().path();
+                let name = path.strip_prefix(place.path("")).unwrap().to_str().unwrap().to_owned();
+                files.push((name, std::fs::read(path).unwrap()));
+            }
+        }
+    }
+    // Points, faces, owner, neighbour, boundary, zones and four fields.
+    assert_eq!(files.len(), 20);
+    files.sort();
+    let whole = files.clone();
+    survive(files, |name, bytes| {
+        let case = place.path(name.iter().next().unwrap().to_str().unwrap());
+        std::fs::write(place.path(name.to_str().unwrap()), bytes).unwrap();
+        let read = formats::read(&case);
+        let (_, valid) = whole.iter().find(|(file, _)| Path::new(file) == name).unwrap();
+        std::fs::write(place.path(name.to_str().unwrap()), valid).unwrap();
+        match read {
+            Ok(read) => Some(read.content),
+            Err(error) => {
+                let text = error.to_string();
+                assert!(text.starts_with(&*case.to_string_lossy()) && text.len() < 600, "{text}");
                 None
             }
         }
