@@ -1,5 +1,5 @@
 //! gmsh's files: those that it writes are read, ours it reads.
-use crate::sample::{Place, dataset, is_mean_of_both, read, refusal};
+use crate::sample::{Place, dataset, is_of_both, read, refusal};
 use geo_adapt::formats::{self, Dataset};
 use geo_adapt::mesh::io::FieldKind;
 use geo_adapt::mesh::{Elements, TetMesh, validity};
@@ -170,7 +170,7 @@ fn data_at_elements_and_odd_numbers_are_read() {
     let found = read.content;
     let fields: Vec<_> = found.fields.iter().map(|field| (field.name.as_str(), field.kind)).collect();
     assert_eq!(fields, [("q", FieldKind::Scalar), ("v v", FieldKind::Vector)]);
-    assert!(is_mean_of_both(&found.fields[0].values), "{:?}", found.fields[0]);
+    assert!(is_of_both(&found.fields[0].values, false), "{:?}", found.fields[0]);
     assert_eq!(found.fields[1].values[..6], [7.0, 8.0, 9.0, 1.0, 2.0, 3.0]);
     assert_eq!(found.mesh.tets.nodes, [[0, 1, 2, 3], [0, 2, 1, 4]]);
     assert_eq!(found.names.tetrahedra[&1].name.as_deref(), Some("group 5"));

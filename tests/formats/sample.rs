@@ -124,8 +124,18 @@ pub fn by_distance([(a, far_a), (b, far_b)]: [(f64, f64); 2]) -> f64 {
     (a * from_a + b * from_b) / (from_a + from_b)
 }
 
-/// Whether these are the values at the vertices (0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, -2) of two cells with 1 above and 4 below.
-pub fn is_mean_of_both(values: &[f64]) -> bool {
-    let (corner, side) = (by_distance([(1.0, 0.1875), (4.0, 0.375)]), by_distance([(1.0, 0.6875), (4.0, 0.875)]));
-    values.len() == 5 && values.iter().zip([corner, side, side, 1.0, 4.0]).all(|(a, b)| (a - b).abs() < 1e-14)
+/// Whether these are the values at the vertices (0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, -2) of two cells with 1 above and 4 below;
+/// `carried`: with a boundary triangle between them, to whose vertices the values of the cells are carried on.
+pub fn is_of_both(values: &[f64], carried: bool) -> bool {
+    let corner = |above, below| by_distance([(above, 0.1875), (below, 0.375)]);
+    let side = |above, below| by_distance([(above, 0.6875), (below, 0.875)]);
+    let mut at = [corner(1.0, 4.0), side(1.0, 4.0), side(1.0, 4.0), 1.0, 4.0];
+    for _ in 0..if carried { 2 } else { 0 } {
+        let base = at[0] + at[1] + at[2];
+        let left = [1.0 - 0.25 * (base + at[3]), 4.0 - 0.25 * (base + at[4])];
+        at[0] += corner(left[0], left[1]);
+        at[1] += side(left[0], left[1]);
+        at[2] = at[1];
+    }
+    values.len() == 5 && values.iter().zip(at).all(|(a, b)| (a - b).abs() < 1e-14)
 }

@@ -1,5 +1,5 @@
 //! VTK's files in all the ways that data can be stored.
-use crate::sample::{Place, is_mean_of_both, labels, read, refusal};
+use crate::sample::{Place, is_of_both, labels, read, refusal};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::write::ZlibEncoder;
@@ -162,7 +162,7 @@ fn data_is_read_however_it_is_stored() {
             // XX YY ZZ XY YZ XZ is what VTK has.
             assert_eq!(data.fields[1].values[..6], [0.0, 3.0, 1.0, 5.0, 4.0, 2.0]);
             assert_eq!(data.fields[2].values[..6], [0.0, 1.0, 0.0, 2.0, 3.0, 0.0]);
-            assert!(is_mean_of_both(&data.fields[3].values), "{:?}", data.fields[3]);
+            assert!(is_of_both(&data.fields[3].values, true), "{:?}", data.fields[3]);
         }
     }
 }
