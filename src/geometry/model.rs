@@ -194,6 +194,12 @@ impl Evaluate for Evaluator<'_> {
     fn closest_on_face(&mut self, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> OnSurface {
         forward!(self, closest_on_face(face, point, guess))
     }
+    fn closest_on_face_within(&mut self, face: u32, point: Vec3, limit: f64) -> Option<OnSurface> {
+        forward!(self, closest_on_face_within(face, point, limit))
+    }
+    fn closest_on_edge_within(&mut self, edge: u32, point: Vec3, limit: f64) -> Option<OnCurve> {
+        forward!(self, closest_on_edge_within(edge, point, limit))
+    }
 
     fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
         forward!(self, closest_on_surface(face, point, guess))

@@ -10,7 +10,7 @@ use super::curvature::{Local, cut};
 use super::pieces::pieces;
 use super::sight::Sight;
 use super::touch::Touch;
-use super::tree::{Box3, Tree};
+use super::tree::{Box3, Tree, meet};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
@@ -153,7 +153,7 @@ impl<'a> Near<'a> {
                 let own = pieces[begin..].iter().take_while(|piece| piece.0 == to);
                 let bound = Bound::new(at, local, metric, self.cells);
                 let found = if own.clone().any(|piece| bound.may_limit(&self.boxes[piece.1 as usize])) {
-                    self.closest(evaluator, at, to)
+                    self.closest(evaluator, at, to, reach.min(bound.reach()))
                 } else {
                     None
                 };
@@ -199,11 +199,16 @@ impl<'a> Near<'a> {
         let bound = Bound::new(at, local, metric, self.cells);
         pieces.clear();
         others.clear();
-        self.pieces.each_in(&[at.point.map(|x| x - reach), at.point.map(|x| x + reach)], |piece| {
-            let (owner, piece_box) = (self.owners[piece as usize], &self.boxes[piece as usize]);
-            // From inside a face edges are not asked: the faces beside them are.
-            let is_asked = owner.dimension() == 2 || at.entity.dimension() < 2;
-            if is_asked && bound.may_limit(piece_box) && may_face(at, local, piece_box, owner) {
+        let about = [at.point.map(|x| x - reach), at.point.map(|x| x + reach)];
+        // From inside a face edges are not asked: the faces beside them are.
+        let faces_only = at.entity.dimension() == 2;
+        let admits = |part: &Box3| meet(part, &about) && bound.may_limit(part) && may_face(at, local, part, faces_only);
+        self.pieces.each_where(admits, |piece| {
+            let owner = self.owners[piece as usize];
+            let is_face = owner.dimension() == 2;
+            if is_face && (faces_only || may_face(at, local, &self.boxes[piece as usize], true))
+                || !is_face && !faces_only
+            {
                 pieces.push((owner, piece));
             }
             true
@@ -225,15 +230,16 @@ impl<'a> Near<'a> {
         }
     }
 
-    /// The closest point of another entity, and the normal there of a face.
-    fn closest(&self, evaluator: &mut Evaluator, at: &Place, to: Entity) -> Option<Found> {
+    /// The closest point of another entity within the limit, and the normal there of a face.
+    fn closest(&self, evaluator: &mut Evaluator, at: &Place, to: Entity, limit: f64) -> Option<Found> {
         match to {
             Entity::Face(face) => {
-                let on = evaluator.closest_on_face(face, at.point, None);
+                let on = evaluator.closest_on_face_within(face, at.point, limit)?;
                 Some(Found { there: on.point, normal: Some(evaluator.face_normal(face, on.uv)) })
             }
             Entity::Edge(edge) => {
-                Some(Found { there: evaluator.closest_on_edge(edge, at.point, None).point, normal: None })
+                let on = evaluator.closest_on_edge_within(edge, at.point, limit)?;
+                Some(Found { there: on.point, normal: None })
             }
             _ => None,
         }

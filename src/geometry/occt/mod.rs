@@ -23,7 +23,7 @@ use bridge::ffi;
 use copy::PCurve;
 use curve::Curve;
 pub use evaluator::OcctEvaluator;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 use surface::Surface;
 use tree::Tree;
 use trim::Trim;
@@ -55,6 +55,9 @@ pub struct OcctModel {
     trims: Vec<OnceLock<Trim>>,
     /// Whether a face has edges whose chords may leave it.
     rounded: Vec<bool>,
+    /// Evaluators that no thread has in hand: their classifiers are dear to make (40 µs a face), and what they answer does not depend on
+    /// what they were asked before.
+    idle: Mutex<Vec<cxx::UniquePtr<ffi::Evaluator>>>,
     /// The greater of the box's diagonal and the largest coordinate: what rounding is measured by.
     size: f64,
 }

@@ -6,12 +6,14 @@ use super::newton::{self, SurfacePoint};
 use super::pieces::{Jets, Source, cuts};
 use super::range::{is_whole, longest, place};
 use super::tree::{Node, Tree};
-use super::trim;
+use super::trim::{self, Trim};
 use crate::geometry::{Evaluate, OnCurve, OnSurface};
 use crate::mesh::vector::{Vec3, distance};
 
 /// What counts as closer, relative: less is rounding.
 const CLOSER: f64 = 1.0 - 1e-12;
+/// What counts as the same parameters, as a share of the longest step.
+const SAME: f64 = 1e-9;
 
 /// Closest point of an edge, ends included.
 pub fn on_edge(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f64>) -> OnCurve {
@@ -24,7 +26,13 @@ pub fn on_edge(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f64
 }
 
 /// The same, if it is closer than `limit`.
-fn on_edge_within(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f64>, limit: f64) -> Option<OnCurve> {
+pub fn on_edge_within(
+    on: &mut OcctEvaluator,
+    edge: u32,
+    point: Vec3,
+    guess: Option<f64>,
+    limit: f64,
+) -> Option<OnCurve> {
     let model = on.model;
     let entity = &model.topology.edges[edge as usize];
     if let Some(here) = on.degenerate_point(edge) {
@@ -128,19 +136,35 @@ pub fn on_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: [f64; 2
 /// Closest point of the trimmed face.
 pub fn on_face(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> OnSurface {
     let guess = guess.filter(|uv| uv[0].is_finite() && uv[1].is_finite());
-    let middle = on.model.topology.faces[face as usize].range.map(|[low, high]| 0.5 * (low + high));
+    let middle = middle(on, face);
     if !point.iter().all(|x| x.is_finite()) {
         let (uv, _) = on.placed(face, guess.unwrap_or(middle));
         return OnSurface { distance: f64::NAN, ..at(on, face, uv, point) };
     }
-    if let Some(feet) = on.model.surfaces[face as usize].form.feet(point, guess.unwrap_or(middle)) {
-        return analytic_face(on, face, point, feet.as_slice());
-    }
-    let found = search_surface(on, face, point, guess);
-    found.unwrap_or_else(|| {
+    on_face_within(on, face, point, guess, f64::INFINITY).unwrap_or_else(|| {
         let (uv, _) = on.placed(face, guess.unwrap_or(middle));
         at(on, face, uv, point)
     })
+}
+
+/// The same, if it is closer than `limit`: the surface, trimmed or not, tells in most cases that nothing is.
+pub fn on_face_within(
+    on: &mut OcctEvaluator,
+    face: u32,
+    point: Vec3,
+    guess: Option<[f64; 2]>,
+    limit: f64,
+) -> Option<OnSurface> {
+    let found = match on.model.surfaces[face as usize].form.feet(point, guess.unwrap_or_else(|| middle(on, face))) {
+        Some(feet) => analytic_face(on, face, point, feet.as_slice(), limit),
+        None => search_surface(on, face, point, guess, limit),
+    };
+    found.filter(|found| found.distance < limit)
+}
+
+/// The middle of a face's parameters.
+fn middle(on: &OcctEvaluator, face: u32) -> [f64; 2] {
+    on.model.topology.faces[face as usize].range.map(|[low, high]| 0.5 * (low + high))
 }
 
 /// S at parameters, with its distance.
@@ -176,14 +200,22 @@ fn is_within(on: &mut OcctEvaluator, face: u32, uv: [f64; 2]) -> bool {
 
 /// Whether the parameters, which lie in the face's range, lie in the trimmed face.
 fn inside(on: &mut OcctEvaluator, face: u32, uv: [f64; 2]) -> bool {
+    let trim = trim_of(on, face);
+    trim.known(&on.model.topology.faces[face as usize], uv).unwrap_or_else(|| on.inside_by_occt(face, uv))
+}
+
+/// The trimming of a face, made when first asked for.
+fn trim_of<'a>(on: &mut OcctEvaluator<'a>, face: u32) -> &'a Trim {
     let model = on.model;
-    let trim = model.trims[face as usize].get_or_init(|| trim::build(on, face));
-    trim.known(&model.topology.faces[face as usize], uv).unwrap_or_else(|| on.inside_by_occt(face, uv))
+    model.trims[face as usize].get_or_init(|| trim::build(on, face))
 }
 
 /// The closest point of a trimmed analytic face is one of the feet, or on its edges. When it is the surface's closest
-/// point there is nothing else to ask.
-fn analytic_face(on: &mut OcctEvaluator, face: u32, point: Vec3, feet: &[[f64; 2]]) -> OnSurface {
+/// point there is nothing else to ask, nor where that is beyond the limit.
+fn analytic_face(on: &mut OcctEvaluator, face: u32, point: Vec3, feet: &[[f64; 2]], limit: f64) -> Option<OnSurface> {
+    if limit < f64::INFINITY && distance(on.surface_point(face, feet[0]), point) >= limit {
+        return None;
+    }
     let mut best: Option<OnSurface> = None;
     for (i, &foot) in feet.iter().enumerate() {
         let (uv, in_range) = on.placed(face, foot);
@@ -192,27 +224,49 @@ fn analytic_face(on: &mut OcctEvaluator, face: u32, point: Vec3, feet: &[[f64; 2
         }
         let found = at(on, face, uv, point);
         if i == 0 {
-            return found;
+            return Some(found);
         }
         if best.is_none_or(|best| found.distance < best.distance) {
             best = Some(found);
         }
     }
-    let limit = best.map_or(f64::INFINITY, |best| best.distance);
-    let on_boundary = on_edges(on, face, point, limit);
+    let within = best.map_or(limit, |best| best.distance.min(limit));
+    let found = on_edges(on, face, point, within).or(best);
+    if found.is_some() || limit < f64::INFINITY {
+        return found;
+    }
     let (uv, _) = on.placed(face, feet[0]);
-    on_boundary.or(best).unwrap_or_else(|| at(on, face, uv, point))
+    Some(at(on, face, uv, point))
 }
 
-/// The closest point on the face's edges, as a point of its surface, if it is closer than `limit`.
+/// The closest point on the face's edges, as a point of its surface, if it is closer than `limit`. Those with a closed form are asked first,
+/// then the one whose box is the nearest: that rules most others out.
 fn on_edges(on: &mut OcctEvaluator, face: u32, point: Vec3, limit: f64) -> Option<OnSurface> {
     let model = on.model;
     let mut best: Option<(u32, OnCurve)> = None;
-    for &edge in &model.topology.faces[face as usize].edges {
+    let mut ask = |on: &mut OcctEvaluator, edge: u32| {
         let limit = best.map_or(limit, |(_, best)| best.distance);
         if let Some(found) = on_edge_within(on, edge, point, None, limit) {
             best = Some((edge, found));
         }
+    };
+    let edges = &model.topology.faces[face as usize].edges;
+    let has_form =
+        |edge: u32| model.topology.edges[edge as usize].degenerate || model.curves[edge as usize].form.has_foot();
+    let mut nearest = (f64::INFINITY, None);
+    for &edge in edges {
+        if has_form(edge) {
+            ask(on, edge);
+        } else {
+            let least = edge_tree(on, edge).least_distance(point);
+            if least < nearest.0 {
+                nearest = (least, Some(edge));
+            }
+        }
+    }
+    if let Some(first) = nearest.1 {
+        ask(on, first);
+        edges.iter().filter(|&&edge| edge != first && !has_form(edge)).for_each(|&edge| ask(on, edge));
     }
     let (edge, found) = best?;
     let uv = on.edge_on_face(edge, found.t, face)?;
@@ -223,6 +277,10 @@ fn on_edges(on: &mut OcctEvaluator, face: u32, point: Vec3, limit: f64) -> Optio
 fn face_tree<'a>(on: &mut OcctEvaluator<'a>, face: u32) -> &'a Tree {
     let model = on.model;
     let (shape, entity) = (&model.surfaces[face as usize], &model.topology.faces[face as usize]);
+    if let Some(tree) = shape.tree.get() {
+        return tree;
+    }
+    let trim = trim_of(on, face);
     shape.tree.get_or_init(|| {
         let cuts = [0, 1].map(|k: usize| {
             let spans = (shape.spans[k] as usize).max(2);
@@ -232,25 +290,35 @@ fn face_tree<'a>(on: &mut OcctEvaluator<'a>, face: u32) -> &'a Tree {
         let hull =
             &mut |jet: &mut Jets, piece: [[f64; 2]; 2], out: &mut _| hull::of_surface(&shape.form, jet, piece, out);
         Tree::new(&mut Source { jet: &mut jet, hull }, cuts, entity.period)
+            .trimmed(|bounds| trim.leaves_out(entity, bounds))
     })
 }
 
 /// The search on a surface without a closed form. A foot that the descent from the guess (or the nearest piece) reaches
 /// inside the face is the answer when no other piece holds a closer point, inside or not; else the edges and those
-/// pieces decide.
-fn search_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> Option<OnSurface> {
+/// pieces decide. What is found may be beyond the limit, then it is not the closest.
+fn search_surface(
+    on: &mut OcctEvaluator,
+    face: u32,
+    point: Vec3,
+    guess: Option<[f64; 2]>,
+    limit: f64,
+) -> Option<OnSurface> {
     let tree = face_tree(on, face);
     let size = on.model.size;
-    let start = guess.or_else(|| tree.nearest(point, f64::INFINITY).map(Node::middle))?;
+    let start = guess.or_else(|| tree.nearest(point, limit).map(Node::middle))?;
     let (start, _) = on.placed(face, start);
     let first = descend_inside(on, face, point, start);
     let mut best = first;
     let mut edges_asked = first.is_none();
     if edges_asked {
-        best = on_edges(on, face, point, f64::INFINITY);
+        best = on_edges(on, face, point, limit);
     }
     let periods = on.model.topology.faces[face as usize].period;
-    let far = |best: Option<OnSurface>| best.map_or(f64::INFINITY, |best| best.distance);
+    let far = |best: Option<OnSurface>| best.map_or(limit, |best| best.distance.min(limit));
+    // Descents from several starts in a piece end at the same point: OCCT is asked once.
+    let mut refused = [f64::NAN; 2];
+    let same = longest(on.model.topology.faces[face as usize].range).map(|side| SAME * side);
     tree.visit(point, far(best), |leaf, limit| {
         if first.is_some_and(|first| leaf.is_covered(first.uv, periods, first.distance)) {
             return limit;
@@ -265,9 +333,15 @@ fn search_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<
                 if found.distance.is_nan() || found.distance >= far(best) * CLOSER {
                     continue;
                 }
+                if (0..2).all(|k| (found.uv[k] - refused[k]).abs() <= same[k]) {
+                    continue;
+                }
                 if inside(on, face, on.placed(face, found.uv).0) {
                     best = Some(polished(on, face, point, &found));
-                } else if !edges_asked {
+                    continue;
+                }
+                refused = found.uv;
+                if !edges_asked {
                     edges_asked = true;
                     best = on_edges(on, face, point, far(best)).or(best);
                 }
