@@ -66,6 +66,8 @@ public:
   double face_area(std::uint32_t face) const;
   double edge_length(std::uint32_t edge) const;
   void write_brep(rust::Str path) const;
+  /// Writes all that it is made of in binary form, for `load_saved` of this same program.
+  void save(rust::Str path) const;
   /// Triangles of the faces as MSH 2.2, joined along the edges; within a distance and an angle of the surface.
   void write_tessellation(rust::Str path, double deflection, double angle) const;
   rust::Vec<std::uint32_t> solid_faces(std::uint32_t solid) const;
@@ -114,6 +116,8 @@ private:
 
 /// Reads a file: format 0 is STEP, 1 IGES, 2 BREP. Not to be called by two threads at once.
 std::shared_ptr<Model> load_model(rust::Str path, std::uint32_t format);
+/// What `Model::save` has written. Not to be called by two threads at once.
+std::shared_ptr<Model> load_saved(rust::Str path);
 std::unique_ptr<Evaluator> new_evaluator(const std::shared_ptr<Model>& model);
 
 } // namespace geo_adapt

@@ -4,7 +4,7 @@ use super::feature::{ACROSS, ALONG, Place};
 use super::tree::Box3;
 use crate::geometry::Entity;
 use crate::mesh::vector::{Vec3, distance, dot, lerp, norm, scale, sub};
-use crate::metric::Sym3;
+use crate::metric::{Eigen, Sym3};
 
 /// How far a box is.
 pub fn away(point: Vec3, piece: &Box3) -> f64 {
@@ -15,7 +15,8 @@ pub fn away(point: Vec3, piece: &Box3) -> f64 {
 pub struct Bound<'a> {
     at: &'a Place,
     local: &'a Local,
-    metric: Sym3,
+    /// M⁻¹.
+    inverse: Sym3,
     cells: f64,
     /// Greatest size.
     greatest: f64,
@@ -24,7 +25,9 @@ pub struct Bound<'a> {
 impl<'a> Bound<'a> {
     /// At a place, for its metric so far.
     pub fn new(at: &'a Place, local: &'a Local, metric: Sym3, cells: f64) -> Self {
-        Self { at, local, metric, cells, greatest: metric.eigen().values[0].sqrt().recip() }
+        let eigen = metric.eigen_spd();
+        let inverse = Sym3::from_eigen(&Eigen { values: eigen.values.map(|value| 1.0 / value), ..eigen });
+        Self { at, local, inverse, cells, greatest: eigen.values[0].sqrt().recip() }
     }
 
     /// How long a gap that limits it may be: on an edge it leans along that by 45° at most.
@@ -38,7 +41,7 @@ impl<'a> Bound<'a> {
         let middle = across(sub(lerp(piece[0], piece[1], 0.5), self.at.point), self.at, self.local);
         let radius = 0.5 * distance(piece[0], piece[1]);
         let least = (norm(middle) - radius).max(0.0);
-        let most = dot(middle, self.metric.solve(middle)).sqrt() + radius * self.greatest;
+        let most = self.inverse.quadratic(middle).sqrt() + radius * self.greatest;
         least * least < self.cells * most * (1.0 + SLACK)
     }
 }

@@ -146,6 +146,22 @@ impl OcctModel {
         load::write_triangles(&self.occt, path, deflection, angle)
     }
 
+    /// Writes the model in binary form with its names, for [`Self::read_saved`] in another process of this program.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when the file cannot be written.
+    pub fn save(&self, path: &std::path::Path) -> Result<(), Error> {
+        load::save(&self.occt, path)
+    }
+
+    /// Reads what [`Self::save`] has written: the same entities in the same order.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when the file cannot be read.
+    pub fn read_saved(path: &std::path::Path) -> Result<Self, Error> {
+        load::read_saved(path)
+    }
+
     /// Writes the model as OpenCASCADE's BREP text, for another program: faces, edges and vertices in our order.
     ///
     /// # Errors
