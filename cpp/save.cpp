@@ -10,8 +10,10 @@
 #include <TopoDS_Iterator.hxx>
 
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace geo_adapt {
 namespace {
@@ -49,7 +51,14 @@ void Model::save(rust::Str path) const
       }
     }
   }
-  out << "-1\n";
+  std::vector<Box> known;
+  for (const auto& one : boxes) {
+    if (one) {
+      known.push_back(*one);
+    }
+  }
+  out << "-1 " << known.size() << '\n';
+  out.write(reinterpret_cast<const char*>(known.data()), static_cast<std::streamsize>(known.size() * sizeof(Box)));
   TopoDS_Compound both;
   const BRep_Builder builder;
   builder.MakeCompound(both);
@@ -82,7 +91,14 @@ std::shared_ptr<Model> load_saved(rust::Str path)
       }
     }
   }
+  std::size_t count = 0;
+  in >> count;
   in.get();
+  if (!in) {
+    throw std::runtime_error("the saved model cannot be read");
+  }
+  std::vector<Model::Box> boxes(count);
+  in.read(reinterpret_cast<char*>(boxes.data()), static_cast<std::streamsize>(boxes.size() * sizeof(Model::Box)));
   TopoDS_Shape both;
   BinTools::Read(both, in);
   if (!in || both.IsNull() || both.NbChildren() != 2) {
@@ -101,7 +117,7 @@ std::shared_ptr<Model> load_saved(rust::Str path)
       }
     }
   }
-  return std::make_shared<Model>(apart, labels, part.Value());
+  return std::make_shared<Model>(apart, labels, part.Value(), std::move(boxes));
 }
 
 } // namespace geo_adapt

@@ -3,7 +3,7 @@ use super::OcctModel;
 use super::bridge::ffi;
 use super::range::{self, bring_near, place};
 use super::surface::{Jet, Surface};
-use super::{newton, project};
+use super::{newton, project, project_edges};
 use crate::geometry::{CurveFrame, Evaluate, OnCurve, OnSurface, SurfaceFrame};
 use crate::mesh::vector::{Vec3, cross, distance, dot, norm, scale, unit};
 use cxx::UniquePtr;
@@ -277,7 +277,7 @@ impl Evaluate for OcctEvaluator<'_> {
     }
 
     fn closest_on_edge(&mut self, edge: u32, point: Vec3, guess: Option<f64>) -> OnCurve {
-        project::on_edge(self, edge, point, guess)
+        project_edges::on_edge(self, edge, point, guess)
     }
 
     fn closest_on_face(&mut self, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> OnSurface {
@@ -289,7 +289,7 @@ impl Evaluate for OcctEvaluator<'_> {
     }
 
     fn closest_on_edge_within(&mut self, edge: u32, point: Vec3, limit: f64) -> Option<OnCurve> {
-        project::on_edge_within(self, edge, point, None, limit)
+        project_edges::on_edge_within(self, edge, point, None, limit)
     }
 
     fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {

@@ -11,6 +11,7 @@ mod load;
 mod newton;
 mod pieces;
 mod project;
+mod project_edges;
 mod range;
 mod spline;
 mod surface;
