@@ -39,7 +39,7 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 11] = [
+    const SOURCES: [&str; 12] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
         "cpp/connect.cpp",
@@ -51,6 +51,7 @@ mod occt {
         "cpp/splines.cpp",
         "cpp/tessellate.cpp",
         "cpp/write.cpp",
+        "cpp/save.cpp",
     ];
 
     /// Toolkits that the bridge calls, callers first.

@@ -57,13 +57,16 @@ bool has_exact_box(const TopoDS_Edge& edge, const TopoDS_Face& face)
 
 } // namespace
 
-Model::Model(const TopoDS_Shape& loaded, const Labels& given, const TopoDS_Shape& whole)
-  : shape(loaded), joined(whole.IsNull() ? loaded : whole), labels(given)
+Model::Model(const TopoDS_Shape& loaded, const Labels& given, const TopoDS_Shape& whole, std::vector<Box> known)
+  : shape(loaded), joined(whole.IsNull() ? loaded : whole), labels(given), boxes(known.begin(), known.end())
 {
   TopExp::MapShapes(shape, TopAbs_SOLID, solids);
   TopExp::MapShapes(shape, TopAbs_FACE, faces);
   TopExp::MapShapes(shape, TopAbs_EDGE, edges);
   TopExp::MapShapes(shape, TopAbs_VERTEX, vertices);
+  if (boxes.size() != face_count() + 1) {
+    boxes.assign(face_count() + 1, std::nullopt);
+  }
 }
 
 TopoDS_Face Model::face(std::uint32_t index) const
@@ -104,7 +107,11 @@ FaceRecord Model::face_record(std::uint32_t index) const
                     surface.LastVParameter()};
   record.period = {surface.IsUPeriodic() ? surface.UPeriod() : 0.0, surface.IsVPeriodic() ? surface.VPeriod() : 0.0};
   record.tolerance = BRep_Tool::Tolerance(here);
-  record.bounds = box(here);
+  auto& known = boxes.at(index);
+  if (!known) {
+    known = box(here);
+  }
+  record.bounds = *known;
   for (TopExp_Explorer it(here, TopAbs_EDGE); it.More(); it.Next()) {
     const TopoDS_Edge edge = TopoDS::Edge(it.Current());
     record.edges.push_back(static_cast<std::uint32_t>(edges.FindIndex(edge) - 1));
@@ -136,6 +143,14 @@ EdgeRecord Model::edge_record(std::uint32_t index) const
   return record;
 }
 
+Model::Box Model::bounds() const
+{
+  if (!boxes.back()) {
+    boxes.back() = box(shape);
+  }
+  return *boxes.back();
+}
+
 VertexRecord Model::vertex_record(std::uint32_t index) const
 {
   const TopoDS_Vertex here = TopoDS::Vertex(vertices(static_cast<int>(index) + 1));
@@ -143,11 +158,6 @@ VertexRecord Model::vertex_record(std::uint32_t index) const
   record.point = coordinates(BRep_Tool::Pnt(here));
   record.tolerance = BRep_Tool::Tolerance(here);
   return record;
-}
-
-std::array<double, 6> Model::bounds() const
-{
-  return box(shape);
 }
 
 double Model::face_area(std::uint32_t index) const

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -52,7 +53,11 @@ struct DomainRecord;
 class Model
 {
 public:
-  explicit Model(const TopoDS_Shape& shape, const Labels& labels = Labels(), const TopoDS_Shape& joined = TopoDS_Shape());
+  using Box = std::array<double, 6>;
+
+  /// `boxes` are those of the faces and of all, where they are known: OpenCASCADE takes long to find them.
+  explicit Model(const TopoDS_Shape& shape, const Labels& labels = Labels(), const TopoDS_Shape& joined = TopoDS_Shape(),
+                 std::vector<Box> boxes = {});
 
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces.Extent()); }
   std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.Extent()); }
@@ -62,10 +67,12 @@ public:
   FaceRecord face_record(std::uint32_t face) const;
   EdgeRecord edge_record(std::uint32_t edge) const;
   VertexRecord vertex_record(std::uint32_t vertex) const;
-  std::array<double, 6> bounds() const;
+  Box bounds() const;
   double face_area(std::uint32_t face) const;
   double edge_length(std::uint32_t edge) const;
   void write_brep(rust::Str path) const;
+  /// Writes all that it is made of in binary form, for `load_saved` of this same program.
+  void save(rust::Str path) const;
   /// Triangles of the faces as MSH 2.2, joined along the edges; within a distance and an angle of the surface.
   void write_tessellation(rust::Str path, double deflection, double angle) const;
   rust::Vec<std::uint32_t> solid_faces(std::uint32_t solid) const;
@@ -84,6 +91,8 @@ private:
   TopoDS_Shape joined;
   TopTools_IndexedMapOfShape solids, faces, edges, vertices;
   Labels labels;
+  /// Of each face, then of all; found when the records are first read, before threads share the model.
+  mutable std::vector<std::optional<Box>> boxes;
 };
 
 /// Evaluates the shape of one model for one thread: adaptors and classifiers carry caches, so none is ever shared.
@@ -114,6 +123,8 @@ private:
 
 /// Reads a file: format 0 is STEP, 1 IGES, 2 BREP. Not to be called by two threads at once.
 std::shared_ptr<Model> load_model(rust::Str path, std::uint32_t format);
+/// What `Model::save` has written. Not to be called by two threads at once.
+std::shared_ptr<Model> load_saved(rust::Str path);
 std::unique_ptr<Evaluator> new_evaluator(const std::shared_ptr<Model>& model);
 
 } // namespace geo_adapt

@@ -184,6 +184,41 @@ fn poles_have_a_normal_and_an_apex_has_none() {
 }
 
 #[test]
+fn a_saved_model_is_the_same_when_it_is_read_again() {
+    let place = tempfile::tempdir().unwrap();
+    let saved = place.path().join("saved.bin");
+    let own = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry").join(name);
+    let cases = [own("zoo/named-assembly.step"), own("zoo/three-tori.step"), own("block-on-plate.step")];
+    let names = cases.iter().map(|path| OcctModel::read(path).unwrap().names().tetrahedra.len()).max();
+    assert!(names.unwrap() > 1, "a case with names of solids");
+    for path in cases.into_iter().chain(["mirrored-cylinder.brep", "hollow-solid.brep", "vase.brep"].map(data)) {
+        let name = path.display();
+        let model = OcctModel::read(&path).unwrap();
+        model.save(&saved).unwrap();
+        let again = OcctModel::read_saved(&saved).unwrap();
+        assert_eq!(counts(&model), counts(&again), "{name}");
+        assert_eq!(model.names(), again.names(), "{name}");
+        assert_eq!(model.topology().solids, again.topology().solids, "{name}");
+        // A location's matrix is made orthogonal again.
+        let tolerance = 1e-14 * model.topology().diagonal();
+        let (mut one, mut other) = (model.evaluator(), again.evaluator());
+        for (i, (a, b)) in model.topology().faces.iter().zip(&again.topology().faces).enumerate() {
+            assert_eq!((a.kind, &a.edges, a.reversed), (b.kind, &b.edges, b.reversed), "{name}");
+            let at = a.range.map(|[low, high]| 0.3 * low + 0.7 * high);
+            let [a, b] = [one.face_frame(i as u32, at), other.face_frame(i as u32, at)];
+            assert!(distance(a.point, b.point) <= tolerance && distance(a.normal, b.normal) < 1e-12, "{name}");
+        }
+        for (a, b) in model.topology().vertices.iter().zip(&again.topology().vertices) {
+            assert!(distance(a.point, b.point) <= tolerance && a.edges == b.edges, "{name}");
+        }
+    }
+    std::fs::write(&saved, "no model").unwrap();
+    assert!(OcctModel::read_saved(&saved).is_err());
+    let nowhere = OcctModel::read(&data("torus.brep")).unwrap().save(&place.path().join("not/there"));
+    assert!(nowhere.is_err());
+}
+
+#[test]
 fn the_listing_names_what_is_there() {
     let output = program(&[], &data("vase.brep"));
     assert_eq!(output.status.code(), Some(0));

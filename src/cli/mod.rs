@@ -20,6 +20,7 @@ mod table;
 mod transfer;
 mod tune;
 mod view;
+mod workplace;
 
 /// Adapts tetrahedral meshes to a metric, on the real CAD model.
 #[derive(Parser)]

@@ -99,6 +99,16 @@ pub trait Evaluate {
     /// Closest point of the *trimmed* face, its boundary included.
     fn closest_on_face(&mut self, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> OnSurface;
 
+    /// The same, if it is closer than `limit`: where nothing of the face can be, that is told at once.
+    fn closest_on_face_within(&mut self, face: u32, point: Vec3, limit: f64) -> Option<OnSurface> {
+        Some(self.closest_on_face(face, point, None)).filter(|on| on.distance < limit)
+    }
+
+    /// Closest point of the edge, if it is closer than `limit`.
+    fn closest_on_edge_within(&mut self, edge: u32, point: Vec3, limit: f64) -> Option<OnCurve> {
+        Some(self.closest_on_edge(edge, point, None)).filter(|on| on.distance < limit)
+    }
+
     /// Closest point on the face's surface near the guess: what the adapter uses for points inside a face. The trimming is looked at only
     /// where chords of the face's edges leave it (a plane with a round edge): a vertex in a layer thinner than the chord's rise would
     /// come to lie beside the face. Falls back to [`Evaluate::closest_on_face`] when it does not converge to a true foot point.

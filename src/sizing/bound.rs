@@ -4,7 +4,7 @@ use super::feature::{ACROSS, ALONG, Place};
 use super::tree::Box3;
 use crate::geometry::Entity;
 use crate::mesh::vector::{Vec3, distance, dot, lerp, norm, scale, sub};
-use crate::metric::Sym3;
+use crate::metric::{Eigen, Sym3};
 
 /// How far a box is.
 pub fn away(point: Vec3, piece: &Box3) -> f64 {
@@ -15,7 +15,8 @@ pub fn away(point: Vec3, piece: &Box3) -> f64 {
 pub struct Bound<'a> {
     at: &'a Place,
     local: &'a Local,
-    metric: Sym3,
+    /// M⁻¹.
+    inverse: Sym3,
     cells: f64,
     /// Greatest size.
     greatest: f64,
@@ -24,7 +25,15 @@ pub struct Bound<'a> {
 impl<'a> Bound<'a> {
     /// At a place, for its metric so far.
     pub fn new(at: &'a Place, local: &'a Local, metric: Sym3, cells: f64) -> Self {
-        Self { at, local, metric, cells, greatest: metric.eigen().values[0].sqrt().recip() }
+        let eigen = metric.eigen_spd();
+        let inverse = Sym3::from_eigen(&Eigen { values: eigen.values.map(|value| 1.0 / value), ..eigen });
+        Self { at, local, inverse, cells, greatest: eigen.values[0].sqrt().recip() }
+    }
+
+    /// How long a gap that limits it may be: on an edge it leans along that by 45° at most.
+    pub fn reach(&self) -> f64 {
+        let share = if matches!(self.at.entity, Entity::Edge(_)) { ALONG } else { 1.0 };
+        self.cells * self.greatest / share * (1.0 + SLACK)
     }
 
     /// Whether a gap to a point of this box may limit it: |w|² < cells √(wᵀM⁻¹w) for no w within the box's radius of its middle's.
@@ -32,7 +41,7 @@ impl<'a> Bound<'a> {
         let middle = across(sub(lerp(piece[0], piece[1], 0.5), self.at.point), self.at, self.local);
         let radius = 0.5 * distance(piece[0], piece[1]);
         let least = (norm(middle) - radius).max(0.0);
-        let most = dot(middle, self.metric.solve(middle)).sqrt() + radius * self.greatest;
+        let most = self.inverse.quadratic(middle).sqrt() + radius * self.greatest;
         least * least < self.cells * most * (1.0 + SLACK)
     }
 }
@@ -41,8 +50,8 @@ impl<'a> Bound<'a> {
 const SLACK: f64 = 1e-9;
 
 /// Whether a gap to a point of this box may go across what lies at the place: if not for any piece of an entity, its closest point
-/// need not be looked for.
-pub fn may_face(at: &Place, local: &Local, piece: &Box3, owner: Entity) -> bool {
+/// need not be looked for. Of an edge (not `is_face`) its tangent alone counts.
+pub fn may_face(at: &Place, local: &Local, piece: &Box3, is_face: bool) -> bool {
     let middle = sub(lerp(piece[0], piece[1], 0.5), at.point);
     let (radius, away) = (0.5 * distance(piece[0], piece[1]), norm(middle));
     if away <= 1.5 * radius {
@@ -57,10 +66,10 @@ pub fn may_face(at: &Place, local: &Local, piece: &Box3, owner: Entity) -> bool 
         (Entity::Edge(_), &[tangent, ..]) => along(tangent) <= ALONG * (cosine + sine),
         _ => true,
     };
-    // and at most 60° + β from a normal; of an edge that is not asked.
+    // and at most 60° + β from a normal.
     let least = ACROSS * cosine - (1.0 - ACROSS * ACROSS).sqrt() * sine;
     let faces = || local.normals.is_empty() || local.normals.iter().any(|&normal| along(normal) >= least);
-    beside && (owner.dimension() < 2 || faces())
+    beside && (!is_face || faces())
 }
 
 /// What of a direction goes across the edge that a place lies on: near its end the way to another edge leans along it, and sizes along it

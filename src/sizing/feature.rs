@@ -7,10 +7,11 @@
 use super::bodies::Bodies;
 use super::bound::{Bound, across, away, may_face};
 use super::curvature::{Local, cut};
+use super::others::{Found, Other};
 use super::pieces::pieces;
 use super::sight::Sight;
 use super::touch::Touch;
-use super::tree::{Box3, Tree};
+use super::tree::{Box3, Tree, meet};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
@@ -18,7 +19,7 @@ use crate::mesh::vector::{Vec3, distance, dot, norm, scale, sub, unit};
 use crate::metric::Sym3;
 use crate::tasks::Team;
 use serde::Serialize;
-use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 /// A gap goes across a face if its direction makes at most 60° with the normal,
 pub(super) const ACROSS: f64 = 0.5;
@@ -55,30 +56,12 @@ pub struct Place {
     pub triangle: Option<u32>,
 }
 
-/// Another entity, as a place sees it.
-#[derive(Clone, Copy)]
-struct Other {
-    /// How far it is; before it is asked, a bound from below.
-    length: f64,
-    to: Entity,
-    /// What it answered; none before it is asked.
-    found: Option<Found>,
-}
-
-/// The closest point of another entity.
-#[derive(Clone, Copy)]
-struct Found {
-    there: Vec3,
-    /// Its normal there, if it is a face.
-    normal: Option<Vec3>,
-}
-
 /// Scratch of one thread.
 #[derive(Default)]
 pub struct Pad {
     /// Pieces of other entities that may limit the metric, those of an entity one after the other.
     pieces: Vec<(Entity, u32)>,
-    others: Vec<Other>,
+    others: BinaryHeap<Other>,
 }
 
 /// The entities of a model and who is near whom.
@@ -101,17 +84,17 @@ pub struct Near<'a> {
 }
 
 impl<'a> Near<'a> {
-    /// So many cells across, no size below `least`.
+    /// So many cells across, sizes between these.
     pub fn new(
         team: Team<'_>,
         mesh: &'a TetMesh,
         place: &'a Classification,
         model: &'a Model,
         cells: f64,
-        least: f64,
+        [least, greatest]: [f64; 2],
     ) -> Self {
         let topology = model.topology();
-        let (boxes, owners): (Vec<Box3>, Vec<Entity>) = pieces(team, model).into_iter().unzip();
+        let (boxes, owners): (Vec<Box3>, Vec<Entity>) = pieces(team, model, greatest).into_iter().unzip();
         Self {
             topology,
             mesh,
@@ -143,31 +126,32 @@ impl<'a> Near<'a> {
         Pad { pieces, others }: &mut Pad,
     ) -> (Sym3, Option<Gap>) {
         let reach = self.cells / metric.eigen().values[0].sqrt();
-        self.collect(at, local, metric, reach, pieces, others);
+        let mut list = std::mem::take(others).into_vec();
+        self.collect(at, local, metric, reach, pieces, &mut list);
+        *others = BinaryHeap::from(list);
         let mut nearest: Option<Gap> = None;
         let mut thinnest = f64::INFINITY;
-        while let Some(next) = (0..others.len()).min_by(|&a, &b| order(&others[a], &others[b])) {
-            let Other { length, to, found } = others[next];
+        let mut bound = Bound::new(at, local, metric, self.cells);
+        while let Some(Other { length, to, found }) = others.pop() {
+            if length >= bound.reach() {
+                break;
+            }
             let Some(Found { there, normal }) = found else {
                 let begin = pieces.partition_point(|piece| piece.0 < to);
                 let own = pieces[begin..].iter().take_while(|piece| piece.0 == to);
-                let bound = Bound::new(at, local, metric, self.cells);
                 let found = if own.clone().any(|piece| bound.may_limit(&self.boxes[piece.1 as usize])) {
-                    self.closest(evaluator, at, to)
+                    self.closest(evaluator, at, to, reach.min(bound.reach()))
                 } else {
                     None
                 };
                 match found.map(|found| (distance(at.point, found.there), found)) {
                     Some((length, found)) if length < reach && length > self.touching => {
-                        others[next] = Other { length, to, found: Some(found) };
+                        others.push(Other { length, to, found: Some(found) });
                     }
-                    _ => {
-                        others.swap_remove(next);
-                    }
+                    _ => {}
                 }
                 continue;
             };
-            others.swap_remove(next);
             let way = scale(sub(there, at.point), 1.0 / length);
             let across = across(way, at, local);
             let share = norm(across);
@@ -179,6 +163,7 @@ impl<'a> Near<'a> {
             let in_face = normal.is_none() && self.touch.share_face(at.entity, edge_of(to));
             if in_face || self.sight.is_clear(at.point, there, |triangle| self.is_own(at, to, triangle)) {
                 metric = cut(metric, g, size);
+                bound = Bound::new(at, local, metric, self.cells);
                 thinnest = thinnest.min(size);
                 nearest = nearest.or(Some(Gap { distance: length, at: at.point, from: at.entity, to }));
             }
@@ -199,11 +184,16 @@ impl<'a> Near<'a> {
         let bound = Bound::new(at, local, metric, self.cells);
         pieces.clear();
         others.clear();
-        self.pieces.each_in(&[at.point.map(|x| x - reach), at.point.map(|x| x + reach)], |piece| {
-            let (owner, piece_box) = (self.owners[piece as usize], &self.boxes[piece as usize]);
-            // From inside a face edges are not asked: the faces beside them are.
-            let is_asked = owner.dimension() == 2 || at.entity.dimension() < 2;
-            if is_asked && bound.may_limit(piece_box) && may_face(at, local, piece_box, owner) {
+        let about = [at.point.map(|x| x - reach), at.point.map(|x| x + reach)];
+        // From inside a face edges are not asked: the faces beside them are.
+        let faces_only = at.entity.dimension() == 2;
+        let admits = |part: &Box3| meet(part, &about) && bound.may_limit(part) && may_face(at, local, part, faces_only);
+        self.pieces.each_where(admits, |piece| {
+            let owner = self.owners[piece as usize];
+            let is_face = owner.dimension() == 2;
+            if is_face && (faces_only || may_face(at, local, &self.boxes[piece as usize], true))
+                || !is_face && !faces_only
+            {
                 pieces.push((owner, piece));
             }
             true
@@ -225,15 +215,16 @@ impl<'a> Near<'a> {
         }
     }
 
-    /// The closest point of another entity, and the normal there of a face.
-    fn closest(&self, evaluator: &mut Evaluator, at: &Place, to: Entity) -> Option<Found> {
+    /// The closest point of another entity within the limit, and the normal there of a face.
+    fn closest(&self, evaluator: &mut Evaluator, at: &Place, to: Entity, limit: f64) -> Option<Found> {
         match to {
             Entity::Face(face) => {
-                let on = evaluator.closest_on_face(face, at.point, None);
+                let on = evaluator.closest_on_face_within(face, at.point, limit)?;
                 Some(Found { there: on.point, normal: Some(evaluator.face_normal(face, on.uv)) })
             }
             Entity::Edge(edge) => {
-                Some(Found { there: evaluator.closest_on_edge(edge, at.point, None).point, normal: None })
+                let on = evaluator.closest_on_edge_within(edge, at.point, limit)?;
+                Some(Found { there: on.point, normal: None })
             }
             _ => None,
         }
@@ -267,11 +258,6 @@ impl<'a> Near<'a> {
         };
         beside || here
     }
-}
-
-/// The nearest first; of two as near what is not asked yet, since it may be farther.
-fn order(a: &Other, b: &Other) -> Ordering {
-    a.length.total_cmp(&b.length).then(a.found.is_some().cmp(&b.found.is_some())).then(a.to.cmp(&b.to))
 }
 
 /// No size such that what bends leaves a cell as thin as `across`: the middle of an edge of this size is that far from its arc. Cells

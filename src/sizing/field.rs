@@ -65,7 +65,7 @@ pub fn geometry_metric(
         growth: options.gradation.unwrap_or(GRADATION).ln(),
         curvature: Curvature::new(options, topology),
         estimate: discrete.then(|| Estimate::new(team, mesh, place, model)),
-        near: options.cells.map(|cells| Near::new(team, mesh, place, model, cells, options.least)),
+        near: options.cells.map(|cells| Near::new(team, mesh, place, model, cells, [options.least, options.greatest])),
     };
     let found = team.collect(VERTICES, mesh.vertices.len(), |range, found| {
         let (mut evaluator, mut asked) = (model.evaluator(), Asked::default());

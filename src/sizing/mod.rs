@@ -11,6 +11,7 @@ mod estimate;
 mod feature;
 mod field;
 mod options;
+mod others;
 mod pieces;
 mod sight;
 mod summary;

@@ -10,28 +10,42 @@ const PIECES: usize = 8;
 const SAMPLES: usize = 3;
 /// Between its samples a piece may leave their box by this share of its diagonal.
 const MARGIN: f64 = 0.15;
-/// Boxes of pieces of all faces and ridges, and whose they are.
-pub fn pieces(team: Team<'_>, model: &Model) -> Vec<(Box3, Entity)> {
+/// What is no larger than this share of the greatest size is one piece: how far a gap reaches is as large as that, so smaller boxes would
+/// rule little more out.
+const SMALL: f64 = 0.25;
+
+/// Boxes of pieces of all faces and ridges, and whose they are; for gaps that reach some times the greatest size.
+pub fn pieces(team: Team<'_>, model: &Model, greatest: f64) -> Vec<(Box3, Entity)> {
     let topology = model.topology();
     let faces = topology.faces.len();
     team.collect(1, faces + topology.edges.len(), |range, found| {
         let mut evaluator = model.evaluator();
         for i in range {
             if i < faces {
-                pieces_of_face(topology, &mut evaluator, i as u32, found);
+                pieces_of_face(topology, &mut evaluator, (i as u32, SMALL * greatest), found);
             } else if topology.is_ridge((i - faces) as u32) {
-                pieces_of_edge(topology, &mut evaluator, (i - faces) as u32, found);
+                pieces_of_edge(topology, &mut evaluator, ((i - faces) as u32, SMALL * greatest), found);
             }
         }
     })
 }
 
-fn pieces_of_face(topology: &Topology, evaluator: &mut Evaluator, face: u32, found: &mut Vec<(Box3, Entity)>) {
+fn pieces_of_face(
+    topology: &Topology,
+    evaluator: &mut Evaluator,
+    (face, small): (u32, f64),
+    found: &mut Vec<(Box3, Entity)>,
+) {
     let entity = &topology.faces[face as usize];
-    let owner = Entity::Face(face);
+    let (owner, slack) = (Entity::Face(face), topology.tolerance);
     if entity.kind == SurfaceKind::Discrete {
         // Its parameters are no chart.
         found.push((entity.bounds, owner));
+        return;
+    }
+    if distance(entity.bounds[0], entity.bounds[1]) <= small {
+        let [low, high] = entity.bounds;
+        found.push(([low.map(|x| x - slack), high.map(|x| x + slack)], owner));
         return;
     }
     let mut box_at = |i: usize, j: usize| {
@@ -45,7 +59,6 @@ fn pieces_of_face(topology: &Topology, evaluator: &mut Evaluator, face: u32, fou
         }
         all
     };
-    let slack = topology.tolerance;
     for (i, j) in (0..PIECES * PIECES).map(|k| (k / PIECES, k % PIECES)) {
         let [low, high] = widen(box_at(i, j));
         // No part of the face leaves its own box.
@@ -59,12 +72,23 @@ fn pieces_of_face(topology: &Topology, evaluator: &mut Evaluator, face: u32, fou
     }
 }
 
-fn pieces_of_edge(topology: &Topology, evaluator: &mut Evaluator, edge: u32, found: &mut Vec<(Box3, Entity)>) {
+fn pieces_of_edge(
+    topology: &Topology,
+    evaluator: &mut Evaluator,
+    (edge, small): (u32, f64),
+    found: &mut Vec<(Box3, Entity)>,
+) {
     let [first, last] = topology.edges[edge as usize].range;
+    let begin = found.len();
     for i in 0..PIECES {
         let at = |k: usize| (i as f64 + k as f64 / (SAMPLES - 1) as f64) / PIECES as f64;
         let points = (0..SAMPLES).map(|k| evaluator.edge_frame(edge, first + at(k) * (last - first)).point);
         found.push((widen(box_of(points)), Entity::Edge(edge)));
+    }
+    let all = found[begin..].iter().fold(EMPTY, |all, piece| join(all, piece.0));
+    if distance(all[0], all[1]) <= small {
+        found.truncate(begin);
+        found.push((all, Entity::Edge(edge)));
     }
 }
 
@@ -84,7 +108,8 @@ mod tests {
     fn boxes_hold_the_points_of_their_entities() {
         let (model, _) = Discrete::from_mesh(Team::alone(), &cube(3), 30.0).unwrap();
         let model = Model::Discrete(model);
-        let found = pieces(Team::alone(), &model);
+        assert_eq!(pieces(Team::alone(), &model, 10.0).len(), 6 + 12);
+        let found = pieces(Team::alone(), &model, 1.0);
         assert_eq!(found.len(), 6 + 12 * PIECES);
         let mut evaluator = model.evaluator();
         for edge in 0..12 {

@@ -1,7 +1,7 @@
 //! Whether something of the surface stands between two points.
-use super::tree::{Tree, box_of};
+use super::tree::{Box3, Tree, box_of, meet};
 use crate::mesh::TetMesh;
-use crate::mesh::vector::{Vec3, cross, dot, lerp, norm, sub};
+use crate::mesh::vector::{Vec3, cross, dot, lerp, norm, scale, sub};
 use crate::tasks::{GRAIN, Team};
 
 /// What stands at the ends of the line, by this share of it, belongs to them: the mesh's triangles are chords of the model.
@@ -26,12 +26,31 @@ impl<'a> Sight<'a> {
     /// Whether no triangle stands between p and q but those that `is_own`.
     pub fn is_clear(&self, p: Vec3, q: Vec3, is_own: impl Fn(u32) -> bool) -> bool {
         let ends = [lerp(p, q, ENDS), lerp(p, q, 1.0 - ENDS)];
-        self.tree.each_in(&box_of(ends), |triangle| {
-            let corners = self.mesh.triangles.nodes[triangle as usize].map(|v| self.mesh.vertices[v as usize]);
-            is_own(triangle) || !crosses(ends, corners)
-        })
+        let about = box_of(ends);
+        self.tree.each_where(
+            |items| meet(items, &about) && passes(ends, items),
+            |triangle| {
+                let corners = self.mesh.triangles.nodes[triangle as usize].map(|v| self.mesh.vertices[v as usize]);
+                is_own(triangle) || !crosses(ends, corners)
+            },
+        )
     }
 }
+
+/// Whether a segment may go through a box that its own box meets: no cross product of the segment and an axis parts them.
+fn passes([p, q]: [Vec3; 2], [low, high]: &Box3) -> bool {
+    let half = scale(sub(q, p), 0.5);
+    let (arm, size) = (sub(lerp(*low, *high, 0.5), lerp(p, q, 0.5)), scale(sub(*high, *low), 0.5));
+    (0..3).all(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let rounding = ROUNDING * (half[i].abs() + half[j].abs()) * (arm[i].abs() + arm[j].abs());
+        let most = size[i] * half[j].abs() + size[j] * half[i].abs() + rounding;
+        (half[i] * arm[j] - half[j] * arm[i]).abs() <= most
+    })
+}
+
+/// What counts as rounding, relative.
+const ROUNDING: f64 = 1e-9;
 
 /// Whether a segment goes through a triangle (Möller and Trumbore 1997); one within its plane does not.
 fn crosses([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
@@ -50,6 +69,29 @@ fn crosses([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
 mod tests {
     use super::*;
     use crate::mesh::samples::cube;
+
+    #[test]
+    fn a_segment_passes_the_boxes_that_it_has_points_in() {
+        let mut state = 7u64;
+        let mut random = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) as f64 / (1u64 << 31) as f64
+        };
+        let mut counts = [0; 2];
+        for _ in 0..2000 {
+            let ends: [Vec3; 2] = std::array::from_fn(|_| std::array::from_fn(|_| random()));
+            let low: Vec3 = std::array::from_fn(|_| random());
+            let part = [low, low.map(|x| x + 0.2 * random())];
+            if !meet(&part, &box_of(ends)) {
+                continue;
+            }
+            let holds = |p: Vec3| (0..3).all(|k| part[0][k] <= p[k] && p[k] <= part[1][k]);
+            let is_in = (0..=500).any(|i| holds(lerp(ends[0], ends[1], f64::from(i) / 500.0)));
+            assert!(!is_in || passes(ends, &part));
+            counts[usize::from(passes(ends, &part))] += 1;
+        }
+        assert!(counts[0] > 100 && counts[1] > 100, "{counts:?}");
+    }
 
     #[test]
     fn a_wall_stands_between() {

@@ -26,7 +26,7 @@ pub fn box_of(points: impl IntoIterator<Item = Vec3>) -> Box3 {
 
 /// Whether two boxes have a point in common.
 #[inline]
-fn meet(a: &Box3, b: &Box3) -> bool {
+pub fn meet(a: &Box3, b: &Box3) -> bool {
     (0..3).all(|i| a[0][i] <= b[1][i] && b[0][i] <= a[1][i])
 }
 
@@ -58,15 +58,16 @@ impl Tree {
         Self { order, boxes: sorted, nodes }
     }
 
-    /// Calls `visit` with the items whose boxes meet a box, until it returns false; whether it never did.
-    pub fn each_in(&self, query: &Box3, mut visit: impl FnMut(u32) -> bool) -> bool {
+    /// Calls `visit` with the items whose boxes are admitted, until it returns false; whether it never did. A box that is not admitted
+    /// holds none that is.
+    pub fn each_where(&self, admits: impl Fn(&Box3) -> bool, mut visit: impl FnMut(u32) -> bool) -> bool {
         let first_leaf = self.nodes.len() / 2;
         let mut stack = [0usize; STACK];
         let mut top = 1;
         while top > 0 {
             top -= 1;
             let node = stack[top];
-            if !meet(&self.nodes[node], query) {
+            if !admits(&self.nodes[node]) {
                 continue;
             }
             if node < first_leaf {
@@ -77,7 +78,7 @@ impl Tree {
             }
             let begin = (node - first_leaf) * LEAF;
             for i in begin..(begin + LEAF).min(self.order.len()) {
-                if meet(&self.boxes[i], query) && !visit(self.order[i]) {
+                if admits(&self.boxes[i]) && !visit(self.order[i]) {
                     return false;
                 }
             }
@@ -111,10 +112,13 @@ mod tests {
                 let expected: Vec<u32> = (0..count as u32).filter(|&i| meet(&boxes[i as usize], &query)).collect();
                 for tree in &trees {
                     let mut found = Vec::new();
-                    assert!(tree.each_in(&query, |i| {
-                        found.push(i);
-                        true
-                    }));
+                    assert!(tree.each_where(
+                        |items| meet(items, &query),
+                        |i| {
+                            found.push(i);
+                            true
+                        }
+                    ));
                     found.sort_unstable();
                     assert_eq!(found, expected);
                 }

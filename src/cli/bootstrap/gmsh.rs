@@ -1,7 +1,7 @@
 //! gmsh, version 4 (GPL: started, never linked).
 use super::driver::Least;
 use super::ladder::Wish;
-use super::process::Workplace;
+use crate::cli::workplace::Workplace;
 use crate::geometry::Model;
 use std::fmt::Write;
 use std::path::Path;

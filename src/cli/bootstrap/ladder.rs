@@ -1,9 +1,10 @@
 //! One mesher after the other, one algorithm after the other, until a mesh is valid and lies on the whole model.
 use super::driver::{Choice, Rung, gmsh_places, netgen_places};
-use super::process::{self, Failure, Workplace};
+use super::process::{self, Failure};
 use super::queue::Queue;
 use super::{gmsh, netgen};
 use crate::cli::adapt::progress::Stop;
+use crate::cli::workplace::Workplace;
 use crate::formats;
 use crate::geometry::classify::{Classification, Error, Options, classify};
 use crate::geometry::{Geometry, Model};

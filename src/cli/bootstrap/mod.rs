@@ -18,7 +18,7 @@ use super::metric::common::check_output;
 use super::metric::geometry::GeometryArguments;
 use super::{Outcome, load};
 use crate::geometry::classify::associate;
-use crate::geometry::{Geometry, Model, Topology, names};
+use crate::geometry::{Evaluate, Geometry, Model, Topology, names};
 use crate::mesh::io;
 use crate::mesh::vector::distance;
 use crate::tasks::{Plan, Pool, Team, stage};
@@ -162,12 +162,25 @@ fn check_solids(path: &Path, model: &Model) -> Result<(), String> {
     if model.topology().solids > 0 {
         return Ok(());
     }
-    let faces = model.topology().faces.len();
+    let topology = model.topology();
+    let faces = topology.faces.len();
     Err(format!(
-        "{}: the model has no solid, only surfaces ({faces} faces): there is nothing to fill; join them to a closed solid in the CAD \
+        "{}: the model has no solid, only surfaces ({faces} faces{}): there is nothing to fill; join them to a closed solid in the CAD \
          program and export that",
-        path.display()
+        path.display(),
+        open_edges(model)
     ))
+}
+
+/// How many edges have one face alone, and where one of those is: there a face is missing, or does not meet its neighbour.
+fn open_edges(model: &Model) -> String {
+    let edges = &model.topology().edges;
+    let open = |edge: &usize| edges[*edge].faces.len() == 1 && !edges[*edge].seam && !edges[*edge].degenerate;
+    let Some(first) = (0..edges.len()).find(open) else { return String::new() };
+    let middle = 0.5 * (edges[first].range[0] + edges[first].range[1]);
+    let at = model.evaluator().edge_frame(first as u32, middle).point;
+    let (count, all) = ((0..edges.len()).filter(open).count(), edges.len());
+    format!("; {count} of {all} edges have a face on one side alone, the first at {}", super::table::place(at))
 }
 
 impl Arguments {

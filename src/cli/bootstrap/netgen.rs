@@ -1,6 +1,6 @@
 //! netgen (LGPL: started in a Python of its own, never linked).
 use super::ladder::Wish;
-use super::process::Workplace;
+use crate::cli::workplace::Workplace;
 use std::path::Path;
 use std::process::Command;
 

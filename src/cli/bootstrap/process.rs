@@ -1,9 +1,9 @@
 //! Runs of other programs: with a time limit, their output in a log.
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// How long between two looks at whether a program has ended.
@@ -116,39 +116,9 @@ pub fn last_lines(log: &Path) -> String {
     told[told.len().saturating_sub(LAST_LINES)..].join(" | ")
 }
 
-/// A folder of this run, which goes with it.
-pub struct Workplace {
-    folder: PathBuf,
-}
-
-impl Workplace {
-    /// In the system's folder for such.
-    pub fn new() -> io::Result<Self> {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        loop {
-            let number = NEXT.fetch_add(1, Ordering::Relaxed);
-            let folder = std::env::temp_dir().join(format!("geo-adapt-{}-{number}", std::process::id()));
-            match fs::create_dir(&folder) {
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {} // left by a run that was killed
-                made => return made.map(|()| Self { folder }),
-            }
-        }
-    }
-
-    /// A file in it.
-    pub fn file(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
-    }
-}
-
-impl Drop for Workplace {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.folder);
-    }
-}
-
 #[cfg(all(test, unix))]
 mod tests {
+    use super::super::super::workplace::Workplace;
     use super::*;
 
     fn shell(script: &str, limit: f64) -> (Result<(), Failure>, String) {

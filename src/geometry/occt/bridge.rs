@@ -111,6 +111,8 @@ pub mod ffi {
         fn face_area(self: &Model, face: u32) -> Result<f64>;
         fn edge_length(self: &Model, edge: u32) -> Result<f64>;
         fn write_brep(self: &Model, path: &str) -> Result<()>;
+        fn save(self: &Model, path: &str) -> Result<()>;
+        fn load_saved(path: &str) -> Result<SharedPtr<Model>>;
         fn write_tessellation(self: &Model, path: &str, deflection: f64, angle: f64) -> Result<()>;
         fn solid_faces(self: &Model, solid: u32) -> Result<Vec<u32>>;
         /// Of an edge (dimension 1), face (2) or solid (3).

@@ -67,6 +67,11 @@ impl Curve {
         }
     }
 
+    /// Whether [`Self::foot`] has an answer.
+    pub fn has_foot(&self) -> bool {
+        matches!(self, Self::Line { .. } | Self::Circle { .. })
+    }
+
     /// Ends of the smooth spans, where they are known.
     pub fn breaks(&self) -> &[f64] {
         if let Self::Spline(spline) = self { spline.breaks() } else { &[] }

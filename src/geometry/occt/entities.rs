@@ -4,7 +4,7 @@ use super::{OcctModel, Shape, copy};
 use crate::geometry::{CurveKind, EdgeEntity, FaceEntity, Label, Names, SurfaceKind, Topology, VertexEntity};
 use cxx::Exception;
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 /// Where the p-curves give only a numerical range, this share of it is added at each end.
 const RANGE_MARGIN: f64 = 1e-7;
@@ -37,7 +37,7 @@ pub fn build(occt: cxx::SharedPtr<ffi::Model>) -> Result<OcctModel, Exception> {
     let pcurves = copy::pcurves(&occt, &mut evaluator, &topology)?;
     let trims = topology.faces.iter().map(|_| OnceLock::new()).collect();
     let names = names(&occt, &topology)?;
-    Ok(OcctModel { topology, names, occt, surfaces, curves, pcurves, trims, rounded, size })
+    Ok(OcctModel { topology, names, occt, surfaces, curves, pcurves, trims, rounded, idle: Mutex::default(), size })
 }
 
 /// The labels of edges, faces and solids by their numbers from 1.

@@ -3,12 +3,13 @@ use super::OcctModel;
 use super::bridge::ffi;
 use super::range::{self, bring_near, place};
 use super::surface::{Jet, Surface};
-use super::{newton, project};
+use super::{newton, project, project_edges};
 use crate::geometry::{CurveFrame, Evaluate, OnCurve, OnSurface, SurfaceFrame};
 use crate::mesh::vector::{Vec3, cross, distance, dot, norm, scale, unit};
 use cxx::UniquePtr;
+use std::sync::PoisonError;
 
-/// Evaluator of one thread: its own adaptors and classifiers.
+/// Evaluator of one thread: its own adaptors and classifiers, which the next one goes on with.
 pub struct OcctEvaluator<'a> {
     pub(super) model: &'a OcctModel,
     pub(super) occt: UniquePtr<ffi::Evaluator>,
@@ -21,8 +22,9 @@ const NUDGE: f64 = 1e-4;
 
 impl<'a> OcctEvaluator<'a> {
     pub(super) fn new(model: &'a OcctModel) -> Self {
-        // It only reserves memory: the adaptors are made when first asked for.
-        let occt = ffi::new_evaluator(&model.occt).expect("memory for an evaluator");
+        let idle = model.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        // A new one only reserves memory: the adaptors are made when first asked for.
+        let occt = idle.unwrap_or_else(|| ffi::new_evaluator(&model.occt).expect("memory for an evaluator"));
         Self { model, occt }
     }
 
@@ -189,6 +191,13 @@ impl<'a> OcctEvaluator<'a> {
     }
 }
 
+impl Drop for OcctEvaluator<'_> {
+    fn drop(&mut self) {
+        let occt = std::mem::replace(&mut self.occt, UniquePtr::null());
+        self.model.idle.lock().unwrap_or_else(PoisonError::into_inner).push(occt);
+    }
+}
+
 /// Principal curvatures and directions of a regular point, along the unit normal `normal`.
 fn principal(jet: &Jet, normal: Vec3) -> ([f64; 2], [Vec3; 2]) {
     // In the orthonormal basis e1 = Su/|Su|, e2 = n × e1: Su = a e1, Sv = b e1 + c e2.
@@ -268,11 +277,19 @@ impl Evaluate for OcctEvaluator<'_> {
     }
 
     fn closest_on_edge(&mut self, edge: u32, point: Vec3, guess: Option<f64>) -> OnCurve {
-        project::on_edge(self, edge, point, guess)
+        project_edges::on_edge(self, edge, point, guess)
     }
 
     fn closest_on_face(&mut self, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> OnSurface {
         project::on_face(self, face, point, guess)
+    }
+
+    fn closest_on_face_within(&mut self, face: u32, point: Vec3, limit: f64) -> Option<OnSurface> {
+        project::on_face_within(self, face, point, None, limit)
+    }
+
+    fn closest_on_edge_within(&mut self, edge: u32, point: Vec3, limit: f64) -> Option<OnCurve> {
+        project_edges::on_edge_within(self, edge, point, None, limit)
     }
 
     fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {

@@ -32,6 +32,26 @@ pub fn read(path: &Path) -> Result<OcctModel, Error> {
     entities::build(occt).map_err(|error| fail(format!("OpenCASCADE cannot use the model: {}", error.what())))
 }
 
+/// Reads what [`save`] has written.
+pub fn read_saved(path: &Path) -> Result<OcctModel, Error> {
+    let fail = |message: String| Error::Model { path: path.into(), message };
+    let name = path.to_str().ok_or_else(|| fail("the file's name is not UTF-8; rename it".into()))?;
+    let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
+    let occt = ffi::load_saved(name).map_err(|error| fail(error.what().into()))?;
+    entities::build(occt).map_err(|error| fail(format!("OpenCASCADE cannot use the model: {}", error.what())))
+}
+
+/// Writes a model for another process: see [`OcctModel::save`].
+pub fn save(occt: &ffi::Model, path: &Path) -> Result<(), Error> {
+    let fail = |message: String| Error::Model { path: path.into(), message };
+    // There is all of it or nothing.
+    let part = path.with_extension("part");
+    let name = part.to_str().ok_or_else(|| fail("the file's name is not UTF-8; rename it".into()))?;
+    let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
+    occt.save(name).map_err(|error| fail(error.what().into()))?;
+    std::fs::rename(&part, path).map_err(|error| fail(error.to_string()))
+}
+
 /// Writes a model: see [`OcctModel::write_brep`].
 pub fn write(occt: &ffi::Model, path: &Path) -> Result<(), Error> {
     let fail = |message: String| Error::Model { path: path.into(), message };

@@ -11,6 +11,7 @@ mod load;
 mod newton;
 mod pieces;
 mod project;
+mod project_edges;
 mod range;
 mod spline;
 mod surface;
@@ -23,7 +24,7 @@ use bridge::ffi;
 use copy::PCurve;
 use curve::Curve;
 pub use evaluator::OcctEvaluator;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 use surface::Surface;
 use tree::Tree;
 use trim::Trim;
@@ -55,6 +56,9 @@ pub struct OcctModel {
     trims: Vec<OnceLock<Trim>>,
     /// Whether a face has edges whose chords may leave it.
     rounded: Vec<bool>,
+    /// Evaluators that no thread has in hand: their classifiers are dear to make (40 µs a face), and what they answer does not depend on
+    /// what they were asked before.
+    idle: Mutex<Vec<cxx::UniquePtr<ffi::Evaluator>>>,
     /// The greater of the box's diagonal and the largest coordinate: what rounding is measured by.
     size: f64,
 }
@@ -141,6 +145,22 @@ impl OcctModel {
     /// [`Error::Model`] when OpenCASCADE has none or the file cannot be written.
     pub fn write_triangles(&self, path: &std::path::Path, deflection: f64, angle: f64) -> Result<Vec<Vec<u32>>, Error> {
         load::write_triangles(&self.occt, path, deflection, angle)
+    }
+
+    /// Writes the model in binary form with its names, for [`Self::read_saved`] in another process of this program.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when the file cannot be written.
+    pub fn save(&self, path: &std::path::Path) -> Result<(), Error> {
+        load::save(&self.occt, path)
+    }
+
+    /// Reads what [`Self::save`] has written: the same entities in the same order.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when the file cannot be read.
+    pub fn read_saved(path: &std::path::Path) -> Result<Self, Error> {
+        load::read_saved(path)
     }
 
     /// Writes the model as OpenCASCADE's BREP text, for another program: faces, edges and vertices in our order.

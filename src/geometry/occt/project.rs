@@ -1,106 +1,23 @@
-//! Closest points: closed forms where there are, else a descent from the guess, and a tree of pieces that rules the rest out.
-use super::curve::{self, CurvePoint};
+//! Closest points of faces: closed forms where there are, else a descent from the guess, and a tree of pieces that rules the rest out.
 use super::evaluator::OcctEvaluator;
-use super::hull::{self, as_jet};
+use super::hull;
 use super::newton::{self, SurfacePoint};
 use super::pieces::{Jets, Source, cuts};
-use super::range::{is_whole, longest, place};
+use super::project_edges::on_edges;
+use super::range::{is_whole, longest};
 use super::tree::{Node, Tree};
-use super::trim;
-use crate::geometry::{Evaluate, OnCurve, OnSurface};
+use super::trim::{self, Trim};
+use crate::geometry::OnSurface;
 use crate::mesh::vector::{Vec3, distance};
 
 /// What counts as closer, relative: less is rounding.
-const CLOSER: f64 = 1.0 - 1e-12;
-
-/// Closest point of an edge, ends included.
-pub fn on_edge(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f64>) -> OnCurve {
-    on_edge_within(on, edge, point, guess, f64::INFINITY).unwrap_or_else(|| {
-        // Only a point that is no number has no closest one.
-        let t = guess.filter(|t| t.is_finite()).unwrap_or(on.model.topology.edges[edge as usize].range[0]);
-        let (t, _) = place(t, on.model.topology.edges[edge as usize].range, None);
-        OnCurve { t, point: on.edge_frame(edge, t).point, distance: f64::NAN }
-    })
-}
-
-/// The same, if it is closer than `limit`.
-fn on_edge_within(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f64>, limit: f64) -> Option<OnCurve> {
-    let model = on.model;
-    let entity = &model.topology.edges[edge as usize];
-    if let Some(here) = on.degenerate_point(edge) {
-        let found = OnCurve { t: entity.range[0], point: here, distance: distance(here, point) };
-        return (found.distance < limit).then_some(found);
-    }
-    let at = |on: &mut OcctEvaluator, t: f64| {
-        let here = on.curve(edge, t).point;
-        OnCurve { t, point: here, distance: distance(here, point) }
-    };
-    let found = match model.curves[edge as usize].form.foot(point) {
-        Some(foot) => {
-            let (t, inside) = place(foot, entity.range, entity.period);
-            let [first, last] = entity.range;
-            if inside { at(on, t) } else { nearer(at(on, first), at(on, last)) }
-        }
-        None => {
-            let found = search_curve(on, edge, point, guess, limit)?;
-            OnCurve { t: found.t, point: found.point, distance: found.distance }
-        }
-    };
-    (found.distance < limit).then_some(found)
-}
-
-fn nearer(a: OnCurve, b: OnCurve) -> OnCurve {
-    if b.distance < a.distance { b } else { a }
-}
-
-/// The pieces of an edge, made when first asked for.
-fn edge_tree<'a>(on: &mut OcctEvaluator<'a>, edge: u32) -> &'a Tree {
-    let model = on.model;
-    let (shape, range) = (&model.curves[edge as usize], model.topology.edges[edge as usize].range);
-    shape.tree.get_or_init(|| {
-        let spans = (shape.spans[0] as usize).max(4);
-        let period = model.topology.edges[edge as usize].period;
-        let cuts = cuts(range, period, shape.form.breaks(), spans);
-        let mut jet = |uv: [f64; 2]| as_jet(on.curve(edge, uv[0]));
-        let hull =
-            &mut |jet: &mut Jets, piece: [[f64; 2]; 2], out: &mut _| hull::of_curve(&shape.form, jet, piece[0], out);
-        Tree::new(&mut Source { jet: &mut jet, hull }, [cuts, vec![0.0, 0.0]], [None; 2])
-    })
-}
-
-/// The search on a curve without a closed form: down from the guess or the nearest piece, then into every other piece
-/// that may hold a closer point.
-fn search_curve(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f64>, limit: f64) -> Option<CurvePoint> {
-    let tree = edge_tree(on, edge);
-    let (range, size) = (on.model.topology.edges[edge as usize].range, on.model.size);
-    let start = match guess.filter(|t| t.is_finite()) {
-        Some(t) => place(t, range, None).0,
-        None => tree.nearest(point, limit)?.middle()[0],
-    };
-    let mut best = curve::descend(|t| on.curve(edge, t), point, start, range, size);
-    // A closed edge's ends are two ends to the descent.
-    let periods = [None; 2];
-    tree.visit(point, best.distance, |leaf, limit| {
-        let [low, high] = leaf.bounds[0];
-        let width = high - low;
-        if leaf.is_covered([best.t, 0.0], periods, limit) {
-            return limit;
-        }
-        let simple = leaf.is_simple(point, limit);
-        for &s in starts(simple) {
-            let found = curve::descend(|t| on.curve(edge, t), point, low + s * width, leaf.bounds[0], size);
-            if found.distance < best.distance * CLOSER {
-                best = curve::descend(|t| on.curve(edge, t), point, found.t, range, size);
-            }
-        }
-        best.distance
-    });
-    best.distance.is_finite().then_some(best)
-}
+pub const CLOSER: f64 = 1.0 - 1e-12;
+/// What counts as the same parameters, as a share of the longest step.
+const SAME: f64 = 1e-9;
 
 /// Where descents in a piece start, as shares of its sides: from its middle, and where the distance may have several
 /// minima from its quarters too.
-fn starts(simple: bool) -> &'static [f64] {
+pub fn starts(simple: bool) -> &'static [f64] {
     if simple { &[0.5] } else { &[0.5, 0.2, 0.8] }
 }
 
@@ -128,23 +45,39 @@ pub fn on_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: [f64; 2
 /// Closest point of the trimmed face.
 pub fn on_face(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> OnSurface {
     let guess = guess.filter(|uv| uv[0].is_finite() && uv[1].is_finite());
-    let middle = on.model.topology.faces[face as usize].range.map(|[low, high]| 0.5 * (low + high));
+    let middle = middle(on, face);
     if !point.iter().all(|x| x.is_finite()) {
         let (uv, _) = on.placed(face, guess.unwrap_or(middle));
         return OnSurface { distance: f64::NAN, ..at(on, face, uv, point) };
     }
-    if let Some(feet) = on.model.surfaces[face as usize].form.feet(point, guess.unwrap_or(middle)) {
-        return analytic_face(on, face, point, feet.as_slice());
-    }
-    let found = search_surface(on, face, point, guess);
-    found.unwrap_or_else(|| {
+    on_face_within(on, face, point, guess, f64::INFINITY).unwrap_or_else(|| {
         let (uv, _) = on.placed(face, guess.unwrap_or(middle));
         at(on, face, uv, point)
     })
 }
 
+/// The same, if it is closer than `limit`: the surface, trimmed or not, tells in most cases that nothing is.
+pub fn on_face_within(
+    on: &mut OcctEvaluator,
+    face: u32,
+    point: Vec3,
+    guess: Option<[f64; 2]>,
+    limit: f64,
+) -> Option<OnSurface> {
+    let found = match on.model.surfaces[face as usize].form.feet(point, guess.unwrap_or_else(|| middle(on, face))) {
+        Some(feet) => analytic_face(on, face, point, feet.as_slice(), limit),
+        None => search_surface(on, face, point, guess, limit),
+    };
+    found.filter(|found| found.distance < limit)
+}
+
+/// The middle of a face's parameters.
+fn middle(on: &OcctEvaluator, face: u32) -> [f64; 2] {
+    on.model.topology.faces[face as usize].range.map(|[low, high]| 0.5 * (low + high))
+}
+
 /// S at parameters, with its distance.
-fn at(on: &mut OcctEvaluator, face: u32, uv: [f64; 2], point: Vec3) -> OnSurface {
+pub fn at(on: &mut OcctEvaluator, face: u32, uv: [f64; 2], point: Vec3) -> OnSurface {
     let here = on.surface_point(face, uv);
     OnSurface { uv, point: here, distance: distance(here, point) }
 }
@@ -176,14 +109,22 @@ fn is_within(on: &mut OcctEvaluator, face: u32, uv: [f64; 2]) -> bool {
 
 /// Whether the parameters, which lie in the face's range, lie in the trimmed face.
 fn inside(on: &mut OcctEvaluator, face: u32, uv: [f64; 2]) -> bool {
+    let trim = trim_of(on, face);
+    trim.known(&on.model.topology.faces[face as usize], uv).unwrap_or_else(|| on.inside_by_occt(face, uv))
+}
+
+/// The trimming of a face, made when first asked for.
+fn trim_of<'a>(on: &mut OcctEvaluator<'a>, face: u32) -> &'a Trim {
     let model = on.model;
-    let trim = model.trims[face as usize].get_or_init(|| trim::build(on, face));
-    trim.known(&model.topology.faces[face as usize], uv).unwrap_or_else(|| on.inside_by_occt(face, uv))
+    model.trims[face as usize].get_or_init(|| trim::build(on, face))
 }
 
 /// The closest point of a trimmed analytic face is one of the feet, or on its edges. When it is the surface's closest
-/// point there is nothing else to ask.
-fn analytic_face(on: &mut OcctEvaluator, face: u32, point: Vec3, feet: &[[f64; 2]]) -> OnSurface {
+/// point there is nothing else to ask, nor where that is beyond the limit.
+fn analytic_face(on: &mut OcctEvaluator, face: u32, point: Vec3, feet: &[[f64; 2]], limit: f64) -> Option<OnSurface> {
+    if limit < f64::INFINITY && distance(on.surface_point(face, feet[0]), point) >= limit {
+        return None;
+    }
     let mut best: Option<OnSurface> = None;
     for (i, &foot) in feet.iter().enumerate() {
         let (uv, in_range) = on.placed(face, foot);
@@ -192,30 +133,18 @@ fn analytic_face(on: &mut OcctEvaluator, face: u32, point: Vec3, feet: &[[f64; 2
         }
         let found = at(on, face, uv, point);
         if i == 0 {
-            return found;
+            return Some(found);
         }
         if best.is_none_or(|best| found.distance < best.distance) {
             best = Some(found);
         }
     }
-    let limit = best.map_or(f64::INFINITY, |best| best.distance);
-    let on_boundary = on_edges(on, face, point, limit);
-    let (uv, _) = on.placed(face, feet[0]);
-    on_boundary.or(best).unwrap_or_else(|| at(on, face, uv, point))
-}
-
-/// The closest point on the face's edges, as a point of its surface, if it is closer than `limit`.
-fn on_edges(on: &mut OcctEvaluator, face: u32, point: Vec3, limit: f64) -> Option<OnSurface> {
-    let model = on.model;
-    let mut best: Option<(u32, OnCurve)> = None;
-    for &edge in &model.topology.faces[face as usize].edges {
-        let limit = best.map_or(limit, |(_, best)| best.distance);
-        if let Some(found) = on_edge_within(on, edge, point, None, limit) {
-            best = Some((edge, found));
-        }
+    let within = best.map_or(limit, |best| best.distance.min(limit));
+    let found = on_edges(on, face, point, within).or(best);
+    if found.is_some() || limit < f64::INFINITY {
+        return found;
     }
-    let (edge, found) = best?;
-    let uv = on.edge_on_face(edge, found.t, face)?;
+    let (uv, _) = on.placed(face, feet[0]);
     Some(at(on, face, uv, point))
 }
 
@@ -223,6 +152,10 @@ fn on_edges(on: &mut OcctEvaluator, face: u32, point: Vec3, limit: f64) -> Optio
 fn face_tree<'a>(on: &mut OcctEvaluator<'a>, face: u32) -> &'a Tree {
     let model = on.model;
     let (shape, entity) = (&model.surfaces[face as usize], &model.topology.faces[face as usize]);
+    if let Some(tree) = shape.tree.get() {
+        return tree;
+    }
+    let trim = trim_of(on, face);
     shape.tree.get_or_init(|| {
         let cuts = [0, 1].map(|k: usize| {
             let spans = (shape.spans[k] as usize).max(2);
@@ -232,25 +165,35 @@ fn face_tree<'a>(on: &mut OcctEvaluator<'a>, face: u32) -> &'a Tree {
         let hull =
             &mut |jet: &mut Jets, piece: [[f64; 2]; 2], out: &mut _| hull::of_surface(&shape.form, jet, piece, out);
         Tree::new(&mut Source { jet: &mut jet, hull }, cuts, entity.period)
+            .trimmed(|bounds| trim.leaves_out(entity, bounds))
     })
 }
 
 /// The search on a surface without a closed form. A foot that the descent from the guess (or the nearest piece) reaches
 /// inside the face is the answer when no other piece holds a closer point, inside or not; else the edges and those
-/// pieces decide.
-fn search_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> Option<OnSurface> {
+/// pieces decide. What is found may be beyond the limit, then it is not the closest.
+fn search_surface(
+    on: &mut OcctEvaluator,
+    face: u32,
+    point: Vec3,
+    guess: Option<[f64; 2]>,
+    limit: f64,
+) -> Option<OnSurface> {
     let tree = face_tree(on, face);
     let size = on.model.size;
-    let start = guess.or_else(|| tree.nearest(point, f64::INFINITY).map(Node::middle))?;
+    let start = guess.or_else(|| tree.nearest(point, limit).map(Node::middle))?;
     let (start, _) = on.placed(face, start);
     let first = descend_inside(on, face, point, start);
     let mut best = first;
     let mut edges_asked = first.is_none();
     if edges_asked {
-        best = on_edges(on, face, point, f64::INFINITY);
+        best = on_edges(on, face, point, limit);
     }
     let periods = on.model.topology.faces[face as usize].period;
-    let far = |best: Option<OnSurface>| best.map_or(f64::INFINITY, |best| best.distance);
+    let far = |best: Option<OnSurface>| best.map_or(limit, |best| best.distance.min(limit));
+    // Descents from several starts in a piece end at the same point: OCCT is asked once.
+    let mut refused = [f64::NAN; 2];
+    let same = longest(on.model.topology.faces[face as usize].range).map(|side| SAME * side);
     tree.visit(point, far(best), |leaf, limit| {
         if first.is_some_and(|first| leaf.is_covered(first.uv, periods, first.distance)) {
             return limit;
@@ -265,9 +208,15 @@ fn search_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<
                 if found.distance.is_nan() || found.distance >= far(best) * CLOSER {
                     continue;
                 }
+                if (0..2).all(|k| (found.uv[k] - refused[k]).abs() <= same[k]) {
+                    continue;
+                }
                 if inside(on, face, on.placed(face, found.uv).0) {
                     best = Some(polished(on, face, point, &found));
-                } else if !edges_asked {
+                    continue;
+                }
+                refused = found.uv;
+                if !edges_asked {
                     edges_asked = true;
                     best = on_edges(on, face, point, far(best)).or(best);
                 }

@@ -21,6 +21,8 @@ pub struct Node {
     about: f64,
     /// The second child; the first is the next node. None in a leaf.
     pub second: u32,
+    /// Whether all of it lies outside the trimmed face: nothing is looked for in it.
+    outside: bool,
 }
 
 /// No child.
@@ -93,6 +95,27 @@ impl Tree {
         tree
     }
 
+    /// Leaves out the pieces of these parameters that lie outside the trimmed face, but not all.
+    pub fn trimmed(mut self, is_outside: impl Fn([[f64; 2]; 2]) -> bool) -> Self {
+        for i in (0..self.0.len()).rev() {
+            let second = self.0[i].second;
+            self.0[i].outside = if second == LEAF {
+                is_outside(self.0[i].bounds)
+            } else {
+                self.0[i + 1].outside && self.0[second as usize].outside
+            };
+        }
+        if self.0[0].outside {
+            self.0.iter_mut().for_each(|node| node.outside = false);
+        }
+        self
+    }
+
+    /// No point of it is closer than this.
+    pub fn least_distance(&self, point: Vec3) -> f64 {
+        self.0[0].least_distance(point)
+    }
+
     /// The greatest curvature of the leaves that meet the surroundings of a leaf.
     fn surroundings(&self, leaf: usize, periods: [Option<f64>; 2]) -> f64 {
         let wide = self.0[leaf].bounds.map(|[low, high]| {
@@ -136,6 +159,9 @@ impl Tree {
                 continue;
             }
             let node = &self.0[index as usize];
+            if node.outside {
+                continue;
+            }
             if node.second == LEAF {
                 limit = look(node, limit);
                 continue;
@@ -199,5 +225,5 @@ pub fn boxed(jet: &Jet, bounds: [[f64; 2]; 2], points: &[Vec3], margin: f64) -> 
     }
     // The last term is the rounding of the products.
     let half = [0, 1, 2].map(|k: usize| 0.5 * (high[k] - low[k]) + margin + 4e-15 * size);
-    Node { bounds, center, axes, half, bends: [0.0; 2], about: 0.0, second: LEAF }
+    Node { bounds, center, axes, half, bends: [0.0; 2], about: 0.0, second: LEAF, outside: false }
 }

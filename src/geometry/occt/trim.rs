@@ -61,6 +61,25 @@ impl Trim {
     }
 }
 
+impl Trim {
+    /// Whether no point of these parameters lies in the face, as far as that is known without asking OCCT.
+    pub fn leaves_out(&self, face: &FaceEntity, bounds: [[f64; 2]; 2]) -> bool {
+        let Self::Grid(grid) = self else { return false };
+        let cells = |k: usize| {
+            let [low, high] = face.range[k];
+            let share = bounds[k].map(|x| (x - low) / (high - low) * CELLS as f64);
+            // A bound on a line between cells belongs to both.
+            let from = (share[0] - ROUNDING).floor().max(0.0) as usize;
+            from..((share[1] + ROUNDING).floor().max(0.0) as usize + 1).min(CELLS)
+        };
+        let mut all = cells(0).flat_map(|i| cells(1).map(move |j| grid[i][j]));
+        cells(0).len() * cells(1).len() > 0 && all.all(|place| place == Place::Outside)
+    }
+}
+
+/// What of a cell is rounding.
+const ROUNDING: f64 = 1e-6;
+
 /// The trimming of a face.
 pub fn build(on: &mut OcctEvaluator, index: u32) -> Trim {
     let topology = &on.model.topology;
