@@ -47,6 +47,7 @@ struct VertexRecord;
 struct Form;
 struct LabelRecord;
 struct DomainRecord;
+struct FlawRecord;
 
 /// A shape with its faces, edges and vertices numbered from 0 in the order of TopExp::MapShapes.
 /// Never changed after loading, so that threads may read it together.
@@ -71,6 +72,8 @@ public:
   double face_area(std::uint32_t face) const;
   double edge_length(std::uint32_t edge) const;
   void write_brep(rust::Str path) const;
+  /// What OpenCASCADE's own check finds wrong with faces.
+  rust::Vec<FlawRecord> flaws() const;
   /// Writes all that it is made of in binary form, for `load_saved` of this same program.
   void save(rust::Str path) const;
   /// Triangles of the faces as MSH 2.2, joined along the edges; within a distance and an angle of the surface.

@@ -279,6 +279,18 @@ fn files_that_are_no_model_are_refused() {
 }
 
 #[test]
+fn the_check_tells_faces_with_flaws() {
+    for name in ["duct.brep", "torus.brep", "cone-apex.brep", "capped-cylinder.step"] {
+        assert_eq!(OcctModel::read(&data(name)).unwrap().flaws(), [], "{name}");
+    }
+    let bow = OcctModel::read(&data("bow-tie.brep")).unwrap();
+    let ends: Vec<u32> = (0..6).filter(|&face| bow.topology().faces[face as usize].edges.len() == 4).collect();
+    let flaws = bow.flaws();
+    assert!(!flaws.is_empty() && flaws.iter().all(|(face, _)| ends.contains(face)), "{flaws:?}");
+    assert!(flaws.iter().any(|(_, what)| what.contains("crosses itself")), "{flaws:?}");
+}
+
+#[test]
 fn cut_and_damaged_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["capped-cylinder.step", "block-inches.igs", "duct.brep", "torus.brep"] {

@@ -94,6 +94,15 @@ impl Model {
         }
     }
 
+    /// What the CAD kernel's own check finds wrong with faces, in words. Slow on large models.
+    pub fn flaws(&self) -> Vec<(u32, String)> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.flaws(),
+            Model::Discrete(_) => Vec::new(),
+        }
+    }
+
     /// Writes the model as OpenCASCADE's BREP text, its entities in our order.
     ///
     /// # Errors

@@ -3,12 +3,14 @@
 //     -lTKOffset -lTKPrim -lTKTopAlgo -lTKBRep -lTKGeomBase -lTKG3d -lTKMath -lTKernel && ./make_models
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepOffsetAPI_ThruSections.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
@@ -31,6 +33,10 @@ int main()
   const gp_Ax2 axes(gp_Pnt(0.3, -0.2, 0.1), gp_Dir(1, 2, 3), gp_Dir(3, 0, -1));
   BRepTools::Write(BRepPrimAPI_MakeTorus(axes, 1.0, 0.3).Shape(), "torus.brep");
   BRepTools::Write(BRepPrimAPI_MakeCone(axes, 0.8, 0.0, 1.5, 2.0).Shape(), "cone-apex.brep");
+
+  // A prism whose base crosses itself: no solid at all, but one to look at.
+  const TopoDS_Wire bow = BRepBuilderAPI_MakePolygon(gp_Pnt(0, 0, 0), gp_Pnt(1, 1, 0), gp_Pnt(1, 0, 0), gp_Pnt(0, 1, 0), Standard_True);
+  BRepTools::Write(BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(bow, Standard_True).Face(), gp_Vec(0, 0, 1)).Shape(), "bow-tie.brep");
 
   // A mirrored, moved cylinder: its axes are left-handed.
   gp_Trsf mirror, shift;

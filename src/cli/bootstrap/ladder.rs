@@ -4,6 +4,7 @@ use super::process::{self, Failure};
 use super::queue::Queue;
 use super::{gmsh, netgen};
 use crate::cli::adapt::progress::Stop;
+use crate::cli::table;
 use crate::cli::workplace::Workplace;
 use crate::formats;
 use crate::geometry::classify::{Classification, Error, Options, classify};
@@ -11,6 +12,7 @@ use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::pinch::unpinch;
 use crate::mesh::validity;
+use crate::mesh::vector::lerp;
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -116,7 +118,7 @@ impl<'a> Ladder<'a> {
                 Err(Miss::Failed(why)) => self.failed.push((rung, why)),
             }
         }
-        Err(describe(&self.missing, &self.failed, self.log))
+        Err(describe(&self.missing, &self.failed, self.log, self.model))
     }
 
     /// One rung: the mesh, valid and on the model.
@@ -145,18 +147,36 @@ impl<'a> Ladder<'a> {
 }
 
 /// The error of a ladder without a good rung.
-fn describe(missing: &[String], failed: &[(Rung, String)], log: &Path) -> String {
+fn describe(missing: &[String], failed: &[(Rung, String)], log: &Path, model: &Model) -> String {
     let missing = missing.join("; ");
     let Some((rung, why)) = failed.last() else {
         return format!("there is no mesher to begin with: {missing}");
     };
     let count = failed.len();
     let also = if missing.is_empty() { String::new() } else { format!("; not tried: {missing}") };
+    let remedy = match flaws(model) {
+        Some(flaws) => format!("The model itself is faulty: {flaws}. Repair it in the CAD program"),
+        None => "Repair the model (tiny edges, faces that intersect) or give another --size".into(),
+    };
     format!(
-        "no mesher made a valid mesh of it in {count} attempts (all they said is in {}); the last, {rung}: {why}{also}. \
-         Repair the model (tiny edges, faces that intersect) or give another --size",
+        "no mesher made a valid mesh of it in {count} attempts (all they said is in {}); the last, {rung}: {why}{also}. {remedy}",
         log.display()
     )
+}
+
+/// How many flaws of a model are told.
+const TOLD: usize = 3;
+
+/// What OpenCASCADE's check finds wrong with the model, and where.
+fn flaws(model: &Model) -> Option<String> {
+    let all = model.flaws();
+    let tell = |(face, what): &(u32, String)| {
+        let [low, high] = model.topology().faces[*face as usize].bounds;
+        format!("face {} about {}: {what}", face + 1, table::place(lerp(low, high, 0.5)))
+    };
+    let told = all.iter().take(TOLD).map(tell).collect::<Vec<_>>().join("; ");
+    let more = all.len().saturating_sub(TOLD);
+    (!all.is_empty()).then(|| if more > 0 { format!("{told}; and {more} more") } else { told })
 }
 
 /// Runs the program, wherever it is found first.

@@ -61,6 +61,12 @@ pub mod ffi {
         colour: String,
     }
 
+    /// What is wrong with a face.
+    struct FlawRecord {
+        face: u32,
+        what: String,
+    }
+
     /// The far field around a body: a box, or a sphere where the radius is positive; cut at a plane where the axis is not −1.
     struct DomainRecord {
         /// The box; with a sphere what is kept of it.
@@ -111,6 +117,8 @@ pub mod ffi {
         fn face_area(self: &Model, face: u32) -> Result<f64>;
         fn edge_length(self: &Model, edge: u32) -> Result<f64>;
         fn write_brep(self: &Model, path: &str) -> Result<()>;
+        /// What OpenCASCADE's own check finds.
+        fn flaws(self: &Model) -> Result<Vec<FlawRecord>>;
         fn save(self: &Model, path: &str) -> Result<()>;
         fn load_saved(path: &str) -> Result<SharedPtr<Model>>;
         fn write_tessellation(self: &Model, path: &str, deflection: f64, angle: f64) -> Result<()>;

@@ -163,6 +163,12 @@ impl OcctModel {
         load::read_saved(path)
     }
 
+    /// What OpenCASCADE's own check finds wrong with faces, in words; nothing where the check itself fails.
+    pub fn flaws(&self) -> Vec<(u32, String)> {
+        let found = self.occt.flaws().unwrap_or_default();
+        found.into_iter().map(|flaw| (flaw.face, flaw.what)).collect()
+    }
+
     /// Writes the model as OpenCASCADE's BREP text, for another program: faces, edges and vertices in our order.
     ///
     /// # Errors
