@@ -78,7 +78,7 @@ mod tests {
             (state >> 33) as f64 / (1u64 << 31) as f64
         };
         let mut counts = [0; 2];
-        for _ in 0..2000 {
+        for _ in 0..20_000 {
             let ends: [Vec3; 2] = std::array::from_fn(|_| std::array::from_fn(|_| random()));
             let low: Vec3 = std::array::from_fn(|_| random());
             let part = [low, low.map(|x| x + 0.2 * random())];
