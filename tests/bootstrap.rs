@@ -482,7 +482,7 @@ fn a_mesher_that_crashes_hangs_or_writes_rubbish_is_told_in_one_error() {
     let message = with(one, &[]);
     assert!(message.contains("no mesher made a valid mesh") && message.trim_end().ends_with("--size"), "{message}");
     let gmsh = place.script("gmsh", "exit 1");
-    let bow = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/bow-tie.brep");
+    let bow = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/faulty/bow-tie.brep");
     let message = complaint(&place.command(&bow, &["--mesher", "gmsh"]).env("GEO_ADAPT_GMSH", gmsh).output().unwrap());
     assert!(message.contains("The model itself is faulty: face ") && message.contains("crosses itself"), "{message}");
     assert!(!place.path("out.meshb").exists());

@@ -283,7 +283,7 @@ fn the_check_tells_faces_with_flaws() {
     for name in ["duct.brep", "torus.brep", "cone-apex.brep", "capped-cylinder.step"] {
         assert_eq!(OcctModel::read(&data(name)).unwrap().flaws(), [], "{name}");
     }
-    let bow = OcctModel::read(&data("bow-tie.brep")).unwrap();
+    let bow = OcctModel::read(&data("faulty/bow-tie.brep")).unwrap();
     let ends: Vec<u32> = (0..6).filter(|&face| bow.topology().faces[face as usize].edges.len() == 4).collect();
     let flaws = bow.flaws();
     assert!(!flaws.is_empty() && flaws.iter().all(|(face, _)| ends.contains(face)), "{flaws:?}");
