@@ -2,7 +2,7 @@
 use super::dictionaries::write_stage;
 use super::flow::Flow;
 use super::forces::{Coefficients, Walls};
-use super::method::{FIRST_ORDER, Scheme, Stage};
+use super::method::{Scheme, Stage};
 use super::programs::solve;
 use crate::formats::foam;
 use crate::mesh::TetMesh;
@@ -143,7 +143,7 @@ impl<'a> Run<'a> {
                         "step {next:>6}  CL {lift:>10.6}  CD {drag:>10.6}  change {:>9.2e}  {} {:?}",
                         self.change,
                         slower.pace(),
-                        slower.scheme
+                        stage.scheme
                     ));
                     return Ok(self.change < self.plan.still);
                 }
@@ -152,12 +152,7 @@ impl<'a> Run<'a> {
                 }
                 Err(_) => {
                     (self.halvings, self.calm, self.repeated) = (self.halvings + 1, 0, self.repeated + 1);
-                    let order = if self.halvings == FIRST_ORDER { ", and first order," } else { "" };
-                    tell(&format!(
-                        "step {next:>6}  blew up at {}: half of that{order} from step {}",
-                        slower.pace(),
-                        self.at
-                    ));
+                    tell(&format!("step {next:>6}  blew up at {}: half of that from step {}", slower.pace(), self.at));
                     remove(&self.case.join(next.to_string()));
                 }
             }
@@ -195,10 +190,7 @@ impl<'a> Run<'a> {
         }
         (self.at, self.state, self.coefficients) = (next, state, coefficients);
         self.calm += 1;
-        if self.halvings >= FIRST_ORDER {
-            // A block of first order is enough: it has smoothed what blew up.
-            (self.halvings, self.calm) = (FIRST_ORDER - 1, 0);
-        } else if self.calm > CALM && self.halvings > 0 {
+        if self.calm > CALM && self.halvings > 0 {
             (self.halvings, self.calm) = (self.halvings - 1, 0);
         }
         Ok(())
