@@ -17,11 +17,11 @@ HERE = Path(__file__).resolve().parent
 OUT = cycles.ROOT / "out" / "onera-m6-flow"
 MACH = 0.84
 # (target, floor of today); `within`: of the section where the fewest points are near the measured ones; `inner`: of those without y/b 0.99, where
-# the measured flow separates behind the tip, which no inviscid one does, and the mesh at the tip's nose is too coarse.
+# the measured flow separates behind the tip.
 BOUNDS = [
-    Bound("within", "≥", 0.8), Bound("inner", "≥", 0.8, 0.75), Bound("adaptation", "≤", 0.05, 0.05), Bound("lift", "≥", 0.28, 0.27),
+    Bound("within", "≥", 0.8, 0.75), Bound("inner", "≥", 0.8, 0.82), Bound("adaptation", "≤", 0.05, 0.05), Bound("lift", "≥", 0.28, 0.27),
 ]
-SHORT = [Bound("within", "≥", 0.8), Bound("inner", "≥", 0.8, 0.65), Bound("adaptation", "≤", 0.05, 0.1), Bound("lift", "≥", 0.28, 0.25)]
+SHORT = [Bound("within", "≥", 0.8, 0.6), Bound("inner", "≥", 0.8, 0.65), Bound("adaptation", "≤", 0.05, 0.1), Bound("lift", "≥", 0.28, 0.25)]
 SHORTER = {"complexity": "4000", "max_complexity": "4000", "every": "1", "steps": "800", "folder": '"../../out/onera-m6-flow/short"'}
 
 
