@@ -151,7 +151,7 @@ pub mod ffi {
 }
 
 // SAFETY: a Model is never changed after load_model has returned it; its member functions are const and read shapes
-// and maps only, whose reference counts are atomic.
+// and maps only, whose reference counts are atomic. The boxes that it keeps are all found by entities::build, before the model is shared.
 unsafe impl Send for ffi::Model {}
 // SAFETY: as above.
 unsafe impl Sync for ffi::Model {}
