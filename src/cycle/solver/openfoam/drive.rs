@@ -3,6 +3,7 @@ use super::dictionaries::write_stage;
 use super::flow::Flow;
 use super::forces::{Coefficients, Walls};
 use super::method::{Scheme, Stage};
+use super::pace::Pace;
 use super::programs::solve;
 use crate::formats::foam;
 use crate::mesh::TetMesh;
@@ -15,12 +16,6 @@ pub const PLAN: &str = "plan.json";
 
 /// The file of the results there.
 pub const RESULT: &str = "coefficients.json";
-
-/// How often the Courant number, or the relaxation, is halved at most before it is given up.
-const HALVINGS: i32 = 5;
-
-/// Blocks without trouble after which what was halved is doubled again.
-const CALM: usize = 3;
 
 /// What is to be done with a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -109,9 +104,7 @@ struct Run<'a> {
     state: State,
     coefficients: Coefficients,
     change: f64,
-    halvings: i32,
-    /// Blocks since the last trouble.
-    calm: usize,
+    pace: Pace,
     repeated: usize,
 }
 
@@ -125,14 +118,14 @@ impl<'a> Run<'a> {
         let state = state(&case.join("0"), volumes.len())?;
         let walls = Walls::of(mesh, &plan.walls);
         let (coefficients, change) = (Coefficients::default(), f64::INFINITY);
-        Ok(Self { case, plan, walls, volumes, at: 0, state, coefficients, change, halvings: 0, calm: 0, repeated: 0 })
+        Ok(Self { case, plan, walls, volumes, at: 0, state, coefficients, change, pace: Pace::default(), repeated: 0 })
     }
 
     /// Makes the next block of steps, at most to step `end`; whether the flow stood still over it.
     fn block(&mut self, stage: Stage, end: usize, tell: &mut dyn FnMut(&str)) -> Result<bool, String> {
         let next = (self.at + self.plan.block).min(end);
         loop {
-            let slower = stage.slower(self.halvings);
+            let slower = stage.slower(self.pace.halvings());
             write_stage(self.case, &self.plan.flow, slower, self.at, next)?;
             let ended = self.start(next).and_then(|()| state(&self.case.join(next.to_string()), self.volumes.len()));
             match ended {
@@ -147,11 +140,11 @@ impl<'a> Run<'a> {
                     ));
                     return Ok(self.change < self.plan.still);
                 }
-                Err(error) if self.halvings >= HALVINGS => {
-                    return Err(format!("however small the steps, {error}"));
-                }
-                Err(_) => {
-                    (self.halvings, self.calm, self.repeated) = (self.halvings + 1, 0, self.repeated + 1);
+                Err(error) => {
+                    if !self.pace.slow_down() {
+                        return Err(format!("however small the steps, {error}"));
+                    }
+                    self.repeated += 1;
                     tell(&format!("step {next:>6}  blew up at {}: half of that from step {}", slower.pace(), self.at));
                     remove(&self.case.join(next.to_string()));
                 }
@@ -189,10 +182,7 @@ impl<'a> Run<'a> {
             remove(&self.case.join(self.at.to_string()));
         }
         (self.at, self.state, self.coefficients) = (next, state, coefficients);
-        self.calm += 1;
-        if self.calm > CALM && self.halvings > 0 {
-            (self.halvings, self.calm) = (self.halvings - 1, 0);
-        }
+        self.pace.go_on();
         Ok(())
     }
 }

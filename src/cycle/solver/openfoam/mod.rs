@@ -2,12 +2,13 @@
 //!
 //! `flow` says what holds where, `method` which program solves it (rhoCentralFoam with local time steps, or rhoSimpleFoam where the flow is
 //! slow and viscous), `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
-//! `programs`, and `forces` sums up what acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
+//! `programs`, as fast as `pace` lets it, and `forces` sums up what acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
 mod dictionaries;
 pub mod drive;
 mod flow;
 mod forces;
 mod method;
+mod pace;
 mod programs;
 
 pub use flow::{Flow, Kind};
