@@ -21,5 +21,5 @@ pub use config::{Config, Loaded, Schedule, parse};
 pub use error::Error;
 pub use history::{Cycle, History, Seconds};
 pub use layout::Layout;
-pub use process::Stop;
+pub use process::{Stop, last_line};
 pub use run::{Ended, Observer, Options, run};

@@ -2,7 +2,7 @@
 use super::Error;
 use super::solver::Call;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -13,6 +13,9 @@ const LOOK: Duration = Duration::from_millis(20);
 
 /// Lines of a log that an error tells.
 const LAST_LINES: usize = 12;
+
+/// Bytes at the end of a log that they are looked for in.
+const END: u64 = 16 << 10;
 
 /// What the user wants to end.
 #[derive(Debug, Default)]
@@ -127,14 +130,56 @@ pub fn describe(status: ExitStatus) -> String {
     }
 }
 
+/// The end of a log: as much as its last lines can be.
+fn end_of(log: &Path) -> String {
+    let read = |log: &Path| -> io::Result<Vec<u8>> {
+        let mut file = File::open(log)?;
+        let length = file.metadata()?.len();
+        file.seek(SeekFrom::Start(length.saturating_sub(END)))?;
+        let mut bytes = Vec::new();
+        file.take(END).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    String::from_utf8_lossy(&read(log).unwrap_or_default()).into_owned()
+}
+
+/// The last line of a log that says something; none where there is only the command.
+pub fn last_line(log: &Path) -> Option<String> {
+    let text = end_of(log);
+    // Programs with a bar of their own overwrite a line.
+    let line = text.split(['\n', '\r']).map(str::trim).rfind(|line| !line.is_empty())?;
+    (!line.starts_with("$ ")).then(|| line.to_owned())
+}
+
 /// The last lines of a log.
 pub fn last_lines(log: &Path) -> String {
-    let bytes = std::fs::read(log).unwrap_or_default();
-    let text = String::from_utf8_lossy(&bytes);
+    let text = end_of(log);
     let lines: Vec<&str> = text.lines().map(str::trim_end).filter(|line| !line.is_empty()).collect();
     lines[lines.len().saturating_sub(LAST_LINES)..]
         .iter()
         .map(|line| format!("    {line}"))
         .collect::<Vec<_>>()
         .join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_end_of_a_log_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.txt");
+        let told = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            last_line(&path)
+        };
+        assert_eq!(last_line(&path), None, "there is no file");
+        assert_eq!(told("$ solver --fast\n"), None);
+        assert_eq!(told("$ solver\nstep 1\nstep 2\n\n"), Some("step 2".into()));
+        assert_eq!(told("10 %\r20 %\r"), Some("20 %".into()));
+        let long = format!("{}\nlast\n", "x".repeat(3 * END as usize));
+        assert_eq!(told(&long), Some("last".into()));
+        assert!(last_lines(&path).len() < 2 * END as usize && last_lines(&path).ends_with("    last"));
+    }
 }

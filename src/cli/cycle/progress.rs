@@ -1,10 +1,11 @@
-//! Progress over the whole loop: a bar over its cycles with the step that runs, and a row for each cycle that is done.
+//! Progress over the whole loop: a bar over its cycles with the step that runs and the last line of its log, and a row for each cycle that is done.
 use crate::cli::print;
 use crate::cli::table::figure;
-use crate::cycle::{Cycle, Observer, Schedule};
+use crate::cycle::{Cycle, Observer, Schedule, last_line};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 /// Shows what the loop does.
@@ -12,11 +13,19 @@ pub struct Progress {
     wanted: bool,
     bar: ProgressBar,
     headed: AtomicBool,
+    running: Running,
 }
+
+/// The step that runs, and its log.
+type Running = Arc<Mutex<(String, PathBuf)>>;
+
+/// How long between two looks at the log.
+const LOOK: Duration = Duration::from_millis(500);
 
 impl Progress {
     /// Draws a bar if `wanted` and standard error is a terminal; rows if `wanted`.
     pub fn new(wanted: bool, schedule: &Schedule) -> Self {
+        let running = Running::default();
         let shown = wanted && std::io::IsTerminal::is_terminal(&std::io::stderr());
         let bar = if shown {
             let template = "cycle {pos:>2}{prefix} [{bar:16}] {elapsed_precise} {wide_msg}";
@@ -25,12 +34,13 @@ impl Progress {
             let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
             bar.set_prefix(schedule.last().map_or_else(String::new, |last| format!(" of {}", last + 1)));
             bar.set_style(style.progress_chars("=> "));
-            bar.enable_steady_tick(Duration::from_millis(500));
+            bar.enable_steady_tick(LOOK);
+            follow(bar.clone(), Arc::clone(&running));
             bar
         } else {
             ProgressBar::hidden()
         };
-        Self { wanted, bar, headed: AtomicBool::new(false) }
+        Self { wanted, bar, headed: AtomicBool::new(false), running }
     }
 
     /// The work is over.
@@ -44,11 +54,25 @@ impl Progress {
     }
 }
 
+/// Shows what the running step said last, until the bar is finished.
+fn follow(bar: ProgressBar, running: Running) {
+    std::thread::spawn(move || {
+        while !bar.is_finished() {
+            let (step, log) = running.lock().expect("no panic while it is held").clone();
+            let line = last_line(&log).unwrap_or_default();
+            bar.set_message(format!("{step}  {}", line.split_whitespace().collect::<Vec<_>>().join(" ")));
+            std::thread::sleep(LOOK);
+        }
+    });
+}
+
 impl Observer for Progress {
-    fn begin(&self, step: &str, _: &Path) {
+    fn begin(&self, step: &str, log: &Path) {
         let number = step.strip_prefix("cycle-").and_then(|rest| rest.split('/').next()).and_then(|n| n.parse().ok());
         self.bar.set_position(number.unwrap_or(0));
-        self.bar.set_message(step.rsplit('/').next().unwrap_or(step).to_owned());
+        let name = step.rsplit('/').next().unwrap_or(step).to_owned();
+        self.bar.set_message(name.clone());
+        *self.running.lock().expect("no panic while it is held") = (name, log.to_owned());
     }
 
     fn end(&self, _: &str, _: f64) {}

@@ -1,11 +1,9 @@
 //! Starts OpenFOAM's programs, the solver alone or in several processes.
 use super::drive::Plan;
+use crate::cycle::process::last_lines;
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-
-/// Lines of a log that an error tells.
-const LAST_LINES: usize = 12;
 
 /// Where OpenFOAM's own settings lie: its variable, or where Debian has them.
 fn installation() -> Option<PathBuf> {
@@ -59,10 +57,4 @@ fn run(case: &Path, log: &Path, words: &[&str]) -> Result<(), String> {
         return Ok(());
     }
     Err(format!("{} failed ({status}); the end of {}:\n{}", words.join(" "), log.display(), last_lines(log)))
-}
-
-fn last_lines(path: &Path) -> String {
-    let text = String::from_utf8_lossy(&std::fs::read(path).unwrap_or_default()).into_owned();
-    let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).collect();
-    lines[lines.len().saturating_sub(LAST_LINES)..].join("\n")
 }
