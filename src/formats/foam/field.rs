@@ -111,21 +111,42 @@ pub fn write_cell_field(
     if !uniform && field.values.len() != cells * width {
         return Err(wrong(format!("there are {} for {cells} cells of {width} each", field.values.len())));
     }
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let location = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
-    let (_, class, word) = CLASSES[CLASSES.iter().position(|(kind, ..)| *kind == field.kind).unwrap_or(0)];
-    let [mass, length, time, temperature] = dimensions(&name);
+    let (_, class, _) = CLASSES[CLASSES.iter().position(|(kind, ..)| *kind == field.kind).unwrap_or(0)];
     let mut values = field.values.clone();
     reorder(field.kind, &mut values);
+    write_field(path, class, field.kind, &values, uniform, patches, text)
+}
+
+/// Writes a value for each inner face (surfaceScalarField), with the entries of the patches.
+///
+/// # Errors
+/// [`Error::System`] when the file cannot be written.
+pub fn write_face_field(path: &Path, values: &[f64], patches: &[(String, String)], text: bool) -> Result<(), Error> {
+    write_field(path, "surfaceScalarField", FieldKind::Scalar, values, false, patches, text)
+}
+
+fn write_field(
+    path: &Path,
+    class: &str,
+    kind: FieldKind,
+    values: &[f64],
+    uniform: bool,
+    patches: &[(String, String)],
+    text: bool,
+) -> Result<(), Error> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let location = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
+    let (_, _, word) = CLASSES[CLASSES.iter().position(|(known, ..)| *known == kind).unwrap_or(0)];
+    let [mass, length, time, temperature] = dimensions(&name);
     write_beside(path, |w| {
         write!(w, "{}", head_text(class, &location, &name, text))?;
         write!(w, "\ndimensions      [{mass} {length} {time} {temperature} 0 0 0];\n\ninternalField   ")?;
         if uniform {
             w.write_all(b"uniform ")?;
-            write_tuple(w, &values)?;
+            write_tuple(w, values)?;
         } else {
             write!(w, "nonuniform List<{word}>")?;
-            write_reals(w, &values, width, text)?;
+            write_reals(w, values, kind.values(), text)?;
         }
         w.write_all(b";\n\nboundaryField\n{\n")?;
         patches.iter().try_for_each(|(name, entries)| writeln!(w, "    {name}\n    {{\n        {entries}\n    }}"))?;

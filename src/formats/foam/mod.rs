@@ -11,7 +11,7 @@ mod scan;
 mod write;
 
 pub use boundary::Patch;
-pub use field::{CellField, read_cell_field, write_cell_field};
+pub use field::{CellField, read_cell_field, write_cell_field, write_face_field};
 pub use write::write_poly_mesh;
 
 use super::{Dataset, NamedField, cells_to_vertices, vertices_to_cells};
@@ -60,6 +60,14 @@ fn case_of(path: &Path) -> PathBuf {
 /// As [`read`].
 pub fn read_mesh(path: &Path) -> Result<(TetMesh, Names), Error> {
     poly_mesh::read(&poly_mesh_of(path))
+}
+
+/// The cells on both sides of the inner faces of a case, in their order: owner and neighbour.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_inner_faces(path: &Path) -> Result<Vec<[u32; 2]>, Error> {
+    poly_mesh::inner_faces(&poly_mesh_of(path))
 }
 
 /// Reads a case, or its polyMesh: the mesh, and the fields of the newest time folder, averaged to the vertices.

@@ -53,6 +53,17 @@ pub(super) fn read(folder: &Path) -> Result<(TetMesh, Names), Error> {
     Ok((mesh, names))
 }
 
+/// Owner and neighbour of the inner faces.
+pub(super) fn inner_faces(folder: &Path) -> Result<Vec<[u32; 2]>, Error> {
+    let read = |name: &str| {
+        let file = open(folder, name)?;
+        let (head, mut scanner) = file.parts()?;
+        list::labels(&mut scanner, &head, None)
+    };
+    let (owner, neighbour) = (read("owner")?, read("neighbour")?);
+    Ok(owner.into_iter().zip(neighbour).map(|(owner, neighbour)| [owner, neighbour]).collect())
+}
+
 /// The file of that name of the folder.
 fn open(folder: &Path, name: &str) -> Result<FoamFile, Error> {
     // Where neither is there the error names the plain file.

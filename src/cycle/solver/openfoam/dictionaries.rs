@@ -1,5 +1,5 @@
 //! The dictionaries of a case (OpenFOAM v1912): what both programs read here, of each its own in `central` and `simple`.
-mod central;
+pub mod central;
 mod simple;
 
 use super::flow::Flow;
@@ -39,16 +39,34 @@ pub fn write_constant(case: &Path, flow: &Flow, method: Method) -> Result<(), St
     write(case, "constant", "turbulenceProperties", "simulationType laminar;\n")
 }
 
-/// What is done from step `start` to step `end`, where it is written.
-pub fn write_stage(case: &Path, flow: &Flow, stage: Stage, start: usize, end: usize) -> Result<(), String> {
-    let (program, interval) = (stage.method.program(), end - start);
+/// Steps that a program makes at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Steps {
+    /// The first one's number, less 1: that of the folder it begins with.
+    pub start: usize,
+    /// The last one's; its fields are written.
+    pub end: usize,
+    /// Whether the fields of each are written, and only the last ones kept: to see where it blows up.
+    pub watched: bool,
+    /// Whether some cells are solved to first order, of `central`.
+    pub marked: bool,
+}
+
+/// What is done in some steps.
+pub fn write_stage(case: &Path, flow: &Flow, stage: Stage, steps: Steps) -> Result<(), String> {
+    let Steps { start, end, watched, marked } = steps;
+    let (program, interval, kept) =
+        if watched { (stage.method.program(), 1, 1) } else { (stage.method.program(), end - start, 0) };
     let control = format!(
         "application {program};\nstartFrom startTime;\nstartTime {start};\nstopAt endTime;\nendTime {end};\ndeltaT 1;\n\
-         adjustTimeStep no;\nwriteControl runTime;\nwriteInterval {interval};\npurgeWrite 0;\nwriteFormat binary;\nwritePrecision 12;\n\
+         adjustTimeStep no;\nwriteControl runTime;\nwriteInterval {interval};\npurgeWrite {kept};\nwriteFormat binary;\nwritePrecision 12;\n\
          writeCompression off;\ntimeFormat general;\ntimePrecision 12;\nrunTimeModifiable no;\n"
     );
     let (control, schemes, solution) = match stage.method {
-        Method::Central => (control + &central::steps(stage), central::schemes(stage.scheme), central::solution()),
+        Method::Central => {
+            let factors = if marked { central::factors() } else { String::new() };
+            (control + &central::steps(stage) + &factors, central::schemes(stage.scheme, marked), central::solution())
+        }
         Method::Simple => (control, simple::schemes(stage.scheme), simple::solution(flow, stage)),
     };
     write(case, "system", "controlDict", &control)?;
@@ -92,7 +110,8 @@ mod tests {
         let flow: Flow = toml::from_str("mach = 0.3\nreynolds = 4000.0").unwrap();
         let stage =
             |method: Method| Stage { method, scheme: method.scheme(), courant: 0.4, smoothing: 0.3, relaxation: 0.7 };
-        write_stage(folder.path(), &flow, stage(Method::Simple), 50, 100).unwrap();
+        let steps = |start, end| Steps { start, end, watched: false, marked: false };
+        write_stage(folder.path(), &flow, stage(Method::Simple), steps(50, 100)).unwrap();
         let control = words(folder.path(), "system/controlDict");
         assert!(control.contains("application rhoSimpleFoam; startFrom startTime; startTime 50;"), "{control}");
         assert!(control.contains("endTime 100;") && control.contains("writeInterval 50;"), "{control}");
@@ -102,12 +121,21 @@ mod tests {
         assert!(schemes.contains(r#""laplacian\(.*,U\)" Gauss linear corrected;"#), "{schemes}");
         assert!(words(folder.path(), "system/fvSolution").contains("equations { U 0.7; h 0.7; }"));
         let first = Stage { scheme: Scheme::Upwind, ..stage(Method::Simple) };
-        write_stage(folder.path(), &flow, first, 0, 50).unwrap();
+        write_stage(folder.path(), &flow, first, steps(0, 50)).unwrap();
         assert!(words(folder.path(), "system/fvSchemes").contains("div(phi,U) bounded Gauss upwind;"));
-        write_stage(folder.path(), &flow, stage(Method::Central), 0, 100).unwrap();
+        write_stage(folder.path(), &flow, stage(Method::Central), steps(0, 100)).unwrap();
         let control = words(folder.path(), "system/controlDict");
         assert!(control.contains("application rhoCentralFoam;") && control.contains("maxCo 0.4;"), "{control}");
         let schemes = words(folder.path(), "system/fvSchemes");
         assert!(schemes.contains("default localEuler;") && schemes.contains("reconstruct(U) vanAlbadaV;"), "{schemes}");
+        let marked = Steps { watched: true, marked: true, ..steps(0, 100) };
+        write_stage(folder.path(), &flow, stage(Method::Central), marked).unwrap();
+        let control = words(folder.path(), "system/controlDict");
+        assert!(
+            control.contains("writeInterval 1; purgeWrite 1;") && control.contains("rhoUBlendingFactor"),
+            "{control}"
+        );
+        let schemes = words(folder.path(), "system/fvSchemes");
+        assert!(schemes.contains("reconstruct(U) localBlended vanAlbadaV upwind;"), "{schemes}");
     }
 }

@@ -1,8 +1,10 @@
-//! Runs a prepared case, some steps at a time, until it stands still; what blows up is repeated with smaller steps.
-use super::dictionaries::write_stage;
+//! Runs a prepared case, some steps at a time, until it stands still. What blows up is repeated, to see where, then with first order there, and if
+//! that does not help with smaller steps.
+use super::dictionaries::{Steps, write_stage};
 use super::flow::Flow;
 use super::forces::{Coefficients, Walls};
-use super::method::{Scheme, Stage};
+use super::marks::Marks;
+use super::method::{Method, Scheme, Stage};
 use super::pace::Pace;
 use super::programs::solve;
 use crate::formats::foam;
@@ -17,6 +19,9 @@ pub const PLAN: &str = "plan.json";
 /// The file of the results there.
 pub const RESULT: &str = "coefficients.json";
 
+/// How often a block may blow up with ever more cells of first order before it is made slower.
+const TRIALS: usize = 3;
+
 /// What is to be done with a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
@@ -28,6 +33,8 @@ pub struct Plan {
     pub flow: Flow,
     /// References of the walls.
     pub walls: Vec<i32>,
+    /// Patches of planes of symmetry.
+    pub symmetry: Vec<String>,
     /// How.
     pub stage: Stage,
     /// Steps of first order before.
@@ -58,6 +65,7 @@ pub struct Outcome {
 /// Fields of the cells at a step.
 struct State {
     pressure: Vec<f64>,
+    temperature: Vec<f64>,
     velocity: Vec<f64>,
 }
 
@@ -97,6 +105,7 @@ pub fn drive(case: &Path, tell: &mut dyn FnMut(&str)) -> Result<Outcome, String>
 struct Run<'a> {
     case: &'a Path,
     plan: &'a Plan,
+    mesh: &'a TetMesh,
     walls: Walls,
     volumes: Vec<f64>,
     /// The step whose fields are there.
@@ -106,10 +115,11 @@ struct Run<'a> {
     change: f64,
     pace: Pace,
     repeated: usize,
+    marks: Marks,
 }
 
 impl<'a> Run<'a> {
-    fn new(case: &'a Path, plan: &'a Plan, mesh: &TetMesh) -> Result<Self, String> {
+    fn new(case: &'a Path, plan: &'a Plan, mesh: &'a TetMesh) -> Result<Self, String> {
         let volume = |nodes: &[u32; 4]| {
             let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
             volume6(a, b, c, d).abs()
@@ -118,46 +128,80 @@ impl<'a> Run<'a> {
         let state = state(&case.join("0"), volumes.len())?;
         let walls = Walls::of(mesh, &plan.walls);
         let (coefficients, change) = (Coefficients::default(), f64::INFINITY);
-        Ok(Self { case, plan, walls, volumes, at: 0, state, coefficients, change, pace: Pace::default(), repeated: 0 })
+        let (pace, marks) = (Pace::default(), Marks::none(volumes.len()));
+        Ok(Self { case, plan, mesh, walls, volumes, at: 0, state, coefficients, change, pace, repeated: 0, marks })
     }
 
     /// Makes the next block of steps, at most to step `end`; whether the flow stood still over it.
     fn block(&mut self, stage: Stage, end: usize, tell: &mut dyn FnMut(&str)) -> Result<bool, String> {
-        let next = (self.at + self.plan.block).min(end);
+        let (start, end) = (self.at, (self.at + self.plan.block).min(end));
+        let limits = stage.method == Method::Central && stage.scheme != Scheme::Upwind;
+        let (mut watched, mut trials) = (false, TRIALS);
         loop {
             let slower = stage.slower(self.pace.halvings());
-            write_stage(self.case, &self.plan.flow, slower, self.at, next)?;
-            let ended = self.start(next).and_then(|()| state(&self.case.join(next.to_string()), self.volumes.len()));
-            match ended {
+            let marked = limits && self.marks.count > 0;
+            if marked {
+                let time = self.case.join(start.to_string());
+                self.marks.write(self.case, &time, &self.plan.symmetry)?;
+            }
+            write_stage(self.case, &self.plan.flow, slower, Steps { start, end, watched, marked })?;
+            let error = match self.start(end) {
                 Ok(state) => {
-                    self.take(next, state)?;
+                    self.take(end, state)?;
                     let Coefficients { lift, drag } = self.coefficients;
                     tell(&format!(
-                        "step {next:>6}  CL {lift:>10.6}  CD {drag:>10.6}  change {:>9.2e}  {} {:?}",
+                        "step {end:>6}  CL {lift:>10.6}  CD {drag:>10.6}  change {:>9.2e}  {} {:?}",
                         self.change,
                         slower.pace(),
                         stage.scheme
                     ));
                     return Ok(self.change < self.plan.still);
                 }
-                Err(error) => {
-                    if !self.pace.slow_down() {
-                        return Err(format!("however small the steps, {error}"));
-                    }
-                    self.repeated += 1;
-                    tell(&format!("step {next:>6}  blew up at {}: half of that from step {}", slower.pace(), self.at));
-                    remove(&self.case.join(next.to_string()));
-                }
+                Err(error) => error,
+            };
+            self.repeated += 1;
+            let blew_up = format!("step {end:>6}  blew up at {}", slower.pace());
+            let failed = if watched && trials > 0 { self.mark() } else { 0 };
+            if limits && !watched {
+                watched = true;
+                tell(&format!("{blew_up}: again from step {start}, to see where"));
+            } else if failed > 0 {
+                trials -= 1;
+                let count = self.marks.count;
+                tell(&format!(
+                    "{blew_up} in {failed} cells: from step {start} with first order there, in {count} cells in all"
+                ));
+            } else if self.pace.slow_down() {
+                tell(&format!("{blew_up}: half of that from step {start}"));
+            } else {
+                return Err(format!("however small the steps, {error}"));
             }
+            self.forget();
         }
     }
 
-    /// Starts the solver for the steps up to `next`.
-    fn start(&self, next: usize) -> Result<(), String> {
-        let log = self.case.join(format!("log.{next}"));
+    /// Marks where the block that blew up has failed, as its last fields show it; how many cells, which had no mark before.
+    fn mark(&mut self) -> usize {
+        let Ok(last) = last_time(self.case) else { return 0 };
+        let (cells, before) = (self.volumes.len(), &self.state);
+        let (Ok(pressure), Ok(temperature)) = (field(&last, "p", cells), field(&last, "T", cells)) else { return 0 };
+        self.marks.add(self.mesh, [&before.pressure, &before.temperature], [&pressure, &temperature])
+    }
+
+    /// Removes what the steps after the last good one have left.
+    fn forget(&self) {
+        while let Some(last) = foam::newest_time(self.case)
+            && last != self.case.join(self.at.to_string())
+            && std::fs::remove_dir_all(&last).is_ok()
+        {}
+    }
+
+    /// Makes the steps up to `end`: the fields there.
+    fn start(&self, end: usize) -> Result<State, String> {
+        let log = self.case.join(format!("log.{end}"));
         solve(self.case, self.plan, &log)?;
         let _ = std::fs::remove_file(&log); // of no use any more
-        Ok(())
+        state(&self.case.join(end.to_string()), self.volumes.len())
     }
 
     /// Takes over a block that ended well, and drops the one before.
@@ -194,16 +238,20 @@ fn remove(folder: &Path) {
 
 /// The fields of a time; an error where it is not whole.
 fn state(time: &Path, cells: usize) -> Result<State, String> {
-    let read = |name: &str| match foam::read_cell_field(&time.join(name), cells) {
-        Ok(Ok(field)) => Ok(field.values),
-        Ok(Err(class)) => Err(format!("{}: a {class} where a field of cells should be", time.join(name).display())),
-        Err(error) => Err(error.to_string()),
-    };
-    let temperature = read("T")?;
+    let temperature = field(time, "T", cells)?;
     if let Some(value) = temperature.iter().find(|value| **value <= 0.0) {
         return Err(format!("{}: a temperature is {value}", time.display()));
     }
-    Ok(State { pressure: read("p")?, velocity: read("U")? })
+    Ok(State { pressure: field(time, "p", cells)?, temperature, velocity: field(time, "U", cells)? })
+}
+
+/// The values of a field of a time.
+fn field(time: &Path, name: &str, cells: usize) -> Result<Vec<f64>, String> {
+    match foam::read_cell_field(&time.join(name), cells) {
+        Ok(Ok(field)) => Ok(field.values),
+        Ok(Err(class)) => Err(format!("{}: a {class} where a field of cells should be", time.join(name).display())),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 /// The folder of the last step.

@@ -2,11 +2,12 @@
 //!
 //! `flow` says what holds where, `method` which program solves it (rhoCentralFoam with local time steps, or rhoSimpleFoam where the flow is
 //! slow and viscous), `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
-//! `programs`, as fast as `pace` lets it, and `forces` sums up what acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
+//! `programs`, as fast as `pace` lets it, to first order where `marks` are, and `forces` sums up what acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
 mod dictionaries;
 pub mod drive;
 mod flow;
 mod forces;
+mod marks;
 mod method;
 mod pace;
 mod programs;
@@ -158,7 +159,7 @@ impl Config {
         Ok(kinds.filter(|(_, kind)| *kind == Kind::Wall).map(|(reference, _)| reference).collect())
     }
 
-    fn plan(&self, walls: Vec<i32>, begins: bool) -> Plan {
+    fn plan(&self, walls: Vec<i32>, symmetry: Vec<String>, begins: bool) -> Plan {
         let method = self.method();
         let &Self { courant, smoothing, relaxation, .. } = self;
         let scheme = self.scheme.unwrap_or(method.scheme());
@@ -167,6 +168,7 @@ impl Config {
             processes: self.processes,
             flow: self.flow.clone(),
             walls,
+            symmetry,
             stage: Stage { method, scheme, courant, smoothing, relaxation },
             start_steps: if begins { self.start_steps.unwrap_or(method.start_steps()) } else { 0 },
             steps: self.steps,
@@ -225,8 +227,13 @@ impl Solver for Config {
             foam::write_cell_field(&time.join(name), field, data.mesh.tets.len(), &entries, false)
                 .map_err(|error| error.to_string())?;
         }
+        let symmetry = patches
+            .iter()
+            .filter(|patch| kinds[&patch.reference] == Kind::Symmetry)
+            .map(|patch| patch.name.clone())
+            .collect();
         dictionaries::write_constant(&case, &self.flow, self.method())?;
-        let mut plan = self.plan(self.walls(&data)?, data.fields.is_empty());
+        let mut plan = self.plan(self.walls(&data)?, symmetry, data.fields.is_empty());
         if let Some(program) = find_program(self.program(), job.base) {
             plan.program = program.to_string_lossy().into_owned();
         }
