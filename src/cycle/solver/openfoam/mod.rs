@@ -52,7 +52,7 @@ pub struct Config {
     pub still: f64,
     /// How values at faces are found; by default the best that lasts on stretched tetrahedra.
     pub scheme: Option<Scheme>,
-    /// Greatest Courant number, of `central`; it is halved where a solve blows up.
+    /// Greatest Courant number, of `central`; it is halved where a solve blows up and first order in the cells that fell does not help.
     #[serde(default = "courant")]
     pub courant: f64,
     /// Greatest growth of the local time step from a cell to the next, less 1; of `central`.
