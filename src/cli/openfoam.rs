@@ -1,6 +1,6 @@
 //! `geo-adapt openfoam`: runs a case that `geo-adapt cycle` has prepared.
 use super::{Outcome, print};
-use crate::cycle::solver::openfoam::drive::drive;
+use crate::cycle::solver::openfoam::drive;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -13,8 +13,10 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let outcome = drive(&arguments.case, &mut |line| print(&format!("{line}\n")))?;
+    let outcome = drive::drive(&arguments.case, &mut |line| print(&format!("{line}\n")))?;
     let ended = if outcome.still { "stands still" } else { "has used up its steps" };
-    print(&format!("{ended} after {} steps, {} blocks repeated\n", outcome.steps, outcome.repeated));
+    let drive::Outcome { steps, repeated, first_order, .. } = outcome;
+    let rough = if first_order > 0 { format!(", {first_order} cells of first order") } else { String::new() };
+    print(&format!("{ended} after {steps} steps, {repeated} blocks repeated{rough}\n"));
     Ok(ExitCode::SUCCESS)
 }

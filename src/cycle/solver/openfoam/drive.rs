@@ -60,6 +60,8 @@ pub struct Outcome {
     pub still: bool,
     /// Blocks that blew up and were repeated.
     pub repeated: usize,
+    /// Cells that were solved to first order in the end, where it had blown up.
+    pub first_order: usize,
 }
 
 /// Fields of the cells at a step.
@@ -96,6 +98,7 @@ pub fn drive(case: &Path, tell: &mut dyn FnMut(&str)) -> Result<Outcome, String>
         change: run.change,
         still: calm >= 2,
         repeated: run.repeated,
+        first_order: run.marks.count,
     };
     let text = serde_json::to_string_pretty(&outcome).map_err(|error| error.to_string())?;
     std::fs::write(case.join(RESULT), text).map_err(|error| format!("{}: {error}", case.join(RESULT).display()))?;
@@ -140,12 +143,16 @@ impl<'a> Run<'a> {
         loop {
             let slower = stage.slower(self.pace.halvings());
             let marked = limits && self.marks.count > 0;
+            let time = self.case.join(start.to_string());
             if marked {
-                let time = self.case.join(start.to_string());
                 self.marks.write(self.case, &time, &self.plan.symmetry)?;
             }
             write_stage(self.case, &self.plan.flow, slower, Steps { start, end, watched, marked })?;
-            let error = match self.start(end) {
+            let ended = self.start(end);
+            if marked {
+                Marks::remove(&time);
+            }
+            let error = match ended {
                 Ok(state) => {
                     self.take(end, state)?;
                     let Coefficients { lift, drag } = self.coefficients;

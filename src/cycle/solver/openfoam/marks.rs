@@ -58,6 +58,13 @@ impl Marks {
         }
         Ok(())
     }
+
+    /// Removes what [`Self::write`] has written.
+    pub fn remove(time: &Path) {
+        for field in AT_FACES {
+            let _ = std::fs::remove_file(time.join(factor(field))); // what stays is read by nobody
+        }
+    }
 }
 
 #[cfg(test)]
