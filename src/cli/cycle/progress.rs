@@ -32,8 +32,8 @@ impl Progress {
             let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
             let length = schedule.last().map_or(0, |last| u64::from(last) + 1);
             let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
-            bar.set_prefix(schedule.last().map_or_else(String::new, |last| format!(" of {}", last + 1)));
             bar.set_style(style.progress_chars("=> "));
+            bar.set_prefix(schedule.last().map_or_else(String::new, |last| format!(" of {}", last + 1)));
             bar.enable_steady_tick(LOOK);
             follow(bar.clone(), Arc::clone(&running));
             bar
