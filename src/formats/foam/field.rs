@@ -23,6 +23,12 @@ const CLASSES: [(FieldKind, &str, &str); 4] = [
     (FieldKind::Tensor, "volTensorField", "tensor"),
 ];
 
+/// The class of files of a kind at cells, and the word for its values.
+fn words_of(kind: FieldKind) -> (&'static str, &'static str) {
+    let (_, class, word) = CLASSES[CLASSES.iter().position(|(known, ..)| *known == kind).unwrap_or(0)];
+    (class, word)
+}
+
 /// OpenFOAM has xx xy xz yy yz zz, files of libMeshb 11 12 22 13 23 33: the third and the fourth change places.
 fn reorder(kind: FieldKind, values: &mut [f64]) {
     if kind == FieldKind::SymmetricTensor {
@@ -111,7 +117,7 @@ pub fn write_cell_field(
     if !uniform && field.values.len() != cells * width {
         return Err(wrong(format!("there are {} for {cells} cells of {width} each", field.values.len())));
     }
-    let (_, class, _) = CLASSES[CLASSES.iter().position(|(kind, ..)| *kind == field.kind).unwrap_or(0)];
+    let (class, _) = words_of(field.kind);
     let mut values = field.values.clone();
     reorder(field.kind, &mut values);
     write_field(path, class, field.kind, &values, uniform, patches, text)
@@ -136,7 +142,7 @@ fn write_field(
 ) -> Result<(), Error> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let location = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
-    let (_, _, word) = CLASSES[CLASSES.iter().position(|(known, ..)| *known == kind).unwrap_or(0)];
+    let (_, word) = words_of(kind);
     let [mass, length, time, temperature] = dimensions(&name);
     write_beside(path, |w| {
         write!(w, "{}", head_text(class, &location, &name, text))?;

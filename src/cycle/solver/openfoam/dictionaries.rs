@@ -55,8 +55,8 @@ pub struct Steps {
 /// What is done in some steps.
 pub fn write_stage(case: &Path, flow: &Flow, stage: Stage, steps: Steps) -> Result<(), String> {
     let Steps { start, end, watched, marked } = steps;
-    let (program, interval, kept) =
-        if watched { (stage.method.program(), 1, 1) } else { (stage.method.program(), end - start, 0) };
+    let program = stage.method.program();
+    let (interval, kept) = if watched { (1, 1) } else { (end - start, 0) };
     let control = format!(
         "application {program};\nstartFrom startTime;\nstartTime {start};\nstopAt endTime;\nendTime {end};\ndeltaT 1;\n\
          adjustTimeStep no;\nwriteControl runTime;\nwriteInterval {interval};\npurgeWrite {kept};\nwriteFormat binary;\nwritePrecision 12;\n\
