@@ -39,6 +39,14 @@ fi
 cp -r "$start" "$(value endTime)"
 "#;
 
+/// A solver whose pressure is now that of the folder `swing-0`, now that of `swing-1`.
+const SWINGING: &str = r#"#!/bin/bash
+value() { sed -n "s/^$1 \(.*\);/\1/p" system/controlDict; }
+end=$(value endTime)
+cp -r "$(value startTime)" "$end"
+cp ../../swing-$((end / 20 % 2))/p "$end/p"
+"#;
+
 const CONFIG: &str = r#"
 threads = 1
 [mesh]
@@ -177,6 +185,27 @@ fn cells_where_a_solve_blows_up_again_are_solved_to_first_order() {
     assert!(text.contains("surfaceScalarField") && text.contains("type symmetry; value uniform 1;"), "{text}");
     let reals = |x: f64| factor.windows(8).filter(|bytes| *bytes == x.to_le_bytes()).count();
     assert!(reals(1.0) > 20 && reals(0.0) > 20, "{text}");
+}
+
+#[test]
+fn of_a_flow_that_swings_about_the_mean_counts() {
+    let place = Place::new("./stand-in", SIDES);
+    std::fs::write(place.path("stand-in"), SWINGING).unwrap();
+    let cells = cube(3).tets.len();
+    for (folder, pressure) in [("swing-0", 1.25), ("swing-1", 0.75)] {
+        std::fs::create_dir(place.path(folder)).unwrap();
+        let field = CellField { kind: FieldKind::Scalar, values: vec![pressure; cells] };
+        write_cell_field(&place.path(folder).join("p"), &field, cells, &[], false).unwrap();
+    }
+    let (solved, log) = solve(&place, SIDES, "./stand-in", None);
+    // 40 steps of first order and 300 others, of which the last half: looks at 200, 220, ... 340, one in two at each pressure.
+    assert!(log.last().unwrap().starts_with("step    340"), "{log:?}");
+    let outcome: serde_json::Value = serde_json::from_str(&place.text("first/case/coefficients.json")).unwrap();
+    assert!(outcome["averaged"] == 8 && outcome["still"] == false, "{outcome}");
+    let of = |name: &str| &solved.fields.iter().find(|field| field.name == name).unwrap().values;
+    assert!(of("p").iter().all(|p| (p - 1.0).abs() < 1e-12) && of("rho").iter().all(|rho| (rho - 1.4).abs() < 1e-12));
+    // The wall below and that above are pressed alike.
+    assert!(solved.functionals["CL"].abs() < 1e-12, "{:?}", solved.functionals);
 }
 
 #[test]

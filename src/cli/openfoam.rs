@@ -15,8 +15,10 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let outcome = drive::drive(&arguments.case, &mut |line| print(&format!("{line}\n")))?;
     let ended = if outcome.still { "stands still" } else { "has used up its steps" };
-    let drive::Outcome { steps, repeated, first_order, .. } = outcome;
+    let drive::Outcome { steps, repeated, first_order, averaged, .. } = outcome;
     let rough = if first_order > 0 { format!(", {first_order} cells of first order") } else { String::new() };
-    print(&format!("{ended} after {steps} steps, {repeated} blocks repeated{rough}\n"));
+    let mean =
+        if averaged > 0 { format!("; it swings about: the mean of {averaged} looks counts") } else { String::new() };
+    print(&format!("{ended} after {steps} steps, {repeated} blocks repeated{rough}{mean}\n"));
     Ok(ExitCode::SUCCESS)
 }

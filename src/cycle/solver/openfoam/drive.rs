@@ -4,9 +4,11 @@ use super::dictionaries::{Steps, write_stage};
 use super::flow::Flow;
 use super::forces::{Coefficients, Walls};
 use super::marks::Marks;
+use super::mean::Mean;
 use super::method::{Method, Scheme, Stage};
 use super::pace::Pace;
 use super::programs::solve;
+use super::state::{State, field};
 use crate::formats::foam;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::volume6;
@@ -18,6 +20,9 @@ pub const PLAN: &str = "plan.json";
 
 /// The file of the results there.
 pub const RESULT: &str = "coefficients.json";
+
+/// The folder of the mean fields there, where the flow swings about.
+const MEAN: &str = "mean";
 
 /// How often a block may blow up with ever more cells of first order before it is made slower.
 const TRIALS: usize = 3;
@@ -50,7 +55,7 @@ pub struct Plan {
 /// What came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// Of the last cells.
+    /// Of the fields that count, those of [`Outcome::fields`].
     pub coefficients: Coefficients,
     /// Steps that were made and kept.
     pub steps: usize,
@@ -62,13 +67,15 @@ pub struct Outcome {
     pub repeated: usize,
     /// Cells that were solved to first order in the end, where it had blown up.
     pub first_order: usize,
+    /// Of how many looks at a flow that swings about the mean was taken, and is what counts; 0: what counts is the last step.
+    pub averaged: usize,
 }
 
-/// Fields of the cells at a step.
-struct State {
-    pressure: Vec<f64>,
-    temperature: Vec<f64>,
-    velocity: Vec<f64>,
+impl Outcome {
+    /// The folder of the fields that count: the mean ones, or those of the last step.
+    pub fn fields(&self, case: &Path) -> Result<PathBuf, String> {
+        if self.averaged > 0 { Ok(case.join(MEAN)) } else { last_time(case) }
+    }
 }
 
 /// Runs the case in the folder as its plan says; `tell` is given a line a block.
@@ -92,13 +99,20 @@ pub fn drive(case: &Path, tell: &mut dyn FnMut(&str)) -> Result<Outcome, String>
         let still = run.block(plan.stage, end, tell)?;
         calm = if still { calm + 1 } else { 0 };
     }
+    let (still, mut averaged) = (calm >= 2, 0);
+    if !still && let Some((mean, looks)) = run.mean() {
+        mean.write(&case.join(MEAN))?;
+        run.coefficients = run.walls.coefficients(&plan.flow, &mean.pressure, &mean.velocity);
+        averaged = looks;
+    }
     let outcome = Outcome {
         coefficients: run.coefficients,
         steps: run.at,
         change: run.change,
-        still: calm >= 2,
+        still,
         repeated: run.repeated,
         first_order: run.marks.count,
+        averaged,
     };
     let text = serde_json::to_string_pretty(&outcome).map_err(|error| error.to_string())?;
     std::fs::write(case.join(RESULT), text).map_err(|error| format!("{}: {error}", case.join(RESULT).display()))?;
@@ -119,6 +133,7 @@ struct Run<'a> {
     pace: Pace,
     repeated: usize,
     marks: Marks,
+    mean: Mean,
 }
 
 impl<'a> Run<'a> {
@@ -128,11 +143,26 @@ impl<'a> Run<'a> {
             volume6(a, b, c, d).abs()
         };
         let volumes: Vec<f64> = mesh.tets.nodes.iter().map(volume).collect();
-        let state = state(&case.join("0"), volumes.len())?;
+        let state = State::read(&case.join("0"), volumes.len())?;
         let walls = Walls::of(mesh, &plan.walls);
         let (coefficients, change) = (Coefficients::default(), f64::INFINITY);
         let (pace, marks) = (Pace::default(), Marks::none(volumes.len()));
-        Ok(Self { case, plan, mesh, walls, volumes, at: 0, state, coefficients, change, pace, repeated: 0, marks })
+        let mean = Mean::from(plan.start_steps + plan.steps.div_ceil(2));
+        Ok(Self {
+            case,
+            plan,
+            mesh,
+            walls,
+            volumes,
+            at: 0,
+            state,
+            coefficients,
+            change,
+            pace,
+            repeated: 0,
+            marks,
+            mean,
+        })
     }
 
     /// Makes the next block of steps, at most to step `end`; whether the flow stood still over it.
@@ -154,7 +184,7 @@ impl<'a> Run<'a> {
             }
             let error = match ended {
                 Ok(state) => {
-                    self.take(end, state)?;
+                    self.take(end, state);
                     let Coefficients { lift, drag } = self.coefficients;
                     tell(&format!(
                         "step {end:>6}  CL {lift:>10.6}  CD {drag:>10.6}  change {:>9.2e}  {} {:?}",
@@ -208,20 +238,16 @@ impl<'a> Run<'a> {
         let log = self.case.join(format!("log.{end}"));
         solve(self.case, self.plan, &log)?;
         let _ = std::fs::remove_file(&log); // of no use any more
-        state(&self.case.join(end.to_string()), self.volumes.len())
+        State::read(&self.case.join(end.to_string()), self.volumes.len())
     }
 
     /// Takes over a block that ended well, and drops the one before.
-    fn take(&mut self, next: usize, state: State) -> Result<(), String> {
+    fn take(&mut self, next: usize, state: State) {
         let coefficients = self.walls.coefficients(&self.plan.flow, &state.pressure, &state.velocity);
-        // Squares: the noise of a large far field must not outweigh the body's surroundings.
-        let size = |f: &dyn Fn(usize) -> f64| {
-            (0..self.volumes.len()).map(|cell| self.volumes[cell] * f(cell).powi(2)).sum::<f64>().sqrt()
-        };
         let outside = self.plan.flow.pressure;
         // Where nothing but rounding is left, that is still.
-        let away = size(&|cell| state.pressure[cell] - outside) + size(&|_| 1e-6 * outside);
-        let moved = size(&|cell| state.pressure[cell] - self.state.pressure[cell]);
+        let away = self.size(|cell| state.pressure[cell] - outside) + self.size(|_| 1e-6 * outside);
+        let moved = self.distance(&state.pressure, &self.state.pressure);
         let Coefficients { lift, drag } = self.coefficients;
         let forces = (coefficients.lift - lift).abs().max((coefficients.drag - drag).abs())
             / coefficients.lift.abs().max(coefficients.drag.abs()).max(1e-6);
@@ -232,33 +258,31 @@ impl<'a> Run<'a> {
         if self.at > 0 {
             remove(&self.case.join(self.at.to_string()));
         }
+        self.mean.look(next, &state, moved);
         (self.at, self.state, self.coefficients) = (next, state, coefficients);
         self.pace.go_on();
-        Ok(())
+    }
+
+    /// Root of the integral of the square: the noise of a large far field must not outweigh the body's surroundings.
+    fn size(&self, of: impl Fn(usize) -> f64) -> f64 {
+        (0..self.volumes.len()).map(|cell| self.volumes[cell] * of(cell).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// The size of what two fields differ by.
+    fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+        self.size(|cell| a[cell] - b[cell])
+    }
+
+    /// The mean of the last half, if the flow swings about, and of how many looks it is.
+    fn mean(&mut self) -> Option<(State, usize)> {
+        let mean = std::mem::replace(&mut self.mean, Mean::from(usize::MAX));
+        mean.of_swings(&self.state.pressure, |a, b| self.distance(a, b))
     }
 }
 
 /// Removes a folder of a time, which another will replace.
 fn remove(folder: &Path) {
     let _ = std::fs::remove_dir_all(folder); // it may not have been written
-}
-
-/// The fields of a time; an error where it is not whole.
-fn state(time: &Path, cells: usize) -> Result<State, String> {
-    let temperature = field(time, "T", cells)?;
-    if let Some(value) = temperature.iter().find(|value| **value <= 0.0) {
-        return Err(format!("{}: a temperature is {value}", time.display()));
-    }
-    Ok(State { pressure: field(time, "p", cells)?, temperature, velocity: field(time, "U", cells)? })
-}
-
-/// The values of a field of a time.
-fn field(time: &Path, name: &str, cells: usize) -> Result<Vec<f64>, String> {
-    match foam::read_cell_field(&time.join(name), cells) {
-        Ok(Ok(field)) => Ok(field.values),
-        Ok(Err(class)) => Err(format!("{}: a {class} where a field of cells should be", time.join(name).display())),
-        Err(error) => Err(error.to_string()),
-    }
 }
 
 /// The folder of the last step.

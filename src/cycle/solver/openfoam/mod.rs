@@ -2,15 +2,18 @@
 //!
 //! `flow` says what holds where, `method` which program solves it (rhoCentralFoam with local time steps, or rhoSimpleFoam where the flow is
 //! slow and viscous), `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
-//! `programs`, as fast as `pace` lets it, to first order where `marks` are, and `forces` sums up what acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
+//! `programs`, as fast as `pace` lets it, to first order where `marks` are, until it stands still or else to its `mean`, and `forces` sums up what
+//! acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
 mod dictionaries;
 pub mod drive;
 mod flow;
 mod forces;
 mod marks;
+mod mean;
 mod method;
 mod pace;
 mod programs;
+mod state;
 
 pub use flow::{Flow, Kind};
 pub use forces::{Coefficients, Walls};
@@ -252,7 +255,7 @@ impl Solver for Config {
         let outcome: Outcome = serde_json::from_str(&text).map_err(|error| named(&error))?;
         let data = job.dataset()?;
         let still = if self.flow.reynolds.is_some() { self.walls(&data)? } else { Vec::new() };
-        let fields = fields(&self.flow, &data.mesh, &still, &drive::last_time(&case)?)?;
+        let fields = fields(&self.flow, &data.mesh, &still, &outcome.fields(&case)?)?;
         let Coefficients { lift, drag } = outcome.coefficients;
         let steps = outcome.steps as f64;
         let functionals = [("CL", lift), ("CD", drag), ("steps", steps), ("change", outcome.change)];
