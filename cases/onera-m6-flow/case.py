@@ -1,7 +1,7 @@
 """The ONERA M6 wing, inviscid, Mach 0.84 and 3.06°, by OpenFOAM in the loop: pressures at seven sections beside the measured ones.
 
 Runs loop.toml (--restart: anew), compares Cp with test 2308 of AGARD AR-138, draws the sections and the wing, and tells how much of the time was the
-adaptation's. --short: one coarse cycle, with its own floors. Exit code: 0 when every floor is held, else 1. Half an hour to two hours.
+adaptation's. --short: one coarse cycle, with its own floors. Exit code: 0 when every floor is held, else 1. One to two hours.
 """
 
 import json
