@@ -73,6 +73,9 @@ pub struct Outcome {
 
 impl Outcome {
     /// The folder of the fields that count: the mean ones, or those of the last step.
+    ///
+    /// # Errors
+    /// When there is none of the last step.
     pub fn fields(&self, case: &Path) -> Result<PathBuf, String> {
         if self.averaged > 0 { Ok(case.join(MEAN)) } else { last_time(case) }
     }
@@ -81,7 +84,7 @@ impl Outcome {
 /// Runs the case in the folder as its plan says; `tell` is given a line a block.
 ///
 /// # Errors
-/// When a file is not there, or it blows up however small the steps are: with the last lines of its log.
+/// When a file is not there or cannot be written, or it blows up however small the steps are: with the last lines of its log.
 pub fn drive(case: &Path, tell: &mut dyn FnMut(&str)) -> Result<Outcome, String> {
     let path = case.join(PLAN);
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
