@@ -1,5 +1,5 @@
-//! Runs a prepared case, some steps at a time, until it stands still or its steps are used up. What blows up is repeated, to see where, then with first order there, and if
-//! that does not help with smaller steps.
+//! Runs a prepared case, some steps at a time, until it stands still or its steps are used up. What blows up is repeated, to see where, then with
+//! first order there, and if that does not help with smaller steps.
 use super::dictionaries::{Steps, write_stage};
 use super::flow::Flow;
 use super::forces::{Coefficients, Walls};
