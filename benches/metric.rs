@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::samples::cube;
 use geo_adapt::mesh::vector::{Vec3, cross, unit};
-use geo_adapt::metric::batch::{Batch, Spokes};
+use geo_adapt::metric::batch::{Batch, IncidentEdges};
 use geo_adapt::metric::lanes::LANES;
 use geo_adapt::metric::quality::{edge_length, mean_ratio, mean_ratio_in};
 use geo_adapt::metric::{Background, Sym3};
@@ -72,17 +72,17 @@ fn quality(c: &mut Criterion) {
     over(c, "edge_length", &edges, |(v, a, b)| edge_length(*v, a, b));
     // Numbers of their own: the inputs below stay what they were.
     let mut others = Numbers(4);
-    let spokes: Vec<(Spokes, Vec3, Sym3)> = edges
+    let incident: Vec<(IncidentEdges, Vec3, Sym3)> = edges
         .chunks_exact(LANES)
         .map(|some| {
-            let mut spokes = Spokes::default();
+            let mut incident = IncidentEdges::default();
             for (lane, (point, metric, _)) in some.iter().enumerate() {
-                spokes.set(lane, *point, metric);
+                incident.set(lane, *point, metric);
             }
-            (spokes, others.point(), others.metric(100.0))
+            (incident, others.point(), others.metric(100.0))
         })
         .collect();
-    over(c, "edge_length, eight at once", &spokes, |(spokes, p, metric)| spokes.lengths(*p, metric));
+    over(c, "edge_length, eight at once", &incident, |(incident, p, metric)| incident.lengths(*p, metric));
     // Corners near those of a right tetrahedron: positive. Metrics of neighbours differ little.
     let tets: Vec<([Vec3; 4], [Sym3; 4])> = (0..INPUTS)
         .map(|_| {

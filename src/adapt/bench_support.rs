@@ -1,20 +1,25 @@
 //! What benches/kernel.rs needs of the kernel's inside: a mesh in a store, single sweeps over it on one thread, single cavities.
 //! No part of the interface.
-use super::access::{Access, Exclusive};
-use super::ball::Ball;
-use super::build::{self, Filled};
-use super::context::Context;
-use super::criteria::Criterion;
-use super::edges;
-use super::extract::{self, References};
-use super::ids::{EDGE, TetId, VertexId};
-use super::insert::EdgeItem;
-use super::outcome::{Counts, Refusal};
-use super::schedule::{self, Collapse, Crew, Grains, Operation, Reconnect, Scheduler, Smooth, Split};
-use super::shape::{is_longer, is_shorter};
-use super::star::{Bounds, Seed};
-use super::work::Kind;
-use super::worker::{State, Worker};
+use crate::adapt::core::access::{Access, Exclusive};
+use crate::adapt::core::ball::Ball;
+use crate::adapt::core::context::Context;
+use crate::adapt::core::edge_list;
+use crate::adapt::core::edge_list::EdgeItem;
+use crate::adapt::core::fill::{self, Filled};
+use crate::adapt::core::ids::{EDGE, TetId, VertexId};
+use crate::adapt::core::measure::{is_longer, is_shorter};
+use crate::adapt::core::refusal::{Counts, Refusal};
+use crate::adapt::core::star::{Bounds, Seed};
+use crate::adapt::core::worker::{State, Worker};
+use crate::adapt::extract::{self, References};
+use crate::adapt::operations::collapse::onto_end::Collapse;
+use crate::adapt::operations::insertion::edge_split::Split;
+use crate::adapt::operations::reconnection::criteria::Criterion;
+use crate::adapt::operations::reconnection::ring::Ring;
+use crate::adapt::operations::reconnection::sweep::Reconnect;
+use crate::adapt::operations::smoothing::vertex::Smooth;
+use crate::adapt::schedule::work::Kind;
+use crate::adapt::schedule::{self, Execution, Grains, Operation, Scheduler};
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
 use crate::geometry::{Discrete, Error, Geometry, Model};
@@ -89,11 +94,17 @@ struct RemoveEdges;
 
 impl Operation for RemoveEdges {
     type Item = TetId;
+    type Scratch = Box<Ring>;
     const WHOLE_BALLS: bool = false;
 
-    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, t: TetId) -> Result<(), Refusal> {
+    fn attempt<A: Access>(
+        &self,
+        worker: &mut Worker<'_, '_, A>,
+        ring: &mut Box<Ring>,
+        t: TetId,
+    ) -> Result<(), Refusal> {
         let v = worker.claim_moving_tet(t)?;
-        let mut tried = EDGE.iter().map(|&[i, j]| worker.remove_edge(v[i], v[j], t, Criterion::MeanRatio));
+        let mut tried = EDGE.iter().map(|&[i, j]| worker.remove_edge(ring, [v[i], v[j]], t, Criterion::MeanRatio));
         tried.find(Result::is_ok).unwrap_or(Err(Refusal::Shape))
     }
 }
@@ -102,9 +113,10 @@ struct RemoveFaces;
 
 impl Operation for RemoveFaces {
     type Item = TetId;
+    type Scratch = ();
     const WHOLE_BALLS: bool = false;
 
-    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, t: TetId) -> Result<(), Refusal> {
+    fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, _: &mut (), t: TetId) -> Result<(), Refusal> {
         worker.claim_moving_tet(t)?;
         let mut tried = (0..4).map(|i| worker.remove_face(t, i, Criterion::MeanRatio));
         tried.find(Result::is_ok).unwrap_or(Err(Refusal::Shape))
@@ -128,12 +140,12 @@ pub struct Workbench<'m> {
 }
 
 impl<'m> Workbench<'m> {
-    /// Fills a store. Its first [`super::store::ROOM`] new vertices need no growth.
+    /// Fills a store. Its first [`crate::adapt::core::store::ROOM`] new vertices need no growth.
     ///
     /// # Errors
     /// When the snapshot is no valid mesh.
-    pub fn fill(domain: &'m Domain, from: &Snapshot) -> Result<Self, build::Error> {
-        let Filled { store, .. } = build::fill(Team::alone(), &from.mesh, &from.place, &domain.source)?;
+    pub fn fill(domain: &'m Domain, from: &Snapshot) -> Result<Self, fill::Error> {
+        let Filled { store, .. } = fill::fill(Team::alone(), &from.mesh, &from.place, &domain.source)?;
         let context = Context::new(store, &domain.source, &domain.model);
         let states = vec![State::new(&context)];
         let pool = Pool::new(1).expect("one thread is there already");
@@ -154,15 +166,15 @@ impl<'m> Workbench<'m> {
     /// The edges that are too long, long ones first.
     pub fn long_edges(&self) -> Vec<EdgeItem> {
         let limit = self.context.limits.long;
-        let found = edges::listed(Team::alone(), &self.context.store, 0, |a, b| is_longer(a, b, limit));
-        edges::in_order(Team::alone(), &found, |edge| edges::CLASSES - 1 - u32::from(edge.class))
+        let found = edge_list::listed(Team::alone(), &self.context.store, 0, |a, b| is_longer(a, b, limit));
+        edge_list::in_order(Team::alone(), &found, |edge| edge_list::CLASSES - 1 - u32::from(edge.class))
     }
 
     /// The edges that are too short, short ones first.
     pub fn short_edges(&self) -> Vec<EdgeItem> {
         let limit = self.context.limits.short;
-        let found = edges::listed(Team::alone(), &self.context.store, 0, |a, b| is_shorter(a, b, limit));
-        edges::in_order(Team::alone(), &found, |edge| u32::from(edge.class))
+        let found = edge_list::listed(Team::alone(), &self.context.store, 0, |a, b| is_shorter(a, b, limit));
+        edge_list::in_order(Team::alone(), &found, |edge| u32::from(edge.class))
     }
 
     /// Carries out a sweep over items that were listed for it.
@@ -183,13 +195,13 @@ impl<'m> Workbench<'m> {
     }
 
     fn run<O: Operation>(&mut self, operation: &O, items: &[O::Item]) -> Counts {
-        let crew = Crew {
+        let execution = Execution {
             pool: &self.pool,
             scheduler: Scheduler::Sequential,
             plan: Plan::default(),
             grains: Grains::default(),
         };
-        schedule::run(operation, items, &self.context, &mut self.states, (crew, Kind::Split), &|_| {})
+        schedule::run(operation, items, &self.context, &mut self.states, (execution, Kind::Split), &|_| {})
     }
 
     /// Lists and carries out some sweeps, one after the other.
@@ -205,7 +217,7 @@ impl<'m> Workbench<'m> {
         // Else a store that was just renumbered would be left as it is.
         self.context.store.tick();
         self.context.reorder(Team::alone());
-        self.states[0].supply.clear();
+        self.states[0].id_pool.clear();
         self.context.store.vertex_bound()
     }
 
@@ -274,8 +286,8 @@ fn star(worker: &mut Worker<'_, '_, Exclusive>, removal: &Removal) -> Result<f64
 
 #[cfg(test)]
 mod tests {
-    use super::super::check::check;
     use super::*;
+    use crate::adapt::core::check::check;
     use crate::mesh::samples::cube;
     use crate::metric::Analytic;
 

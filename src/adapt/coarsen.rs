@@ -5,14 +5,14 @@
 //! positive they therefore fill it without overlap, and their faces match. No neighbours need be known, and nothing is written but a
 //! word a vertex and what is left: a round goes through the memory a few times, while thinning vertex by vertex goes through it
 //! for each sixth of the vertices.
-mod clusters;
-mod judge;
 mod level;
+mod repair;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod vertex_map;
 
-use super::required::Required;
+use crate::adapt::core::required::Required;
 use crate::geometry::classify::Classification;
 use crate::mesh::predicate::is_positive;
 use crate::mesh::vector::volume6;

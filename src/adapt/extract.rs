@@ -1,9 +1,9 @@
 //! From the store back to the plain mesh.
-use super::context::Context;
-use super::ids::{FACE, TetId, VertexId};
-use super::numbering::inverse;
-use super::required::Required;
-use super::store::Store;
+use crate::adapt::core::context::Context;
+use crate::adapt::core::ids::{FACE, TetId, VertexId};
+use crate::adapt::core::numbering::inverse;
+use crate::adapt::core::required::Required;
+use crate::adapt::core::store::Store;
 use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
 use crate::mesh::{Elements, TetMesh};
@@ -34,13 +34,13 @@ pub struct Extracted {
 }
 
 /// Takes the mesh out of the store, in the order of its ids, with what `input` required; `refs` gives each model
-/// entity its reference, and `waiting` are the vertices that are not on the model.
+/// entity its reference, and `unprojected` are the vertices that are not on the model.
 pub fn extract(
     team: Team<'_>,
     context: &Context,
     input: &TetMesh,
     refs: &References,
-    waiting: &[VertexId],
+    unprojected: &[VertexId],
 ) -> Extracted {
     let store = &context.store;
     let vertices = team.collect(GRAIN, store.vertex_bound(), |range, live| {
@@ -71,7 +71,7 @@ pub fn extract(
         mesh.edges.push(nodes, refs.edges[edge as usize]);
     }
     Required::list(input, &mut mesh, |v| renumber(context.ids[v.index()]));
-    let mut off_model: Vec<u32> = waiting.iter().filter(|v| store.is_vertex(**v)).map(|v| renumber(*v)).collect();
+    let mut off_model: Vec<u32> = unprojected.iter().filter(|v| store.is_vertex(**v)).map(|v| renumber(*v)).collect();
     off_model.sort_unstable();
     Extracted { mesh, classification, metrics: at(team, &vertices, |v| store.metric(v)), off_model }
 }

@@ -1,62 +1,26 @@
 //! The kernel: the mesh store, its operations, and the passes that make a unit mesh.
-mod access;
-mod ball;
+//!
+//! Imports go one way: `run → { passes → operations → { surface, schedule }, coarsen, extract } → core`.
 #[doc(hidden)]
 pub mod bench_support;
-mod bend;
-mod build;
-mod cavity;
-#[cfg(test)]
-mod check;
-mod clocked;
 mod coarsen;
-mod collapse;
-mod context;
-mod create;
-mod criteria;
-mod discipline;
-mod edge_removal;
-mod edges;
-mod extend;
+mod core;
 mod extract;
-mod face_removal;
-mod fan;
-mod ids;
-mod insert;
-mod local;
-mod mend;
-mod merge;
-mod multi_face;
-mod numbering;
-mod outcome;
-mod pipeline;
-mod project;
-mod reconnect;
-mod required;
-mod ring;
+mod operations;
+mod passes;
 mod run;
 mod schedule;
-mod shape;
-mod shed;
-mod shell;
-mod smooth;
-mod star;
-mod store;
-mod supply;
 mod surface;
 #[cfg(test)]
 mod tests;
-mod thin;
-mod work;
-mod worker;
 
-pub use bend::SurfaceBounds;
-pub use build::Error;
-pub use create::PointCreation;
-pub use criteria::Criterion;
+pub use core::fill::Error;
+pub use core::refusal::{Counts, Refusal};
+pub use core::required::Freeze;
 pub use extract::Extracted;
-pub use outcome::{Counts, Refusal};
-pub use required::Freeze;
+pub use operations::insertion::centroid::PointCreation;
+pub use operations::reconnection::criteria::Criterion;
 pub use run::{Adapted, Options, adapt};
+pub use schedule::work::{KINDS, Kind, Observer, Silent, Work};
 pub use schedule::{Grains, Scheduler};
-pub use work::{KINDS, Kind, Observer, Silent, Work};
+pub use surface::bounds::SurfaceBounds;

@@ -1,16 +1,16 @@
 //! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
-use super::bend::SurfaceBounds;
-use super::build::{self, Filled};
-use super::coarsen;
-use super::context::Context;
-use super::create::PointCreation;
-use super::criteria::Criterion;
-use super::extract::{self, Extracted, References};
-use super::ids::VertexId;
-use super::pipeline::Pipeline;
-use super::required::{Freeze, Required};
-use super::schedule::{Crew, Grains, Scheduler};
-use super::work::{KINDS, Observer, Work};
+use crate::adapt::coarsen;
+use crate::adapt::core::context::Context;
+use crate::adapt::core::fill::{self, Filled};
+use crate::adapt::core::ids::VertexId;
+use crate::adapt::core::required::{Freeze, Required};
+use crate::adapt::extract::{self, Extracted, References};
+use crate::adapt::operations::insertion::centroid::PointCreation;
+use crate::adapt::operations::reconnection::criteria::Criterion;
+use crate::adapt::passes::pipeline::Pipeline;
+use crate::adapt::schedule::work::{KINDS, Observer, Work};
+use crate::adapt::schedule::{Execution, Grains, Scheduler};
+use crate::adapt::surface::bounds::SurfaceBounds;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::outward_triangles;
 use crate::geometry::{Geometry, Model};
@@ -35,7 +35,7 @@ pub struct Options {
     pub grains: Grains,
     /// What must not change.
     pub freeze: Freeze,
-    /// How far surface triangles may stray from the model.
+    /// How far surface triangles may deviate from the model.
     pub surface: SurfaceBounds,
 }
 
@@ -62,8 +62,8 @@ pub struct Adapted {
     /// Whether the mesh stopped growing, since it had far more vertices than the metric's complexity accounts for, or since
     /// there was no memory for more.
     pub overgrown: bool,
-    /// Surface triangles that stray from the model by more than the bounds that were given.
-    pub astray: usize,
+    /// Surface triangles that deviate from the model by more than the bounds that were given.
+    pub deviating: usize,
     /// Time in the model's evaluators during the passes, of all threads together.
     pub geometry: Duration,
 }
@@ -81,10 +81,10 @@ pub fn adapt(
     options: &Options,
     pool: &Pool,
     observer: &dyn Observer,
-) -> Result<Adapted, build::Error> {
+) -> Result<Adapted, fill::Error> {
     let required = Required::of(mesh, &options.freeze);
     let team = Team::new(pool, options.plan);
-    let (Filled { store, waiting, ids }, crowded) = filled(team, mesh, place, source, &required)?;
+    let (Filled { store, unprojected, ids }, crowded) = filled(team, mesh, place, source, &required)?;
     stage("store filled");
     let mut context = Context::new(store, source, model);
     context.required = required;
@@ -92,18 +92,18 @@ pub fn adapt(
     context.ids = ids;
     let mut pipeline = Pipeline::new(
         &mut context,
-        Crew { pool, scheduler: options.scheduler, plan: options.plan, grains: options.grains },
+        Execution { pool, scheduler: options.scheduler, plan: options.plan, grains: options.grains },
         observer,
         options.criterion,
-        waiting,
+        unprojected,
     );
     pipeline.points = options.points;
     pipeline.crowded = crowded;
     pipeline.surface = options.surface;
     pipeline.run();
-    let (work, waiting, overgrown) = (pipeline.work, std::mem::take(&mut pipeline.waiting), pipeline.overgrown);
+    let (work, unprojected, overgrown) = (pipeline.work, std::mem::take(&mut pipeline.unprojected), pipeline.overgrown);
     let geometry = pipeline.states.iter().map(|state| state.evaluator.spent).sum();
-    let astray = pipeline.astray();
+    let deviating = pipeline.deviating();
     drop(pipeline);
     context.store.trim();
     stage("passes");
@@ -112,9 +112,9 @@ pub fn adapt(
         inward: inward_faces(team, mesh, place, model),
         edges: edge_refs(mesh, place, model),
     };
-    let extracted = extract::extract(team, &context, mesh, &refs, &waiting);
+    let extracted = extract::extract(team, &context, mesh, &refs, &unprojected);
     stage("extracted");
-    Ok(Adapted { extracted, work, overgrown, astray, geometry })
+    Ok(Adapted { extracted, work, overgrown, deviating, geometry })
 }
 
 /// The mesh in a store, made coarse on the way where it is crowded, and whether that was so.
@@ -124,10 +124,11 @@ fn filled(
     place: &Classification,
     source: &Source,
     required: &Required,
-) -> Result<(Filled, bool), build::Error> {
+) -> Result<(Filled, bool), fill::Error> {
     let coarse = coarsen::coarsened(team, mesh, place, source, required);
     if let Some(coarse) = &coarse
-        && let Ok(mut filled) = build::fill_coarse(team, coarse, source)
+        && let Ok(mut filled) =
+            fill::fill_known(team, &coarse.mesh, &coarse.place, source, Some(&coarse.logs), Some(&coarse.hints))
     {
         let mut ids = vec![VertexId::NONE; mesh.vertices.len()];
         coarse.origin.iter().zip(&filled.ids).for_each(|(&old, &id)| ids[old as usize] = id);
@@ -135,7 +136,7 @@ fn filled(
         return Ok((filled, true));
     }
     // What is wrong with the mesh is told in its own numbers.
-    Ok((build::fill(team, mesh, place, source)?, coarse.is_some()))
+    Ok((fill::fill(team, mesh, place, source)?, coarse.is_some()))
 }
 
 /// The reference of each model face: that of its first triangle.

@@ -26,7 +26,7 @@ pub struct AdaptedMesh {
     /// Whether the mesh stopped growing, having far more vertices than the metric accounts for, or no memory for more.
     pub overgrown: bool,
     /// Surface triangles beyond the bounds of the surface that were set.
-    pub astray: usize,
+    pub deviating: usize,
 }
 
 /// For each new vertex a place in the old mesh.
@@ -85,7 +85,7 @@ impl AdaptedMesh {
             mesh,
             off_model,
             overgrown: adapted.overgrown,
-            astray: adapted.astray,
+            deviating: adapted.deviating,
         }
     }
 }

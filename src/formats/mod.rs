@@ -10,15 +10,15 @@ mod dataset;
 mod error;
 pub mod foam;
 mod format;
-mod lacks;
 mod libmeshb;
 mod markers;
 mod msh;
+mod orientation;
 mod scan;
 mod su2;
 mod text;
-mod turn;
 pub mod ugrid;
+mod unsupported;
 mod vtu;
 
 pub use cells::{cells_to_vertices, vertices_to_cells};
@@ -80,7 +80,8 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
     };
     check::drop_endless(path, &mut read.content.fields, &mut read.notices);
     check::check(path, &read.content)?;
-    read.notices.extend(turn::turn(&mut read.content.mesh).map(|notice| format!("{}: {notice}", path.display())));
+    read.notices
+        .extend(orientation::unify(&mut read.content.mesh).map(|notice| format!("{}: {notice}", path.display())));
     Ok(read)
 }
 
@@ -129,7 +130,7 @@ pub fn write(path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
 pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, options: Options) -> Result<Vec<String>, Error> {
     let format = Format::of(path)?;
     check::check(path, data)?;
-    let mut notices = lacks::notices(format, data);
+    let mut notices = unsupported::notices(format, data);
     notices.extend(match format {
         Format::Libmeshb => libmeshb::write(team, path, data)?,
         Format::Su2 => su2::write(path, data)?,

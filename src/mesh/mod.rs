@@ -1,18 +1,18 @@
 //! Tetrahedral meshes as plain arrays: what goes in and what comes out.
 pub mod adjacency;
 pub mod box_tree;
+pub mod disjoint_sets;
 mod flaw;
 pub mod hilbert;
 pub mod io;
 pub mod locate;
 mod matched_faces;
-pub mod parts;
-pub mod pinch;
 pub mod predicate;
 pub mod quadrature;
 #[doc(hidden)]
 pub mod samples;
 pub mod seen;
+pub mod split_nonmanifold;
 mod starts;
 mod tet_mesh;
 pub mod validity;

@@ -1,7 +1,7 @@
 //! Whether a mesh is one: positive tetrahedra, a closed manifold boundary that its triangles tell, nothing twice, nothing loose.
 use super::adjacency::{FACES, FaceKey, sorted_faces, sorted3, unique_edges};
+use super::disjoint_sets::DisjointSets;
 use super::flaw::{Flaw, FlawKind, Offender};
-use super::parts::Parts;
 use super::predicate::orientation;
 use super::vector::{add, scale};
 use super::{Elements, TetMesh};
@@ -194,7 +194,7 @@ fn check_tagged_edges(found: &mut Findings) {
 fn check_vertices(found: &mut Findings, faces: &[FaceKey]) {
     let mesh = found.mesh;
     // A corner is a pair (tetrahedron, node): 4t + i. Corners of one vertex are joined across common faces.
-    let mut corners = Parts::new(4 * mesh.tets.len());
+    let mut corners = DisjointSets::new(4 * mesh.tets.len());
     for same in faces.chunk_by(|a, b| a.nodes == b.nodes) {
         for other in &same[1..] {
             for node in same[0].nodes {

@@ -123,14 +123,14 @@ impl Batch {
     /// Σ 1/Q³ over the first `count` tetrahedra with its gradient and Hessian in a common apex p, the mean metrics held; `None`
     /// where one of them is not positive (in floating point).
     #[inline]
-    pub fn bowl(&self, p: Vec3, log: &Sym3, count: usize) -> Option<Bowl> {
-        let lanes = bowl(self, &everywhere(p), &everywhere_tensor(log));
+    pub fn quadratic_model(&self, p: Vec3, log: &Sym3, count: usize) -> Option<QuadraticModel> {
+        let lanes = quadratic_model(self, &everywhere(p), &everywhere_tensor(log));
         if lanes.volume.0.iter().take(count).any(|&volume| volume <= 0.0) {
             return None;
         }
         let sum = |x: &Lanes| x.0.iter().take(count).sum::<f64>();
         let [g, h] = [&lanes.gradient[..], &lanes.hessian[..]];
-        Some(Bowl {
+        Some(QuadraticModel {
             energy: sum(&lanes.energy),
             gradient: std::array::from_fn(|i| sum(&g[i])),
             hessian: Sym3(std::array::from_fn(|i| sum(&h[i]))),
@@ -140,7 +140,7 @@ impl Batch {
 
 /// A function of a point near p to second order: E(p) + g·d + dᵀHd/2.
 #[derive(Clone, Copy, Debug)]
-pub struct Bowl {
+pub struct QuadraticModel {
     /// Value.
     pub energy: f64,
     /// Gradient.
@@ -149,7 +149,7 @@ pub struct Bowl {
     pub hessian: Sym3,
 }
 
-struct LaneBowl {
+struct LaneQuadratic {
     volume: Lanes,
     energy: Lanes,
     gradient: LaneVec3,
@@ -258,7 +258,7 @@ fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> (Lanes, bool) {
 /// 1/Q³ = S³/(432 V²), S the sum of the squared edges in the mean metric: with v = ∇V/V and s = ∇S/S its gradient is
 /// (3s − 2v)/Q³ and its Hessian (6 (v − s)(v − s)ᵀ + 18 M̄/S)/Q³, positive definite: each tetrahedron's part is convex.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn bowl(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneBowl {
+fn quadratic_model(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneQuadratic {
     let [a, b, c] = &batch.corners;
     let (pa, pb, pc) = (sub(apex, a), sub(apex, b), sub(apex, c));
     let volume = dot(&batch.area, &pa);
@@ -285,23 +285,23 @@ fn bowl(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneBowl {
     add_dyad(&mut hessian, &sub(&v, &s));
     let stiffness = of_sum * 3.0;
     let hessian = std::array::from_fn(|i| (hessian[i] + mean[i] * stiffness) * energy * 6.0);
-    LaneBowl { volume, energy, gradient, hessian }
+    LaneQuadratic { volume, energy, gradient, hessian }
 }
 
 /// Edges from one vertex, one a lane: the other ends.
 #[derive(Clone, Copy)]
-pub struct Spokes {
+pub struct IncidentEdges {
     ends: LaneVec3,
     metrics: LaneSym3,
 }
 
-impl Default for Spokes {
+impl Default for IncidentEdges {
     fn default() -> Self {
         Self { ends: [Lanes::ZERO; 3], metrics: [Lanes::ZERO; 6] }
     }
 }
 
-impl Spokes {
+impl IncidentEdges {
     /// Sets one end.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, point: Vec3, metric: &Sym3) {
@@ -328,10 +328,10 @@ impl Spokes {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn lengths(spokes: &Spokes, p: &LaneVec3, metric: &LaneSym3) -> Lanes {
-    let v = sub(&spokes.ends, p);
+fn lengths(edges: &IncidentEdges, p: &LaneVec3, metric: &LaneSym3) -> Lanes {
+    let v = sub(&edges.ends, p);
     let here = dot(&v, &apply(metric, &v)).max(Lanes::all(f64::MIN_POSITIVE)).sqrt();
-    let there = dot(&v, &apply(&spokes.metrics, &v)).max(Lanes::all(f64::MIN_POSITIVE)).sqrt();
+    let there = dot(&v, &apply(&edges.metrics, &v)).max(Lanes::all(f64::MIN_POSITIVE)).sqrt();
     let (difference, sum) = (here - there, here + there);
     let by_law = difference / (here / there).ln();
     (difference.abs() - sum * 1e-4).above(0.0, by_law, sum * 0.5)
@@ -375,7 +375,7 @@ mod tests {
 
         /// Gradient and Hessian are those of Σ 1/Q³, found here by differences.
         #[test]
-        fn the_bowl_fits(x in points(), m in prop::array::uniform4(spd(2.0)), d in prop::array::uniform3(-1.0..1.0f64)) {
+        fn the_quadratic_model_fits(x in points(), m in prop::array::uniform4(spd(2.0)), d in prop::array::uniform3(-1.0..1.0f64)) {
             let logs = m.map(|m| m.ln());
             let batch = batch(&x, &logs);
             let q = batch.shapes(x[6], &logs[3]).mean_ratios();
@@ -384,31 +384,31 @@ mod tests {
             }
             let at = |step: f64| {
                 let p: Vec3 = std::array::from_fn(|i| x[6][i] + step * d[i]);
-                batch.bowl(p, &logs[3], 2)
+                batch.quadratic_model(p, &logs[3], 2)
             };
-            let bowl = at(0.0).unwrap();
+            let model = at(0.0).unwrap();
             let exact: f64 = q[..2].iter().map(|q| 1.0 / q.powi(3)).sum();
-            prop_assert!((bowl.energy / exact - 1.0).abs() < 1e-9);
+            prop_assert!((model.energy / exact - 1.0).abs() < 1e-9);
             // A step that changes the energy by about 1e-10 of it: small to the third derivative, large to the rounding.
-            let bend = bowl.hessian.quadratic(d);
-            let step = 1e-5 * (bowl.energy / bend).sqrt();
+            let bend = model.hessian.quadratic(d);
+            let step = 1e-5 * (model.energy / bend).sqrt();
             let (Some(ahead), Some(behind)) = (at(step), at(-step)) else { return Ok(()) };
-            let slope = |bowl: &Bowl| crate::mesh::vector::dot(bowl.gradient, d);
+            let slope = |model: &QuadraticModel| crate::mesh::vector::dot(model.gradient, d);
             let found = (ahead.energy - behind.energy) / (2.0 * step);
-            let size = (bowl.energy * bend).sqrt();
-            prop_assert!((slope(&bowl) - found).abs() < 1e-4 * size, "{} {found}", slope(&bowl));
+            let size = (model.energy * bend).sqrt();
+            prop_assert!((slope(&model) - found).abs() < 1e-4 * size, "{} {found}", slope(&model));
             let found = (slope(&ahead) - slope(&behind)) / (2.0 * step);
             prop_assert!((bend - found).abs() < 1e-3 * bend, "{bend} {found}");
         }
 
         /// Lengths as one by one.
         #[test]
-        fn spokes_as_edges(x in points(), m in prop::array::uniform4(prop_oneof![spd(0.01), spd(3.0)])) {
-            let mut spokes = Spokes::default();
+        fn incident_edges_as_edges(x in points(), m in prop::array::uniform4(prop_oneof![spd(0.01), spd(3.0)])) {
+            let mut edges = IncidentEdges::default();
             for lane in 0..LANES {
-                spokes.set(lane, x[lane % 6], &m[lane.min(2)]);
+                edges.set(lane, x[lane % 6], &m[lane.min(2)]);
             }
-            for (lane, found) in spokes.lengths(x[6], &m[3]).into_iter().enumerate() {
+            for (lane, found) in edges.lengths(x[6], &m[3]).into_iter().enumerate() {
                 let v: Vec3 = std::array::from_fn(|i| x[lane % 6][i] - x[6][i]);
                 let wanted = edge_length(v, &m[lane.min(2)], &m[3]);
                 // Where the lengths at both ends differ by Δ < 1e-3 METHOD.md takes their mean: off by Δ²/12L, and always by less than Δ.

@@ -2,7 +2,7 @@
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Topology};
 use crate::mesh::TetMesh;
-use crate::mesh::parts::Parts;
+use crate::mesh::disjoint_sets::DisjointSets;
 
 /// The bodies of a mesh, by the entities of its model.
 pub struct Bodies<'a> {
@@ -16,7 +16,7 @@ impl<'a> Bodies<'a> {
     pub fn new(topology: &'a Topology, mesh: &TetMesh, place: &Classification) -> Self {
         let mut of_face = vec![None; topology.faces.len()];
         if !mesh.tets.nodes.is_empty() {
-            let mut parts = Parts::new(mesh.vertices.len());
+            let mut parts = DisjointSets::new(mesh.vertices.len());
             for &[a, b, c, d] in &mesh.tets.nodes {
                 [b, c, d].into_iter().for_each(|other| parts.join(a, other));
             }

@@ -1,9 +1,9 @@
 //! A mesh between two rounds of coarsening.
-use super::super::ids::VertexId;
-use super::super::required::Required;
-use super::clusters::Clusters;
-use super::judge::Judge;
+use super::repair::MapRepair;
 use super::surface::Surface;
+use super::vertex_map::VertexMap;
+use crate::adapt::core::ids::VertexId;
+use crate::adapt::core::required::Required;
 use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
@@ -121,19 +121,19 @@ impl<'m> Level<'m> {
     /// The level after one round.
     pub fn coarser(self, balls: &Balls) -> Self {
         let surface = Surface::of(&self);
-        let mut clusters = Clusters::of(&self, balls, &surface);
-        Judge { level: &self, balls, surface: &surface }.mend(&mut clusters);
-        self.mapped(&clusters)
+        let mut map = VertexMap::of(&self, balls, &surface);
+        MapRepair { level: &self, balls, surface: &surface }.repair(&mut map);
+        self.mapped(&map)
     }
 
     /// What is left when vertices have gone onto others.
-    fn mapped(self, clusters: &Clusters) -> Self {
-        let stays: Vec<u32> = (0..self.points.len() as u32).filter(|&v| clusters.target(v) == v).collect();
+    fn mapped(self, map: &VertexMap) -> Self {
+        let stays: Vec<u32> = (0..self.points.len() as u32).filter(|&v| map.target(v) == v).collect();
         let mut number = vec![u32::MAX; self.points.len()];
         stays.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
         let (mut tets, mut regions) = (Vec::new(), Vec::new());
         for (nodes, &region) in self.tets.iter().zip(&*self.regions) {
-            let nodes = clusters.map(nodes);
+            let nodes = map.map(nodes);
             if is_proper(&nodes) {
                 tets.push(nodes.map(|v| number[v as usize]));
                 regions.push(region);
@@ -141,7 +141,7 @@ impl<'m> Level<'m> {
         }
         let (mut triangles, mut triangle_origin) = (Vec::new(), Vec::new());
         for (nodes, &origin) in self.triangles.iter().zip(&self.triangle_origin) {
-            let nodes = clusters.map(nodes);
+            let nodes = map.map(nodes);
             if is_proper(&nodes) {
                 triangles.push(nodes.map(|v| number[v as usize]));
                 triangle_origin.push(origin);

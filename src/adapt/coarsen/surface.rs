@@ -1,10 +1,10 @@
 //! The triangles of a level.
-use super::clusters::Clusters;
 use super::level::{Balls, FIXED, Level, is_proper};
+use super::vertex_map::VertexMap;
 use crate::mesh::vector::{Vec3, add, area2, dot, scale, unit};
 
 /// Least cosine between a triangle and what it comes from, and between it and the surface at its vertices.
-const BENT: f64 = 0.94;
+const LEAST_COSINE: f64 = 0.94;
 
 /// The triangles at the vertices of the boundary.
 pub struct Surface {
@@ -66,17 +66,18 @@ impl Surface {
     }
 
     /// Whether a triangle vanishes, stays as it is, or still lies along the surface.
-    pub fn is_fair(&self, level: &Level, t: u32, clusters: &Clusters) -> bool {
+    pub fn is_fair(&self, level: &Level, t: u32, map: &VertexMap) -> bool {
         let nodes = &level.triangles[t as usize];
-        let mapped = clusters.map(nodes);
+        let mapped = map.map(nodes);
         if mapped == *nodes || !is_proper(&mapped) {
             return true;
         }
         let new = unit(normal(level, &mapped));
         let along = |v: u32| {
-            level.faces[v as usize] >= FIXED || dot(self.normals[self.slots[v as usize] as usize], new).abs() >= BENT
+            level.faces[v as usize] >= FIXED
+                || dot(self.normals[self.slots[v as usize] as usize], new).abs() >= LEAST_COSINE
         };
-        dot(new, unit(normal(level, nodes))) >= BENT && mapped.into_iter().all(along)
+        dot(new, unit(normal(level, nodes))) >= LEAST_COSINE && mapped.into_iter().all(along)
     }
 }
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::adapt::Freeze;
-use crate::adapt::build;
+use crate::adapt::core::fill;
 use crate::geometry::Discrete;
 use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
 use crate::mesh::samples::cube;
@@ -93,7 +93,7 @@ proptest! {
             prop_assert_eq!(coarse.mesh.vertices[v], mesh.vertices[old as usize]);
             prop_assert!(mesh.tets.nodes[coarse.hints[v] as usize].contains(&old));
         }
-        prop_assert!(build::fill_coarse(Team::alone(), &coarse, &source).is_ok());
+        prop_assert!(fill::fill_known(Team::alone(), &coarse.mesh, &coarse.place, &source, Some(&coarse.logs), Some(&coarse.hints)).is_ok());
     }
 }
 

@@ -5,14 +5,14 @@
 //! are cut elsewhere. A tetrahedron with vertices in two parts stands still, and so does whatever a part can see of another; so it makes no
 //! difference which part comes first. No lock is taken: a claim is a look at a byte that does not change.
 use super::parts::Parts;
-use super::{Advance, Item, Operation, sequential};
-use crate::adapt::access::Owned;
-use crate::adapt::context::Context;
-use crate::adapt::ids::VertexId;
-use crate::adapt::outcome::{Counts, Refusal};
-use crate::adapt::store::Store;
-use crate::adapt::supply::Supply;
-use crate::adapt::worker::{State, Worker};
+use super::{Advance, Item, Operation, ThreadContext, sequential};
+use crate::adapt::core::access::Owned;
+use crate::adapt::core::context::Context;
+use crate::adapt::core::id_pool::IdPool;
+use crate::adapt::core::ids::VertexId;
+use crate::adapt::core::refusal::{Counts, Refusal};
+use crate::adapt::core::store::Store;
+use crate::adapt::core::worker::Worker;
 use crate::tasks::{Plan, Pool};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -46,8 +46,8 @@ const GONE: u32 = u32::MAX - 1;
 
 /// What a part has of its own in a round, and what comes of it.
 struct Part {
-    supply: Supply,
-    waiting: Vec<VertexId>,
+    id_pool: IdPool,
+    unprojected: Vec<VertexId>,
     counts: Counts,
     /// Numbers of items that met another part.
     again: Vec<u32>,
@@ -58,7 +58,7 @@ pub fn run<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
     context: &Context<'m>,
-    states: &mut [State<'m>],
+    threads: &mut [ThreadContext<'_, 'm, O>],
     (pool, plan): (&Pool, Plan),
     advance: Advance<'_>,
 ) -> Counts {
@@ -68,14 +68,14 @@ pub fn run<'m, O: Operation>(
     loop {
         if parts < 2 || (left.len() as f64) < LITTLE * items.len() as f64 {
             let rest: Vec<_> = left.iter().map(|&i| items[i as usize]).collect();
-            counts.add(&sequential::run(operation, &rest, context, &mut states[0], advance));
+            counts.add(&sequential::run(operation, &rest, context, &mut threads[0], advance));
             if shared {
                 give_back(&context.store, (pool, plan));
             }
             return counts;
         }
         let mut round = Round { operation, items, context, pool, plan, left, parts };
-        left = round.run(states, &mut counts, advance);
+        left = round.run(threads, &mut counts, advance);
         // What is left lies between the parts of this round: fewer and larger parts have less between them.
         parts = (parts / 2).min(power(left.len() / FEWEST_ITEMS));
         shared = true;
@@ -122,32 +122,32 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     }
 
     /// Does what can be done; returns what is left.
-    fn run(&mut self, states: &mut [State<'m>], counts: &mut Counts, advance: Advance<'_>) -> Vec<u32> {
+    fn run(&mut self, threads: &mut [ThreadContext<'_, 'm, O>], counts: &mut Counts, advance: Advance<'_>) -> Vec<u32> {
         let store = &self.context.store;
         self.give_out(&Parts::of(store, self.left.iter().map(|&i| self.item(i)), self.parts));
-        let seats = self.seats();
-        let (sorted, starts, mut again) = self.sorted(&seats, counts);
-        let supplies = states[0].supply.deal(store, self.parts);
-        let part = |supply| Part { supply, waiting: Vec::new(), counts: Counts::default(), again: Vec::new() };
-        let parts: Vec<_> = supplies.into_iter().map(|supply| Mutex::new(part(supply))).collect();
+        let parts_of = self.parts_of_items();
+        let (sorted, starts, mut again) = self.sorted(&parts_of, counts);
+        let id_pools = threads[0].state.id_pool.split(store, self.parts);
+        let part = |id_pool| Part { id_pool, unprojected: Vec::new(), counts: Counts::default(), again: Vec::new() };
+        let parts: Vec<_> = id_pools.into_iter().map(|id_pool| Mutex::new(part(id_pool))).collect();
         let plan = Plan { grain: 1, ..self.plan };
-        self.pool.task_for_with(plan, self.parts, states, |state, _, range| {
+        self.pool.task_for_with(plan, self.parts, threads, |thread, _, range| {
             for index in range {
                 let mut part = parts[index].lock().expect("each part is one task's");
-                self.work(&sorted[starts[index]..starts[index + 1]], index, &mut part, state);
+                self.work(&sorted[starts[index]..starts[index + 1]], index, &mut part, thread);
                 let done = part.counts.attempts as usize - part.again.len();
                 advance(done);
             }
         });
         let parts: Vec<_> = parts.into_iter().map(|part| part.into_inner().expect("no part failed")).collect();
-        let mut supplies = Vec::with_capacity(parts.len());
+        let mut id_pools = Vec::with_capacity(parts.len());
         for part in parts {
             counts.add(&part.counts);
             again.extend(part.again);
-            states[0].waiting.extend(part.waiting);
-            supplies.push(part.supply);
+            threads[0].state.unprojected.extend(part.unprojected);
+            id_pools.push(part.id_pool);
         }
-        states[0].supply.gather(store, supplies);
+        threads[0].state.id_pool.merge(store, id_pools);
         again.sort_unstable();
         again
     }
@@ -167,10 +167,10 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     }
 
     /// The part in which each item can be done.
-    fn seats(&self) -> Vec<u32> {
+    fn parts_of_items(&self) -> Vec<u32> {
         let store = &self.context.store;
         let between = if O::WHOLE_BALLS { self.between() } else { Vec::new() };
-        let seat = |number: &u32| {
+        let part_of = |number: &u32| {
             let vertices = self.item(*number).vertices(store);
             if vertices.iter().any(|&v| !v.is_some() || owner(store, v) == 0) {
                 return GONE;
@@ -181,7 +181,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
             if waits { WAITS } else { u32::from(part - Owned::word(0)) }
         };
         self.pool.collect(Plan { grain: GRAIN, ..self.plan }, self.left.len(), |_, range, found| {
-            found.extend(self.left[range].iter().map(seat));
+            found.extend(self.left[range].iter().map(part_of));
         })
     }
 
@@ -203,19 +203,19 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     }
 
     /// The items' numbers by part, where each part begins, and those that wait. What is gone is counted as that.
-    fn sorted(&self, seats: &[u32], counts: &mut Counts) -> (Vec<u32>, Vec<usize>, Vec<u32>) {
+    fn sorted(&self, parts_of: &[u32], counts: &mut Counts) -> (Vec<u32>, Vec<usize>, Vec<u32>) {
         let mut starts = vec![0usize; self.parts + 1];
-        let is_done = |seat: u32| (seat as usize) < self.parts;
-        seats.iter().filter(|&&seat| is_done(seat)).for_each(|&seat| starts[seat as usize + 1] += 1);
+        let is_done = |part: u32| (part as usize) < self.parts;
+        parts_of.iter().filter(|&&part| is_done(part)).for_each(|&part| starts[part as usize + 1] += 1);
         for part in 0..self.parts {
             starts[part + 1] += starts[part];
         }
         let (mut sorted, mut waits, mut places) = (vec![0; starts[self.parts]], Vec::new(), starts.clone());
-        for (&number, &seat) in self.left.iter().zip(seats) {
-            if is_done(seat) {
-                sorted[places[seat as usize]] = number;
-                places[seat as usize] += 1;
-            } else if seat == WAITS {
+        for (&number, &part) in self.left.iter().zip(parts_of) {
+            if is_done(part) {
+                sorted[places[part as usize]] = number;
+                places[part as usize] += 1;
+            } else if part == WAITS {
                 waits.push(number);
             } else {
                 counts.record(Err(Refusal::Stale));
@@ -225,19 +225,20 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     }
 
     /// Does the items of one part.
-    fn work(&self, numbers: &[u32], index: usize, part: &mut Part, state: &mut State<'m>) {
-        let own = std::mem::take(&mut state.waiting);
-        std::mem::swap(&mut state.supply, &mut part.supply);
-        let mut worker = Worker::new(self.context, state, Owned::new(index));
+    fn work(&self, numbers: &[u32], index: usize, part: &mut Part, thread: &mut ThreadContext<'_, 'm, O>) {
+        let ThreadContext { state, scratch } = thread;
+        let own = std::mem::take(&mut state.unprojected);
+        std::mem::swap(&mut state.id_pool, &mut part.id_pool);
+        let mut worker = Worker::new(self.context, &mut **state, Owned::new(index));
         for &number in numbers {
-            let result = self.operation.attempt(&mut worker, self.item(number));
+            let result = self.operation.attempt(&mut worker, scratch, self.item(number));
             part.counts.record(result);
             if result == Err(Refusal::Conflict) {
                 part.again.push(number);
             }
         }
         drop(worker);
-        std::mem::swap(&mut state.supply, &mut part.supply);
-        part.waiting = std::mem::replace(&mut state.waiting, own);
+        std::mem::swap(&mut state.id_pool, &mut part.id_pool);
+        part.unprojected = std::mem::replace(&mut state.unprojected, own);
     }
 }

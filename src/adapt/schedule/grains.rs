@@ -1,5 +1,5 @@
 //! How many items a task has, by kind of operation.
-use crate::adapt::work::{KINDS, Kind};
+use super::work::{KINDS, Kind};
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
 

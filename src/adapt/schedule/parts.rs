@@ -3,8 +3,8 @@
 //! The cuts depend on the mesh alone. Of several directions the one whose cut crosses the fewest tetrahedra is taken: along a
 //! boundary layer, not across it, and in a later round across the cuts of the one before, beside which its items lie.
 use super::Item;
-use crate::adapt::ids::VertexId;
-use crate::adapt::store::Store;
+use crate::adapt::core::ids::VertexId;
+use crate::adapt::core::store::Store;
 use crate::mesh::vector::{Vec3, dot};
 
 /// Normals of the cuts that are tried.

@@ -1,9 +1,9 @@
 //! One thread, the items in their order: the reference for all other schedulers.
-use super::{Advance, Operation};
-use crate::adapt::access::{Access, Exclusive};
-use crate::adapt::context::Context;
-use crate::adapt::outcome::Counts;
-use crate::adapt::worker::{State, Worker};
+use super::{Advance, Operation, ThreadContext};
+use crate::adapt::core::access::{Access, Exclusive};
+use crate::adapt::core::context::Context;
+use crate::adapt::core::refusal::Counts;
+use crate::adapt::core::worker::Worker;
 
 /// Items between two reports of progress.
 const STRIDE: usize = 1024;
@@ -13,14 +13,14 @@ pub fn run<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
     context: &Context<'m>,
-    state: &mut State<'m>,
+    ThreadContext { state, scratch }: &mut ThreadContext<'_, 'm, O>,
     advance: Advance<'_>,
 ) -> Counts {
     let mut counts = Counts::default();
     let mut worker = Worker::new(context, state, Exclusive);
     for some in items.chunks(STRIDE) {
         for &item in some {
-            counts.record(operation.attempt(&mut worker, item));
+            counts.record(operation.attempt(&mut worker, scratch, item));
             worker.access.release(worker.store);
         }
         advance(some.len());

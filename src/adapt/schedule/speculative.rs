@@ -2,11 +2,11 @@
 //! has most likely moved on, and then in the next round (Tsolakis 2021, 3.4). The last round is one thread's, so no item is lost.
 //!
 //! One thread alone meets nobody, so it claims nothing: it is the sequential scheduler.
-use super::{Advance, Operation, sequential};
-use crate::adapt::access::{Access, Speculative};
-use crate::adapt::context::Context;
-use crate::adapt::outcome::{Counts, Refusal};
-use crate::adapt::worker::{State, Worker};
+use super::{Advance, Operation, ThreadContext, sequential};
+use crate::adapt::core::access::{Access, Speculative};
+use crate::adapt::core::context::Context;
+use crate::adapt::core::refusal::{Counts, Refusal};
+use crate::adapt::core::worker::Worker;
 use crate::tasks::{Plan, Pool};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -17,10 +17,10 @@ const SHARES: usize = 8;
 const ROUNDS: usize = 6;
 
 /// What a thread has in a round, and what comes of it.
-struct Seat<'s, 'm, I> {
-    state: &'s mut State<'m>,
+struct RoundOf<'s, 't, 'm, O: Operation> {
+    thread: &'s mut ThreadContext<'t, 'm, O>,
     counts: Counts,
-    again: Vec<I>,
+    again: Vec<O::Item>,
 }
 
 /// Applies the operation to all items on all threads of the pool, one state each; a task has `plan.grain` items at most.
@@ -28,12 +28,12 @@ pub fn run<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],
     context: &Context<'m>,
-    states: &mut [State<'m>],
+    threads: &mut [ThreadContext<'_, 'm, O>],
     (pool, plan): (&Pool, Plan),
     advance: Advance<'_>,
 ) -> Counts {
     if pool.threads() == 1 {
-        return sequential::run(operation, items, context, &mut states[0], advance);
+        return sequential::run(operation, items, context, &mut threads[0], advance);
     }
     let mut counts = Counts::default();
     let mut left: Option<Vec<O::Item>> = None;
@@ -43,40 +43,42 @@ pub fn run<'m, O: Operation>(
             return counts;
         }
         let grain = plan.grain.min(work.len() / (SHARES * pool.threads())).max(1);
-        let seat = |state| Seat { state, counts: Counts::default(), again: Vec::new() };
-        let mut seats: Vec<_> = states.iter_mut().map(seat).collect();
+        let begin = |thread| RoundOf { thread, counts: Counts::default(), again: Vec::new() };
+        let mut rounds: Vec<_> = threads.iter_mut().map(begin).collect();
         // Each task takes what is next in the list, in whatever order tasks are run: lists have their most urgent items first.
         let next = AtomicUsize::new(0);
-        pool.task_for_with(Plan { grain: 1, ..plan }, work.len().div_ceil(grain), &mut seats, |seat, thread, range| {
-            for _ in range {
-                let start = next.fetch_add(grain, Relaxed);
-                let bucket = &work[start..work.len().min(start + grain)];
-                seat.work(operation, context, thread, bucket);
-                advance(bucket.len());
-            }
-        });
+        pool.task_for_with(
+            Plan { grain: 1, ..plan },
+            work.len().div_ceil(grain),
+            &mut rounds,
+            |round, thread, range| {
+                for _ in range {
+                    let start = next.fetch_add(grain, Relaxed);
+                    let bucket = &work[start..work.len().min(start + grain)];
+                    round.work(operation, context, thread, bucket);
+                    advance(bucket.len());
+                }
+            },
+        );
         let mut again = Vec::new();
-        for seat in seats {
-            counts.add(&seat.counts);
-            again.extend(seat.again);
+        for round in rounds {
+            counts.add(&round.counts);
+            again.extend(round.again);
         }
         left = Some(again);
     }
     let rest = left.unwrap_or_default();
-    counts.add(&sequential::run(operation, &rest, context, &mut states[0], advance));
+    counts.add(&sequential::run(operation, &rest, context, &mut threads[0], advance));
     counts
 }
 
-impl<'m, I: super::Item> Seat<'_, 'm, I> {
+impl<'m, O: Operation> RoundOf<'_, '_, 'm, O> {
     /// Does the items of one task.
-    fn work<O>(&mut self, operation: &O, context: &Context<'m>, thread: usize, items: &[I])
-    where
-        O: Operation<Item = I>,
-    {
-        let mut worker = Worker::new(context, self.state, Speculative::new(thread));
+    fn work(&mut self, operation: &O, context: &Context<'m>, thread: usize, items: &[O::Item]) {
+        let mut worker = Worker::new(context, &mut *self.thread.state, Speculative::new(thread));
         let first = self.again.len();
         let mut attempt = |item| {
-            let result = operation.attempt(&mut worker, item);
+            let result = operation.attempt(&mut worker, &mut self.thread.scratch, item);
             worker.access.release(worker.store);
             self.counts.record(result);
             result == Err(Refusal::Conflict)

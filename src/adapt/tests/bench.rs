@@ -1,16 +1,21 @@
 //! What the kernel's tests work on: small meshes with a model and a metric, and sweeps over all of their items in random order.
-use crate::adapt::build::{self, Filled};
-use crate::adapt::check::check;
-use crate::adapt::context::{Context, Limits};
-use crate::adapt::criteria::Criterion;
-use crate::adapt::ids::{EDGE, TetId, VertexId};
-use crate::adapt::insert::EdgeItem;
-use crate::adapt::outcome::Counts;
-use crate::adapt::schedule::{
-    self, Collapse, Crew, Grains, Mend, Operation, Project, Reconnect, Retire, Scheduler, Smooth, Split, Thin,
-};
-use crate::adapt::work::Kind;
-use crate::adapt::worker::State;
+use crate::adapt::core::check::check;
+use crate::adapt::core::context::{Context, Limits};
+use crate::adapt::core::edge_list::EdgeItem;
+use crate::adapt::core::fill::{self, Filled};
+use crate::adapt::core::ids::{EDGE, TetId, VertexId};
+use crate::adapt::core::refusal::Counts;
+use crate::adapt::core::worker::State;
+use crate::adapt::operations::collapse::onto_end::Collapse;
+use crate::adapt::operations::collapse::thinning::Thin;
+use crate::adapt::operations::insertion::edge_split::Split;
+use crate::adapt::operations::projection::{Project, RemoveUnprojected};
+use crate::adapt::operations::reconnection::criteria::Criterion;
+use crate::adapt::operations::reconnection::sweep::Reconnect;
+use crate::adapt::operations::repair::Repair;
+use crate::adapt::operations::smoothing::vertex::Smooth;
+use crate::adapt::schedule::work::Kind;
+use crate::adapt::schedule::{self, Execution, Grains, Operation, Scheduler};
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary, samples};
 use crate::geometry::{Discrete, Model};
@@ -105,8 +110,8 @@ pub enum Task {
     Reconnect(Criterion),
     Smooth,
     Project,
-    Retire,
-    Mend,
+    RemoveUnprojected,
+    Repair,
 }
 
 impl Task {
@@ -119,8 +124,8 @@ impl Task {
         Task::Reconnect(Criterion::MeanRatio),
         Task::Smooth,
         Task::Project,
-        Task::Retire,
-        Task::Mend,
+        Task::RemoveUnprojected,
+        Task::Repair,
     ];
 }
 
@@ -140,9 +145,9 @@ impl<'m> Bench<'m> {
     /// A bench with so many threads. Limits are lax, so that much is done: edges of any length are split and collapsed, and bad
     /// elements come of it.
     pub fn new(sample: &'m Sample, threads: usize, seed: u64) -> Self {
-        let Filled { store, waiting, .. } =
-            build::fill(Team::alone(), &sample.mesh, &sample.place, &sample.source).unwrap();
-        assert!(waiting.is_empty(), "the samples lie on their models");
+        let Filled { store, unprojected, .. } =
+            fill::fill(Team::alone(), &sample.mesh, &sample.place, &sample.source).unwrap();
+        assert!(unprojected.is_empty(), "the samples lie on their models");
         let mut context = Context::new(store, &sample.source, &sample.model);
         context.limits = Limits { insert_floor: 0.02, collapse_floor: 0.02, ..Limits::default() };
         let pool = Pool::new(threads).unwrap();
@@ -203,22 +208,23 @@ impl<'m> Bench<'m> {
                 self.push_off_the_model();
                 self.on_vertices(&Project, true)
             }
-            Task::Retire => self.on_vertices(&Retire, true),
-            Task::Mend => self.on_tets(&Mend),
+            Task::RemoveUnprojected => self.on_vertices(&RemoveUnprojected, true),
+            Task::Repair => self.on_tets(&Repair),
         };
-        if task == Task::Project && self.states.iter().any(|state| !state.waiting.is_empty()) {
+        if task == Task::Project && self.states.iter().any(|state| !state.unprojected.is_empty()) {
             // Some stay where they were pushed to, until another operation brings them back.
             self.exact = false;
         }
         self.check(&format!("{task:?}"));
-        self.states.iter_mut().for_each(|state| state.waiting.clear());
+        self.states.iter_mut().for_each(|state| state.unprojected.clear());
         counts
     }
 
     fn run<O: Operation>(&mut self, operation: &O, mut items: Vec<O::Item>) -> Counts {
         self.random.shuffle(&mut items);
-        let crew = Crew { pool: &self.pool, scheduler: self.scheduler, plan: self.plan, grains: Grains::uniform(8) };
-        schedule::run(operation, &items, &self.context, &mut self.states, (crew, Kind::Split), &|_| {})
+        let execution =
+            Execution { pool: &self.pool, scheduler: self.scheduler, plan: self.plan, grains: Grains::uniform(8) };
+        schedule::run(operation, &items, &self.context, &mut self.states, (execution, Kind::Split), &|_| {})
     }
 
     /// All edges; some are listed twice, with another tetrahedron.
@@ -266,13 +272,13 @@ impl<'m> Bench<'m> {
             let from = store.position(v);
             let inner = |t: &TetId| store.vertices(*t).into_iter().find(|&x| store.dimension(x) == 3);
             let Some(x) = tets.iter().find_map(inner) else { continue };
-            store.set_position(v, lerp(from, store.position(x), shift));
+            store.displace(v, lerp(from, store.position(x), shift));
             let positive =
                 |t: &TetId| crate::mesh::predicate::is_positive(store.vertices(*t).map(|v| store.position(v)));
             if !tets.iter().all(positive) {
-                store.set_position(v, from);
+                store.displace(v, from);
             }
         }
-        build::measure(Team::alone(), store);
+        fill::measure(Team::alone(), store);
     }
 }

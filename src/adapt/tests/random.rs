@@ -1,12 +1,19 @@
 //! Random operations one by one: what is done leaves a valid mesh, what is refused leaves the mesh as it was.
 use super::bench::{Bench, Shape, sample};
-use crate::adapt::access::{Access, Speculative};
-use crate::adapt::criteria::Criterion;
-use crate::adapt::ids::{TetId, VertexId};
-use crate::adapt::outcome::Refusal;
-use crate::adapt::schedule::{Collapse, Mend, Operation, Reconnect, Retire, Smooth, Split, Thin};
-use crate::adapt::store::Store;
-use crate::adapt::worker::Worker;
+use crate::adapt::core::access::{Access, Speculative};
+use crate::adapt::core::ids::{TetId, VertexId};
+use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::store::Store;
+use crate::adapt::core::worker::Worker;
+use crate::adapt::operations::collapse::onto_end::Collapse;
+use crate::adapt::operations::collapse::thinning::Thin;
+use crate::adapt::operations::insertion::edge_split::Split;
+use crate::adapt::operations::projection::RemoveUnprojected;
+use crate::adapt::operations::reconnection::criteria::Criterion;
+use crate::adapt::operations::reconnection::sweep::Reconnect;
+use crate::adapt::operations::repair::Repair;
+use crate::adapt::operations::smoothing::vertex::Smooth;
+use crate::adapt::schedule::Operation;
 use crate::geometry::Entity;
 use crate::mesh::vector::Vec3;
 use proptest::prelude::*;
@@ -21,6 +28,14 @@ pub fn picture(store: &Store) -> (Vec<Tet>, Vec<Vertex>) {
     (store.live_tets().map(tet).collect(), store.live_vertices().map(vertex).collect())
 }
 
+fn attempt_once<O: Operation>(
+    operation: &O,
+    worker: &mut Worker<'_, '_, Speculative>,
+    item: O::Item,
+) -> Result<(), Refusal> {
+    operation.attempt(worker, &mut O::Scratch::default(), item)
+}
+
 /// Does the operation that the number names to the item that it names.
 fn attempt(bench: &mut Bench<'_>, kind: u8, pick: usize) -> Result<(), Refusal> {
     let edges = bench.edges();
@@ -29,19 +44,19 @@ fn attempt(bench: &mut Bench<'_>, kind: u8, pick: usize) -> Result<(), Refusal> 
     let vertex = vertices[pick % vertices.len()];
     let mut worker = Worker::new(&bench.context, &mut bench.states[0], Speculative::new(0));
     let result = match kind {
-        0 => Split.attempt(&mut worker, edge),
-        1 => Collapse.attempt(&mut worker, edge),
-        2 => Reconnect(Criterion::Delaunay).attempt(&mut worker, edge.tet),
-        3 => Reconnect(Criterion::EdgeWeight).attempt(&mut worker, edge.tet),
-        4 => Reconnect(Criterion::MeanRatio).attempt(&mut worker, edge.tet),
-        5 => Smooth.attempt(&mut worker, vertex),
-        6 => Mend.attempt(&mut worker, edge.tet),
+        0 => attempt_once(&Split, &mut worker, edge),
+        1 => attempt_once(&Collapse, &mut worker, edge),
+        2 => attempt_once(&Reconnect(Criterion::Delaunay), &mut worker, edge.tet),
+        3 => attempt_once(&Reconnect(Criterion::EdgeWeight), &mut worker, edge.tet),
+        4 => attempt_once(&Reconnect(Criterion::MeanRatio), &mut worker, edge.tet),
+        5 => attempt_once(&Smooth, &mut worker, vertex),
+        6 => attempt_once(&Repair, &mut worker, edge.tet),
         7 => {
             // What went before was in another sweep.
             worker.store.tick();
-            Thin.attempt(&mut worker, vertex)
+            attempt_once(&Thin, &mut worker, vertex)
         }
-        _ => Retire.attempt(&mut worker, vertex),
+        _ => attempt_once(&RemoveUnprojected, &mut worker, vertex),
     };
     worker.access.release(worker.store);
     result

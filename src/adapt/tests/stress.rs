@@ -1,6 +1,6 @@
 //! Many threads on meshes so small that they meet all the time.
 use super::bench::{Bench, Shape, Task, sample};
-use crate::adapt::outcome::Refusal;
+use crate::adapt::core::refusal::Refusal;
 use crate::adapt::schedule::Scheduler;
 use std::time::{Duration, Instant};
 

@@ -1,7 +1,7 @@
 //! After every sweep of every kind the whole mesh is valid, and there was something to do.
 use super::bench::{Bench, Shape, Task, sample};
-use crate::adapt::criteria::Criterion;
-use crate::adapt::ids::{FACE, TetId, VertexId};
+use crate::adapt::core::ids::{FACE, TetId, VertexId};
+use crate::adapt::operations::reconnection::criteria::Criterion;
 use crate::tasks::Team;
 use std::collections::BTreeSet;
 
@@ -103,7 +103,7 @@ fn renumbering_leaves_a_valid_mesh_without_dead_records() {
         };
         let before = places(&bench);
         let number = bench.context.reorder(Team::alone());
-        bench.states[0].supply.clear();
+        bench.states[0].id_pool.clear();
         bench.check("renumbering");
         let store = &bench.context.store;
         assert!(store.vertex_bound() < number.len() && store.live_vertices().count() == store.vertex_bound());

@@ -75,7 +75,7 @@ pub struct Report {
     off_model: Vec<u32>,
     overgrown: bool,
     /// Surface triangles beyond --normal-deviation or --hausdorff.
-    astray: usize,
+    deviating: usize,
     operations: BTreeMap<&'static str, Operation>,
     /// Wall times.
     pub seconds: Seconds,
@@ -119,7 +119,7 @@ impl Report {
             fidelity,
             off_model: extracted.off_model,
             overgrown: adapted.overgrown,
-            astray: adapted.astray,
+            deviating: adapted.deviating,
             operations: operations(&adapted.work),
             seconds: Seconds { geometry: adapted.geometry.as_secs_f64(), ..Seconds::default() },
             mesh,
@@ -145,10 +145,13 @@ impl Report {
                 format_args!("{count} vertices, {what}; the first: {} at {at}", first + 1),
             );
         }
-        if self.astray > 0 {
+        if self.deviating > 0 {
             table.row(
                 "beyond the bounds",
-                format_args!("{} surface triangles: no room to split them, or their vertices must stay", self.astray),
+                format_args!(
+                    "{} surface triangles: no room to split them, or their vertices must stay",
+                    self.deviating
+                ),
             );
         }
         if self.overgrown {

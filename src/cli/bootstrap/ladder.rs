@@ -10,7 +10,7 @@ use crate::formats;
 use crate::geometry::classify::{Classification, Error, Options, classify};
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
-use crate::mesh::pinch::unpinch;
+use crate::mesh::split_nonmanifold::split_nonmanifold;
 use crate::mesh::validity;
 use crate::mesh::vector::lerp;
 use crate::tasks::Team;
@@ -235,7 +235,7 @@ fn command(
 fn judge(team: Team<'_>, mut mesh: TetMesh, model: &Model) -> Result<(TetMesh, Classification), String> {
     let topology = model.topology();
     // Solids that touch in an edge or a vertex alone: the mesher joins them there, our kernel and our model have them apart.
-    unpinch(&mut mesh);
+    split_nonmanifold(&mut mesh);
     // Seams and poles are no features: what is listed on them would be taken for ridges.
     let is_ridge = |id: i32| {
         let edge = id as usize;

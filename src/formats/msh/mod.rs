@@ -12,7 +12,7 @@ mod write;
 
 pub(super) use write::write;
 
-use super::turn::turn;
+use super::orientation;
 use super::{Dataset, error};
 use crate::geometry::{Label, Names};
 use crate::mesh::io::{Error, Read};
@@ -80,7 +80,7 @@ pub fn read_msh(path: &Path) -> Result<TetMesh, Error> {
         return Err(error::at(path, "Elements", "no tetrahedra in it"));
     }
     compact(&mut mesh, |mesh, keep| mesh.tets.nodes.as_flattened().iter().for_each(|&v| keep(v)));
-    turn(&mut mesh);
+    orientation::unify(&mut mesh);
     Ok(mesh)
 }
 

@@ -1,0 +1,152 @@
+//! What a round would leave is measured; vertices that would leave something bad stay.
+use super::level::{Balls, INSIDE, Level, is_proper};
+use super::surface::Surface;
+use super::vertex_map::{self, VertexMap};
+use crate::mesh::predicate::is_positive;
+use crate::metric::mean_ratios;
+use crate::metric::quality::mean_ratio;
+
+/// Least mean ratio of a tetrahedron that comes.
+const FLOOR: f64 = 0.1;
+
+/// An edge that comes is not longer than this, unless the one that it comes from was.
+const LONG: f64 = 2.0;
+
+/// Vertices near another that are looked at: as many as there are mostly.
+const WAYS: usize = 24;
+
+/// Of those near enough the nearest are tried, so many.
+const TRIED: usize = 8;
+
+/// A level, of which vertices are to go.
+pub struct MapRepair<'l, 'm> {
+    /// The level.
+    pub level: &'l Level<'m>,
+    /// The tetrahedra at its vertices.
+    pub balls: &'l Balls,
+    /// Its triangles.
+    pub surface: &'l Surface,
+}
+
+impl MapRepair<'_, '_> {
+    /// Sends vertices other ways, and lets those stay that have none, until nothing bad would be left.
+    pub fn repair(&self, map: &mut VertexMap) {
+        let (level, surface) = (self.level, self.surface);
+        let is_turned = |t: &u32, map: &VertexMap| !surface.is_fair(level, *t, map);
+        let mut bad = self.bad_tets(map);
+        let mut turned: Vec<u32> = (0..level.triangles.len() as u32).filter(|t| is_turned(t, map)).collect();
+        let mut kept = Vec::new();
+        loop {
+            let stays = if let Some(t) = turned.pop() {
+                if is_turned(&t, map) { map.keep_one(&level.triangles[t as usize]) } else { None }
+            } else if let Some(t) = bad.pop() {
+                let repaired = self.is_fair(t, map) || self.turn_one(t, map);
+                if repaired { None } else { map.keep_one(&level.tets[t as usize]) }
+            } else {
+                break;
+            };
+            if let Some(v) = stays {
+                kept.push(v);
+                bad.extend(self.balls.at(v).iter().filter(|&&t| !self.is_fair(t, map)));
+                turned.extend(surface.at(v).iter().filter(|&t| is_turned(t, map)));
+            }
+        }
+        // Those that stay because of what was bad about them may have a way now; not those that others go onto.
+        let mut led = map.led();
+        for v in kept {
+            if map.target(v) == v && !led[v as usize] && self.turn(v, map) {
+                led[map.target(v) as usize] = true;
+            }
+        }
+    }
+
+    /// The tetrahedra that would be bad.
+    fn bad_tets(&self, map: &VertexMap) -> Vec<u32> {
+        let level = self.level;
+        let (mut bad, mut too_long) = (Vec::new(), Vec::new());
+        let left = level.tets.iter().zip(0..).filter_map(|(nodes, t)| {
+            let mapped = map.map(nodes);
+            if mapped == *nodes || !is_proper(&mapped) {
+                return None;
+            }
+            if self.gets_long(nodes, &mapped) {
+                too_long.push(t);
+                return None;
+            }
+            Some((t, mapped))
+        });
+        let corners = |(_, nodes): (u32, [u32; 4])| {
+            (nodes.map(|v| level.points[v as usize]), nodes.map(|v| level.logs[v as usize]))
+        };
+        mean_ratios(left, corners, |(t, _), ratio| {
+            if ratio < FLOOR {
+                bad.push(t);
+            }
+        });
+        bad.append(&mut too_long);
+        bad
+    }
+
+    /// Whether a tetrahedron vanishes, stays as it is, or is good enough.
+    fn is_fair(&self, t: u32, map: &VertexMap) -> bool {
+        let (level, nodes) = (self.level, &self.level.tets[t as usize]);
+        let mapped = map.map(nodes);
+        if mapped == *nodes || !is_proper(&mapped) {
+            return true;
+        }
+        let points = mapped.map(|v| level.points[v as usize]);
+        let logs = mapped.map(|v| &level.logs[v as usize]);
+        // What costs least comes first.
+        is_positive(points) && !self.gets_long(nodes, &mapped) && mean_ratio(points, logs) >= FLOOR
+    }
+
+    /// Sends one of the vertices of a bad tetrahedron another way, so that nothing bad is left about it.
+    fn turn_one(&self, t: u32, map: &mut VertexMap) -> bool {
+        let nodes = self.level.tets[t as usize];
+        nodes.into_iter().any(|v| map.target(v) != v && self.turn(v, map))
+    }
+
+    /// Sends a vertex inside onto another of those near it that stay, so that nothing bad is left about it; the nearest are tried first.
+    fn turn(&self, v: u32, map: &mut VertexMap) -> bool {
+        if self.level.faces[v as usize] != INSIDE {
+            return false;
+        }
+        let before = map.target(v);
+        let mut found = [(f32::INFINITY, v); WAYS];
+        let mut count = 0;
+        for &t in self.balls.at(v) {
+            for x in map.map(&self.level.tets[t as usize]) {
+                if x != v && x != before && count < WAYS && !found[..count].iter().any(|way| way.1 == x) {
+                    found[count] = (vertex_map::distance(self.level, v, x), x);
+                    count += 1;
+                }
+            }
+        }
+        found[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for &(distance, x) in found[..count].iter().take(TRIED).filter(|way| way.0.is_finite()) {
+            let before = map.send(v, x, distance);
+            if self.balls.at(v).iter().all(|&t| self.is_fair(t, map)) {
+                return true;
+            }
+            map.send(v, before.0, before.1);
+        }
+        false
+    }
+
+    /// Whether an edge gets too long.
+    fn gets_long(&self, nodes: &[u32; 4], mapped: &[u32; 4]) -> bool {
+        let least = |a: u32, b: u32| {
+            let [x, y] = self.level.squares(a, b);
+            x.min(y)
+        };
+        for i in 1..4 {
+            for j in 0..i {
+                let length = least(mapped[i], mapped[j]);
+                if length > LONG * LONG && length > least(nodes[i], nodes[j]) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}

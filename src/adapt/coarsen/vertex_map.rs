@@ -1,0 +1,122 @@
+//! Which vertices stay, and onto which of them the others go.
+use super::level::{Balls, FIXED, INSIDE, Level};
+use super::surface::Surface;
+
+/// Edges shorter than this, in the metrics of both ends, may vanish.
+const SHORT: f64 = 0.85;
+
+/// What becomes of a vertex.
+#[derive(Clone, Copy)]
+struct Image {
+    /// The vertex that it goes onto, itself where it stays; [`OPEN`] before that is known.
+    target: u32,
+    /// The vertex that looked at it last.
+    seen: u32,
+    /// Fourth power of the distance to its target.
+    distance: f32,
+}
+
+const OPEN: u32 = u32::MAX;
+
+/// The vertices that stay, each with those that go onto it.
+pub struct VertexMap {
+    images: Vec<Image>,
+}
+
+impl VertexMap {
+    /// Vertices are taken in their order, those of the model's edges first, then of its faces: one that no vertex which stays has near
+    /// stays. Of several that are near a vertex goes onto the nearest.
+    pub fn of(level: &Level, balls: &Balls, surface: &Surface) -> Self {
+        let count = level.points.len();
+        let mut map = Self { images: vec![Image { target: OPEN, seen: OPEN, distance: f32::INFINITY }; count] };
+        let those = |wanted: fn(u32) -> bool| (0..count as u32).filter(move |&v| wanted(level.faces[v as usize]));
+        for v in those(|face| face == FIXED).chain(those(|face| face < FIXED)) {
+            if map.stays(v) {
+                surface.neighbours(level, v, |x| map.attract(level, v, x));
+            }
+        }
+        for v in those(|face| face != INSIDE).chain(those(|face| face == INSIDE)) {
+            if map.stays(v) {
+                map.attract_inside(level, balls, v);
+            }
+        }
+        map
+    }
+
+    /// Lets a vertex stay, unless it is known to go.
+    fn stays(&mut self, v: u32) -> bool {
+        let image = &mut self.images[v as usize];
+        if image.target == OPEN {
+            (image.target, image.distance) = (v, 0.0);
+        }
+        image.target == v
+    }
+
+    /// Offers v, which stays, to the vertices inside that are joined to it.
+    fn attract_inside(&mut self, level: &Level, balls: &Balls, v: u32) {
+        for &t in balls.at(v) {
+            for x in level.tets[t as usize] {
+                if x != v && self.images[x as usize].seen != v && level.faces[x as usize] == INSIDE {
+                    self.attract(level, v, x);
+                }
+            }
+        }
+    }
+
+    /// Offers v, which stays, to a vertex that is joined to it.
+    #[inline]
+    fn attract(&mut self, level: &Level, v: u32, x: u32) {
+        let image = &mut self.images[x as usize];
+        image.seen = v;
+        let distance = distance(level, v, x);
+        if distance < image.distance {
+            (image.target, image.distance) = (v, distance);
+        }
+    }
+
+    /// The vertex that one goes onto: itself where it stays.
+    #[inline(always)]
+    pub fn target(&self, v: u32) -> u32 {
+        self.images[v as usize].target
+    }
+
+    /// An element after its vertices have gone where they go.
+    #[inline(always)]
+    pub fn map<const N: usize>(&self, nodes: &[u32; N]) -> [u32; N] {
+        nodes.map(|v| self.target(v))
+    }
+
+    /// Sends a vertex onto another; returns where it went before.
+    pub fn send(&mut self, v: u32, target: u32, distance: f32) -> (u32, f32) {
+        let image = &mut self.images[v as usize];
+        let before = (image.target, image.distance);
+        (image.target, image.distance) = (target, distance);
+        before
+    }
+
+    /// For each vertex whether others go onto it.
+    pub fn led(&self) -> Vec<bool> {
+        let mut led = vec![false; self.images.len()];
+        for (image, v) in self.images.iter().zip(0..) {
+            led[image.target as usize] |= image.target != v;
+        }
+        led
+    }
+
+    /// Lets the vertex of an element stay that has the longest way; none where all do.
+    pub fn keep_one(&mut self, nodes: &[u32]) -> Option<u32> {
+        let goes = nodes.iter().copied().filter(|&v| self.target(v) != v);
+        let way = |v: &u32| self.images[*v as usize].distance;
+        let v = goes.max_by(|a, b| way(a).total_cmp(&way(b)))?;
+        (self.images[v as usize].target, self.images[v as usize].distance) = (v, 0.0);
+        Some(v)
+    }
+}
+
+/// Fourth power of the length of an edge, infinite where it is not short in the metrics of both ends; single precision will do to
+/// choose by.
+#[inline(always)]
+pub fn distance(level: &Level, a: u32, b: u32) -> f32 {
+    let [at_a, at_b] = level.squares(a, b);
+    if at_a < SHORT * SHORT && at_b < SHORT * SHORT { (at_a * at_b).max(0.0) as f32 } else { f32::INFINITY }
+}

@@ -1,0 +1,236 @@
+//! The one way to change the topology: a set of tetrahedra is replaced by another with the same boundary.
+//!
+//! Every operation ends here. The faces of the old and the new tetrahedra are matched before anything is written:
+//! a replacement that would leave a hole, a doubled face or a surface triangle without a tag is refused, and the mesh stays as it was.
+use super::access::Access;
+use super::ids::{FACE, TetId, VertexId};
+use super::refusal::Refusal;
+use super::worker::Worker;
+
+/// A tetrahedron to be made.
+#[derive(Clone, Copy, Debug)]
+pub struct NewTet {
+    /// Vertices, in positive order.
+    pub vertices: [VertexId; 4],
+    /// Region.
+    pub region: u32,
+    /// Mean ratio.
+    pub quality: f64,
+}
+
+/// What is replaced by what.
+#[derive(Default)]
+pub struct Replacement {
+    /// Tetrahedra that go.
+    pub old: Vec<TetId>,
+    /// Tetrahedra that come.
+    pub new: Vec<NewTet>,
+    /// Tagged faces inside the cavity or on the new surface.
+    pub faces: Vec<([VertexId; 3], u32)>,
+    /// Vertices that go.
+    pub dead: Vec<VertexId>,
+    /// Declared faces may be boundary triangles that were there before: the vertex in their middle only moves.
+    pub keeps_surface: bool,
+    links: Vec<[Link; 4]>,
+    ids: Vec<TetId>,
+}
+
+impl Replacement {
+    /// Empties all lists.
+    pub fn clear(&mut self) {
+        self.old.clear();
+        self.new.clear();
+        self.faces.clear();
+        self.dead.clear();
+        self.keeps_surface = false;
+    }
+}
+
+/// What is known of a face while old and new are matched.
+#[derive(Clone, Copy, Default)]
+pub struct FaceSlot {
+    seen: Seen,
+    /// The tetrahedron on the other side: outside (an id), or new (an index).
+    tet: u32,
+    local: u8,
+    tag: u32,
+}
+
+#[derive(Clone, Copy, Default, PartialEq)]
+enum Seen {
+    #[default]
+    Never,
+    /// On the cavity's boundary, not yet taken by a new tetrahedron.
+    Boundary,
+    /// Declared as tagged, not yet a face of a new tetrahedron.
+    Declared,
+    /// A face of one new tetrahedron, untagged: must find its second.
+    Half,
+    /// A face of one new tetrahedron, tagged: surface, unless a second comes.
+    TaggedHalf,
+    /// Nothing more may come.
+    Complete,
+}
+
+/// What lies behind a face of a new tetrahedron.
+#[derive(Clone, Copy)]
+enum Link {
+    Surface { tag: u32 },
+    Outside { tet: TetId, local: u8, tag: u32 },
+    Inside { index: u32, tag: u32 },
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Carries out `state.replacement`. All vertices of the old and new tetrahedra must be claimed.
+    ///
+    /// # Errors
+    /// `Geometry` when something required would go, `Topology` when old and new have not the same boundary, `Full` when ids ran out; the mesh is unchanged then.
+    pub fn commit(&mut self) -> Result<(), Refusal> {
+        let Replacement { old, new, dead, .. } = &self.state.replacement;
+        let joins = |tet: &NewTet, a: VertexId, b: VertexId| tet.vertices.contains(&a) && tet.vertices.contains(&b);
+        self.check_required(old, dead, |a, b| new.iter().any(|tet| joins(tet, a, b)))?;
+        self.enter_old_faces()?;
+        self.match_new_faces()?;
+        self.number_new_tets()?;
+        self.write_new_tets();
+        Ok(())
+    }
+
+    /// Enters the cavity's boundary faces and the declared ones into the face map.
+    fn enter_old_faces(&mut self) -> Result<(), Refusal> {
+        let state = &mut *self.state;
+        state.face_map.clear();
+        state.set.clear();
+        for &t in &state.replacement.old {
+            state.set.insert(t.0);
+        }
+        for &t in &state.replacement.old {
+            let (v, n, tags) = (self.store.vertices(t), self.store.neighbours(t), self.store.tags(t));
+            for i in 0..4 {
+                if n[i].is_some() && state.set.contains(n[i].0) {
+                    continue;
+                }
+                let (slot, new) = state.face_map.entry(FACE[i].map(|k| v[k].0));
+                if !new {
+                    return Err(Refusal::Topology);
+                }
+                *slot = FaceSlot { seen: Seen::Boundary, tet: n[i].0, local: 0, tag: tags[i] };
+                if n[i].is_some() {
+                    let back = self.store.neighbours(n[i]).iter().position(|&m| m == t);
+                    slot.local = back.expect("neighbours know each other") as u8;
+                }
+            }
+        }
+        let keeps = state.replacement.keeps_surface;
+        let mut doubled = false;
+        state.replacement.faces.retain(|&(face, tag)| {
+            let (slot, new) = state.face_map.entry(face.map(|v| v.0));
+            if new {
+                *slot = FaceSlot { seen: Seen::Declared, tag, ..FaceSlot::default() };
+                return true;
+            }
+            doubled |= !(keeps && slot.seen == Seen::Boundary && slot.tag == tag && !TetId(slot.tet).is_some());
+            false
+        });
+        if doubled { Err(Refusal::Topology) } else { Ok(()) }
+    }
+
+    /// Finds what lies behind each face of each new tetrahedron.
+    fn match_new_faces(&mut self) -> Result<(), Refusal> {
+        let state = &mut *self.state;
+        let Replacement { new, links, faces, old, .. } = &mut state.replacement;
+        links.clear();
+        let (mut halves, mut declared) = (0usize, faces.len());
+        let mut outside_taken = 0usize;
+        for (index, tet) in new.iter().enumerate() {
+            let mut link = [Link::Surface { tag: 0 }; 4];
+            for i in 0..4 {
+                let (slot, _) = state.face_map.entry(FACE[i].map(|k| tet.vertices[k].0));
+                let tag = slot.tag;
+                match slot.seen {
+                    Seen::Never => {
+                        *slot = FaceSlot { seen: Seen::Half, tet: index as u32, local: i as u8, tag: 0 };
+                        halves += 1;
+                    }
+                    Seen::Declared => {
+                        *slot = FaceSlot { seen: Seen::TaggedHalf, tet: index as u32, local: i as u8, tag };
+                        declared -= 1;
+                        link[i] = Link::Surface { tag };
+                    }
+                    Seen::Half | Seen::TaggedHalf => {
+                        halves -= usize::from(slot.seen == Seen::Half);
+                        slot.seen = Seen::Complete;
+                        link[i] = Link::Inside { index: slot.tet, tag };
+                        let back = Link::Inside { index: index as u32, tag };
+                        match slot.tet as usize == index {
+                            true => return Err(Refusal::Topology),
+                            false => links[slot.tet as usize][usize::from(slot.local)] = back,
+                        }
+                    }
+                    Seen::Boundary => {
+                        slot.seen = Seen::Complete;
+                        let outside = TetId(slot.tet);
+                        link[i] = match outside.is_some() {
+                            true => Link::Outside { tet: outside, local: slot.local, tag },
+                            false => Link::Surface { tag },
+                        };
+                        outside_taken += usize::from(outside.is_some());
+                    }
+                    Seen::Complete => return Err(Refusal::Topology),
+                }
+            }
+            links.push(link);
+        }
+        let outside_all = old.iter().flat_map(|&t| self.store.neighbours(t));
+        let outside_all = outside_all.filter(|n| n.is_some() && !state.set.contains(n.0)).count();
+        if halves == 0 && declared == 0 && outside_taken == outside_all { Ok(()) } else { Err(Refusal::Topology) }
+    }
+
+    /// Gives the new tetrahedra ids: those of the old ones first.
+    fn number_new_tets(&mut self) -> Result<(), Refusal> {
+        let state = &mut *self.state;
+        let Replacement { old, new, ids, .. } = &mut state.replacement;
+        state.id_pool.provide_tets(self.store, new.len().saturating_sub(old.len()))?;
+        ids.clear();
+        ids.extend(old.iter().take(new.len()));
+        while ids.len() < new.len() {
+            ids.push(state.id_pool.tet());
+        }
+        Ok(())
+    }
+
+    fn write_new_tets(&mut self) {
+        let state = &mut *self.state;
+        let Replacement { old, new, links, ids, dead, .. } = &mut state.replacement;
+        for (tet, &id) in new.iter().zip(&*ids) {
+            self.store.write_tet(id, tet.vertices, tet.region, tet.quality);
+            for v in tet.vertices {
+                self.store.set_tet_of(v, id);
+            }
+        }
+        for (link, &id) in links.iter().zip(&*ids) {
+            for i in 0..4 {
+                match link[i] {
+                    Link::Surface { tag } => self.store.set_tag(id, i, tag),
+                    Link::Inside { index, tag } => {
+                        self.store.set_neighbour(id, i, ids[index as usize]);
+                        self.store.set_tag(id, i, tag);
+                    }
+                    Link::Outside { tet, local, tag } => {
+                        self.store.set_neighbour(id, i, tet);
+                        self.store.set_tag(id, i, tag);
+                        self.store.set_neighbour(tet, usize::from(local), id);
+                    }
+                }
+            }
+        }
+        for &t in old.iter().skip(new.len()) {
+            self.store.kill_tet(t);
+            state.id_pool.free_tet(t);
+        }
+        for &v in &*dead {
+            self.store.set_tet_of(v, TetId::NONE);
+            state.id_pool.free_vertex(v);
+        }
+    }
+}

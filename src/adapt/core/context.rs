@@ -1,0 +1,129 @@
+//! What all threads share during a run: the mesh, the metric, the model, the limits.
+use super::ids::VertexId;
+use super::required::Required;
+use super::store::Store;
+use crate::geometry::{Evaluate, Geometry, Model, SurfaceKind};
+use crate::mesh::vector::Vec3;
+use crate::metric::Source;
+use crate::tasks::{GRAIN, Team};
+
+/// √2 and 1/√2: an edge between them has unit length.
+pub const LONG: f64 = std::f64::consts::SQRT_2;
+/// See [`LONG`].
+pub const SHORT: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Limits that the passes set for the operations.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Edges longer than this are split.
+    pub long: f64,
+    /// Edges shorter than this are collapsed.
+    pub short: f64,
+    /// No insertion makes an edge shorter than this.
+    pub shortest_new: f64,
+    /// No collapse makes an edge longer than this.
+    pub longest_new: f64,
+    /// An insertion may lower the worst mean ratio of its cavity to this, but no further unless it was worse already.
+    pub insert_floor: f64,
+    /// Whether a much too long edge is worth a bad tetrahedron or a short edge: what comes after finds better places for those.
+    pub long_first: bool,
+    /// Part of the worst mean ratio that must be left where it is below the floor already.
+    pub insert_loss: f64,
+    /// As the floor of insertion, for a collapse; nothing may be lost below it.
+    pub collapse_floor: f64,
+    /// Smoothing and repair look at tetrahedra below this mean ratio.
+    pub improve_below: f64,
+    /// Reconnection looks at tetrahedra below this mean ratio.
+    pub flip_below: f64,
+    /// And at edges whose tetrahedra have on average at least this 1/Q − 1.
+    pub flip_cost: f64,
+    /// Tetrahedra below this mean ratio try to remove several faces at once: up to 0.82 a third more are looked at, and little is gained.
+    pub several_below: f64,
+    /// Reconnection looks at tetrahedra that changed at or after this time.
+    pub since: u32,
+    /// Least cosine between a surface triangle's normal and the model's, unless it is less already: long thin triangles across a curved
+    /// face cannot but deviate.
+    pub cos_deviation: f64,
+    /// As above, for half the angle between the model's normals at the vertices: at 0.94 a circle keeps nine
+    /// edges.
+    pub cos_variation: f64,
+    /// And lie as far from the model, at their centroids and the middles of their edges.
+    pub chord: f64,
+    /// Most tetrahedra in an enlarged cavity.
+    pub cavity: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            long: LONG,
+            short: SHORT,
+            shortest_new: 0.5,
+            longest_new: LONG,
+            insert_floor: 0.1,
+            long_first: false,
+            insert_loss: 0.5,
+            collapse_floor: 0.2,
+            improve_below: 1.0,
+            flip_below: 1.0,
+            flip_cost: 0.0,
+            several_below: 0.75,
+            since: 0,
+            cos_deviation: 0.5,
+            cos_variation: 0.94,
+            chord: f64::INFINITY,
+            cavity: 96,
+        }
+    }
+}
+
+/// Shared, read by all threads; written between sweeps.
+pub struct Context<'m> {
+    /// The mesh.
+    pub store: Store,
+    /// Where new vertices take their metric from.
+    pub source: &'m Source,
+    /// The model the boundary lies on.
+    pub model: &'m Model,
+    /// Outward normals of the faces that are planes.
+    pub planes: Vec<Option<Vec3>>,
+    /// What must stay as it is.
+    pub required: Required,
+    /// For each vertex of the input its id; of those that are gone it says nothing.
+    pub ids: Vec<VertexId>,
+    /// Limits of the present pass.
+    pub limits: Limits,
+}
+
+impl<'m> Context<'m> {
+    /// A context on a filled store.
+    pub fn new(store: Store, source: &'m Source, model: &'m Model) -> Self {
+        let mut evaluator = model.evaluator();
+        let faces = model.topology().faces.iter().enumerate();
+        let planes = faces.map(|(i, face)| {
+            let middle = face.range.map(|[low, high]| 0.5 * (low + high));
+            (face.kind == SurfaceKind::Plane).then(|| evaluator.face_normal(i as u32, middle))
+        });
+        let planes = planes.collect();
+        let ids = (0..store.vertex_bound() as u32).map(VertexId).collect();
+        Self { store, source, model, planes, required: Required::default(), ids, limits: Limits::default() }
+    }
+
+    /// Renumbers the mesh along a space-filling curve; returns the new id of each old one. Pools of free ids must be emptied.
+    pub fn reorder(&mut self, team: Team<'_>) -> Vec<VertexId> {
+        let number = self.store.reorder(team);
+        self.required.renumber(&number);
+        team.fill(GRAIN, &mut self.ids, |_, ids| {
+            for id in ids.iter_mut().filter(|id| id.is_some()) {
+                *id = number[id.index()];
+            }
+        });
+        number
+    }
+
+    /// Whether the vertex must neither move nor go.
+    #[inline(always)]
+    pub fn is_frozen(&self, v: VertexId) -> bool {
+        self.required.is_frozen(v)
+    }
+}

@@ -1,0 +1,213 @@
+//! The edges of the mesh that are too long or too short: what is to be split and collapsed.
+use super::ids::{EDGE, TetId, VertexId};
+use super::store::Store;
+use crate::mesh::vector::sub;
+use crate::tasks::Team;
+use std::ops::Range;
+
+/// An edge to be looked at, and a tetrahedron that held it when it was listed.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeItem {
+    /// One end.
+    pub a: VertexId,
+    /// The other end.
+    pub b: VertexId,
+    /// Where to find the edge.
+    pub tet: TetId,
+}
+
+/// An edge and the class of its length in the metric.
+#[derive(Clone, Copy)]
+pub struct Classed {
+    /// The edge, the lesser vertex first, with the least of its tetrahedra.
+    pub item: EdgeItem,
+    /// Less than [`CLASSES`]: the longer the greater.
+    pub class: u16,
+}
+
+/// Number of classes of lengths.
+pub const CLASSES: u32 = 1 << 11;
+
+/// Class of an edge whose fourth power of the length is given: lengths in one class differ by less than a fifth.
+#[inline(always)]
+fn class(fourth_power: f64) -> u16 {
+    (fourth_power.max(0.0).to_bits() >> 52) as u16
+}
+
+/// Ranks that [`in_order`] tells apart.
+pub const RANKS: usize = 4 * CLASSES as usize;
+
+/// The edges in the order of their ranks, which are less than [`RANKS`]; those of one rank, whose lengths hardly differ, stay in the
+/// order of the mesh, so that what is done next is near in memory. A counting sort of a part of the edges on each thread.
+pub fn in_order(team: Team<'_>, edges: &[Classed], rank: impl Fn(&Classed) -> u32 + Sync) -> Vec<EdgeItem> {
+    let share = edges.len().div_ceil(team.threads()).max(1);
+    let parts = team.chunks(share, edges.len(), |range| sorted_by_rank(&edges[range], &rank));
+    if let [_] = parts[..] {
+        return parts.into_iter().flat_map(|(_, items)| items).collect();
+    }
+    let of_rank = |rank: usize| parts.iter().map(move |(starts, items)| &items[starts[rank]..starts[rank + 1]]);
+    let slices: Vec<_> = (0..RANKS).flat_map(of_rank).filter(|items| !items.is_empty()).collect();
+    team.join_slices(slices.iter().copied())
+}
+
+/// The edges in the order of their ranks, and where each rank begins.
+fn sorted_by_rank(edges: &[Classed], rank: impl Fn(&Classed) -> u32) -> (Vec<usize>, Vec<EdgeItem>) {
+    let ranks: Vec<u16> = edges.iter().map(|edge| rank(edge) as u16).collect();
+    // Counted two places on: while the edges are dealt out, each start moves to the next one's place.
+    let mut starts = vec![0; RANKS + 2];
+    ranks.iter().for_each(|&rank| starts[rank as usize + 2] += 1);
+    for at in 1..starts.len() {
+        starts[at] += starts[at - 1];
+    }
+    let nothing = EdgeItem { a: VertexId::NONE, b: VertexId::NONE, tet: TetId::NONE };
+    let mut items = vec![nothing; edges.len()];
+    for (edge, &rank) in edges.iter().zip(&ranks) {
+        let place = &mut starts[rank as usize + 1];
+        items[*place] = edge.item;
+        *place += 1;
+    }
+    (starts, items)
+}
+
+/// Tetrahedra of a part, at least: with each of its tetrahedra an edge comes again, and what is near in memory is near in space, so that
+/// most doubles are found in one part.
+const PART: usize = 1 << 14;
+
+/// Parts of the tetrahedra at most, and ranges of the vertices.
+const PARTS: usize = 256;
+
+/// The edges of tetrahedra that changed at or after a time, as far as they pass the test of their squared lengths in the metrics of both
+/// ends, in the order of their vertices. Between sweeps only.
+pub fn listed(team: Team<'_>, store: &Store, since: u32, wanted: impl Fn(f64, f64) -> bool + Sync) -> Vec<Classed> {
+    let [tets, vertices] = [store.tet_bound(), store.vertex_bound()];
+    let mut parts = team.chunks(PART.max(tets.div_ceil(PARTS)), tets, |range| listed_in(store, range, since, &wanted));
+    if parts.len() < 2 {
+        return parts.pop().unwrap_or_default();
+    }
+    let range = vertices.div_ceil(PARTS).max(PART / 4);
+    let merged = team.chunks(range, vertices, |range| merged(&parts, range));
+    drop(parts);
+    team.join(merged)
+}
+
+/// Those of some tetrahedra, in the order of their vertices.
+fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
+    let mut found: Vec<Classed> = Vec::new();
+    for t in store.live_tets_in(tets).filter(|&t| store.stamp(t) >= since) {
+        let v = store.vertices(t);
+        let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
+        for [i, j] in EDGE {
+            let e = sub(p[j], p[i]);
+            let (at_i, at_j) = (m[i].quadratic(e), m[j].quadratic(e));
+            if wanted(at_i, at_j) {
+                let item = EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t };
+                found.push(Classed { item, class: class(at_i * at_j) });
+            }
+        }
+    }
+    found.sort_unstable_by_key(key);
+    found.dedup_by_key(ends);
+    found.shrink_to_fit();
+    found
+}
+
+/// Those of the parts whose lesser vertex is in a range.
+fn merged(parts: &[Vec<Classed>], vertices: Range<usize>) -> Vec<Classed> {
+    let of_part = |part: &'_ Vec<Classed>| {
+        let [start, end] = [vertices.start, vertices.end].map(|v| part.partition_point(|edge| edge.item.a.index() < v));
+        start..end
+    };
+    let mut found: Vec<Classed> = Vec::new();
+    parts.iter().for_each(|part| found.extend_from_slice(&part[of_part(part)]));
+    // Sorted pieces: this sort merges them.
+    found.sort_by_key(key);
+    found.dedup_by_key(ends);
+    found
+}
+
+fn key(edge: &Classed) -> (VertexId, VertexId, TetId) {
+    (edge.item.a, edge.item.b, edge.item.tet)
+}
+
+fn ends(edge: &mut Classed) -> (VertexId, VertexId) {
+    (edge.item.a, edge.item.b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::core::fill::{self, Filled};
+    use crate::geometry::Discrete;
+    use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
+    use crate::mesh::adjacency::unique_edges;
+    use crate::mesh::samples::cube;
+    use crate::metric::{Background, Source, Sym3};
+    use crate::tasks::{Plan, Pool};
+    use std::collections::BTreeSet;
+
+    fn ends_of(item: &EdgeItem) -> [VertexId; 2] {
+        [item.a, item.b]
+    }
+
+    #[test]
+    fn every_wanted_edge_with_its_least_tetrahedron() {
+        let mesh = cube(3);
+        let (_, place) = Discrete::from_mesh(Team::alone(), &mesh, DEFAULT_RIDGE_ANGLE).unwrap();
+        let logs = vec![Sym3::ZERO; mesh.vertices.len()];
+        let source = Source::Background(Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs));
+        let Filled { store, ids, .. } = fill::fill(Team::alone(), &mesh, &place, &source).unwrap();
+        let ends = |[a, b]: [u32; 2]| {
+            let (a, b) = (ids[a as usize], ids[b as usize]);
+            [a.min(b), a.max(b)]
+        };
+        let is_short = |a: f64, b: f64| a < 0.16 && b < 0.16;
+        let all: BTreeSet<_> = unique_edges(&mesh.tets.nodes).into_iter().map(ends).collect();
+        let length = |[a, b]: [VertexId; 2]| crate::mesh::vector::distance(store.position(a), store.position(b));
+        let before = store.clock() + 1;
+        store.tick();
+        store.live_tets().filter(|t| t.0 % 5 == 0).for_each(|t| store.touch(t));
+        for since in [0, before] {
+            let touched = |edge: &&[VertexId; 2]| {
+                let holds = |t: &TetId| edge.iter().all(|v| store.vertices(*t).contains(v));
+                store.live_tets().filter(|&t| store.stamp(t) >= since).any(|t| holds(&t))
+            };
+            let expected: BTreeSet<_> = all.iter().filter(touched).copied().filter(|&e| length(e) < 0.4).collect();
+            let found = listed(Team::alone(), &store, since, is_short);
+            assert_eq!(found.len(), expected.len());
+            assert_eq!(found.iter().map(|edge| ends_of(&edge.item)).collect::<BTreeSet<_>>(), expected);
+            for Classed { item, class: of } in &found {
+                assert_eq!(*of, class(length(ends_of(item)).powi(4)));
+                let holds = |t: &TetId| ends_of(item).iter().all(|v| store.vertices(*t).contains(v));
+                let mut fresh = store.live_tets().filter(|&t| store.stamp(t) >= since);
+                assert_eq!(fresh.find(holds), Some(item.tet));
+            }
+        }
+    }
+
+    #[test]
+    fn classes_follow_the_lengths() {
+        let lengths: [f64; 7] = [0.3, 2.0, 0.1, 0.301, 7.5, 0.0, 0.1];
+        let vertex = |k: usize| VertexId(k as u32);
+        let item = |k| EdgeItem { a: vertex(k), b: vertex(k + 1), tet: TetId(0) };
+        let classed = |(k, length): (usize, &f64)| Classed { item: item(k), class: class(length.powi(4)) };
+        let edges: Vec<_> = lengths.iter().enumerate().map(classed).collect();
+        let order = |items: Vec<EdgeItem>| items.iter().map(|item| item.a.0).collect::<Vec<_>>();
+        assert_eq!(order(in_order(Team::alone(), &edges, |edge| u32::from(edge.class))), [5, 2, 6, 0, 3, 1, 4]);
+        assert_eq!(
+            order(in_order(Team::alone(), &edges, |edge| CLASSES - 1 - u32::from(edge.class))),
+            [4, 1, 0, 3, 2, 6, 5]
+        );
+        assert!(edges.iter().all(|edge| u32::from(edge.class) < CLASSES));
+        assert!(in_order(Team::alone(), &[], |edge| u32::from(edge.class)).is_empty());
+        // Shared out among threads, it is the same.
+        let many: Vec<_> = (0..500).map(|k| Classed { item: item(k), class: (k * k % 701) as u16 }).collect();
+        let alone = in_order(Team::alone(), &many, |edge| u32::from(edge.class));
+        for threads in [2, 3, 8] {
+            let pool = Pool::new(threads).unwrap();
+            let found = in_order(Team::new(&pool, Plan::default()), &many, |edge| u32::from(edge.class));
+            assert!(found.iter().map(ends_of).eq(alone.iter().map(ends_of)));
+        }
+        // A fifth more is another class.
+        assert_ne!(class(1.2f64.powi(4)), class(1.0));
+    }
+}

@@ -1,0 +1,64 @@
+//! Length, orientation and shape of what is in the store.
+use super::access::Access;
+use super::ids::VertexId;
+use super::worker::Worker;
+use crate::mesh::predicate::is_positive;
+use crate::mesh::vector::sub;
+use crate::metric::quality::{edge_length, mean_length, mean_ratio};
+
+/// Whether an edge whose squared lengths in the metrics of its ends are given is longer than the limit.
+#[inline(always)]
+pub fn is_longer(a: f64, b: f64, limit: f64) -> bool {
+    let square = limit * limit;
+    match (a > square, b > square) {
+        (true, true) => true,
+        (false, false) => false,
+        _ => mean_length(a.sqrt(), b.sqrt()) > limit,
+    }
+}
+
+/// As [`is_longer`], whether it is shorter.
+#[inline(always)]
+pub fn is_shorter(a: f64, b: f64, limit: f64) -> bool {
+    let square = limit * limit;
+    match (a < square, b < square) {
+        (true, true) => true,
+        (false, false) => false,
+        _ => mean_length(a.sqrt(), b.sqrt()) < limit,
+    }
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Length of the edge in the metric.
+    #[inline]
+    pub fn length(&self, a: VertexId, b: VertexId) -> f64 {
+        let v = sub(self.store.position(b), self.store.position(a));
+        edge_length(v, &self.store.metric(a), &self.store.metric(b))
+    }
+
+    /// Whether the edge is longer than the limit: the length lies between those in the metrics of both ends, so that most
+    /// edges need neither root nor logarithm.
+    #[inline]
+    pub fn is_longer(&self, a: VertexId, b: VertexId, limit: f64) -> bool {
+        let v = sub(self.store.position(b), self.store.position(a));
+        is_longer(self.store.metric(a).quadratic(v), self.store.metric(b).quadratic(v), limit)
+    }
+
+    /// Whether the edge is shorter than the limit.
+    #[inline]
+    pub fn is_shorter(&self, a: VertexId, b: VertexId, limit: f64) -> bool {
+        let v = sub(self.store.position(b), self.store.position(a));
+        is_shorter(self.store.metric(a).quadratic(v), self.store.metric(b).quadratic(v), limit)
+    }
+
+    /// Mean ratio of the tetrahedron that the vertices make; at most 0 when it is not positive (exact).
+    #[inline]
+    pub fn shape(&self, vertices: [VertexId; 4]) -> f64 {
+        let points = vertices.map(|v| self.store.position(v));
+        if !is_positive(points) {
+            return 0.0;
+        }
+        let logs = vertices.map(|v| self.store.log(v));
+        mean_ratio(points, [&logs[0], &logs[1], &logs[2], &logs[3]])
+    }
+}

@@ -1,0 +1,632 @@
+//! The mesh while it is adapted: flat arrays of records with 32-bit ids.
+//!
+//! Every field is a relaxed atomic, which costs nothing on the machines we build for and lets threads share the store
+//! without `unsafe`. Order comes from the lock words: who holds all four vertices of a tetrahedron owns it, and its record
+//! was published by the release of the last owner's locks ([`super::access`]). Reading a tetrahedron needs one of its vertices.
+//! The arrays are reserved with room (zero pages that cost no memory until touched) and grow only between sweeps.
+mod order;
+
+use super::ids::{TetId, VertexId};
+use crate::geometry::Entity;
+use crate::mesh::vector::Vec3;
+use crate::metric::Sym3;
+use crate::tasks::Team;
+use bytemuck::Zeroable;
+use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
+
+/// Vertices that there is room for beside those of a small mesh; tetrahedra six times as many. Room that is not used costs no
+/// memory.
+pub const ROOM: usize = 1 << 16;
+
+/// What operations read of a vertex: two cache lines.
+#[derive(Zeroable)]
+#[repr(C)]
+struct VertexRecord {
+    position: [AtomicU64; 3],
+    log: [AtomicU64; 6],
+    metric: [AtomicU64; 6],
+    lock: AtomicU32,
+    tet: AtomicU32,
+}
+
+/// Where a vertex lies on the model: read for boundary vertices only.
+#[derive(Zeroable)]
+#[repr(C)]
+struct PlaceRecord {
+    parameters: [AtomicU64; 2],
+    ridge: [AtomicU32; 2],
+    entity: AtomicU32,
+    hint: AtomicU32,
+}
+
+/// A tetrahedron: one cache line.
+#[derive(Zeroable)]
+#[repr(C)]
+struct TetRecord {
+    vertices: [AtomicU32; 4],
+    neighbours: [AtomicU32; 4],
+    tags: [AtomicU32; 4],
+    region: AtomicU32,
+    quality: AtomicU32,
+    stamp: AtomicU32,
+    moved: AtomicU32,
+}
+
+/// A ridge edge that leaves a corner.
+pub struct CornerRidge {
+    /// The vertex at the other end; changes as the edge is split and collapsed.
+    other: AtomicU32,
+    /// The model edge.
+    pub curve: u32,
+}
+
+/// The mesh store.
+pub struct Store {
+    vertices: Vec<VertexRecord>,
+    /// Whose each vertex is in a round of the deterministic scheduler: bytes, close together, since a claim asks for nothing else.
+    owners: Vec<AtomicU8>,
+    places: Vec<PlaceRecord>,
+    tets: Vec<TetRecord>,
+    corners: Vec<Vec<CornerRidge>>,
+    next_vertex: AtomicUsize,
+    next_tet: AtomicUsize,
+    /// Ticks with every sweep; a tetrahedron is stamped with it when it is written.
+    clock: AtomicU32,
+    /// The time when the ids were last in the order of the curve.
+    ordered: Option<u32>,
+}
+
+#[inline(always)]
+fn load<const N: usize>(from: &[AtomicU64; N]) -> [f64; N] {
+    std::array::from_fn(|i| f64::from_bits(from[i].load(Relaxed)))
+}
+
+#[inline(always)]
+fn save<const N: usize>(to: &[AtomicU64; N], values: [f64; N]) {
+    for i in 0..N {
+        to[i].store(values[i].to_bits(), Relaxed);
+    }
+}
+
+/// Records that a task of [`rehouse`] moves, and tasks at a time.
+const MOVED: usize = 1 << 13;
+/// See [`MOVED`].
+const AT_ONCE: usize = 16;
+
+/// Moves the used records to an array of another capacity; needs them exclusively, so between sweeps only. They go from the back, and
+/// the old array gives back its memory as it gets shorter, so that they never are there twice. Without memory for that array they stay
+/// where they are, and the answer is no.
+fn rehouse<T: Zeroable + Send>(team: Team<'_>, records: &mut Vec<T>, used: usize, capacity: usize) -> bool {
+    let Ok(mut roomy) = bytemuck::allocation::try_zeroed_vec::<T>(capacity.max(used)) else { return false };
+    records.truncate(used);
+    while !records.is_empty() {
+        let start = (records.len() - 1) / (AT_ONCE * MOVED) * (AT_ONCE * MOVED);
+        let mut pairs: Vec<_> = roomy[start..].chunks_mut(MOVED).zip(records[start..].chunks_mut(MOVED)).collect();
+        team.fill(1, &mut pairs, |_, pairs| {
+            for (to, from) in pairs {
+                to.iter_mut().zip(from.iter_mut()).for_each(|(to, from)| std::mem::swap(to, from));
+            }
+        });
+        records.truncate(start);
+        records.shrink_to_fit();
+    }
+    *records = roomy;
+    true
+}
+
+const INDEX_BITS: u32 = 30;
+
+fn pack(entity: Entity) -> u32 {
+    let index = match entity {
+        Entity::Vertex(i) | Entity::Edge(i) | Entity::Face(i) => i,
+        Entity::Interior => 0,
+    };
+    entity.dimension() << INDEX_BITS | index
+}
+
+#[inline(always)]
+fn unpack(word: u32) -> Entity {
+    let index = word & ((1 << INDEX_BITS) - 1);
+    match word >> INDEX_BITS {
+        0 => Entity::Vertex(index),
+        1 => Entity::Edge(index),
+        2 => Entity::Face(index),
+        _ => Entity::Interior,
+    }
+}
+
+impl Store {
+    /// An empty store with room for so many vertices and tetrahedra.
+    pub fn with_capacity(vertices: usize, tets: usize) -> Self {
+        Self {
+            vertices: bytemuck::allocation::zeroed_vec(vertices),
+            owners: bytemuck::allocation::zeroed_vec(vertices),
+            places: bytemuck::allocation::zeroed_vec(vertices),
+            tets: bytemuck::allocation::zeroed_vec(tets),
+            corners: Vec::new(),
+            next_vertex: AtomicUsize::new(0),
+            next_tet: AtomicUsize::new(0),
+            clock: AtomicU32::new(1),
+            ordered: None,
+        }
+    }
+
+    /// Makes room for at least so many more vertices and tetrahedra, and where that takes growth for thrice as many, so that it is
+    /// seldom; whether there was memory for it: if not, what has no room is refused. Between sweeps only.
+    pub fn reserve(&mut self, team: Team<'_>, vertices: usize, tets: usize) -> bool {
+        let used = self.vertex_bound();
+        let room = used + 3 * vertices;
+        // Ids go as far as the vertices' own array, so the others grow before it.
+        if used + vertices > self.vertices.len()
+            && !(self.make_owners(room)
+                && rehouse(team, &mut self.places, used, room)
+                && rehouse(team, &mut self.vertices, used, room))
+        {
+            return false;
+        }
+        let used = self.tet_bound();
+        used + tets <= self.tets.len() || rehouse(team, &mut self.tets, used, used + 3 * tets)
+    }
+
+    /// An array of owners for so many vertices, which means nothing between sweeps.
+    fn make_owners(&mut self, vertices: usize) -> bool {
+        let made = bytemuck::allocation::try_zeroed_vec(vertices);
+        made.map(|owners| self.owners = owners).is_ok()
+    }
+
+    /// Gives back what the live records leave of the memory, room for more included. Between sweeps only.
+    pub fn trim(&mut self) {
+        let (vertices, tets) = (self.vertex_bound(), self.tet_bound());
+        self.vertices.truncate(vertices);
+        self.vertices.shrink_to_fit();
+        self.owners.truncate(vertices);
+        self.owners.shrink_to_fit();
+        self.places.truncate(vertices);
+        self.places.shrink_to_fit();
+        self.tets.truncate(tets);
+        self.tets.shrink_to_fit();
+    }
+
+    /// Vertices and tetrahedra that still fit.
+    pub fn room(&self) -> (usize, usize) {
+        (
+            self.vertices.len().saturating_sub(self.next_vertex.load(Relaxed)),
+            self.tets.len().saturating_sub(self.next_tet.load(Relaxed)),
+        )
+    }
+
+    /// All vertex ids are below this.
+    #[inline(always)]
+    pub fn vertex_bound(&self) -> usize {
+        self.next_vertex.load(Relaxed).min(self.vertices.len())
+    }
+
+    /// All tetrahedron ids are below this.
+    #[inline(always)]
+    pub fn tet_bound(&self) -> usize {
+        self.next_tet.load(Relaxed).min(self.tets.len())
+    }
+
+    /// A block of ids never used before, `None` when there is no room. Ids may be left over at the end of the room.
+    pub(super) fn take_vertices(&self, count: usize) -> Option<std::ops::Range<u32>> {
+        take(&self.next_vertex, self.vertices.len(), count, |i| {
+            self.vertices[i as usize].tet.store(TetId::NONE.0, Relaxed);
+        })
+    }
+
+    /// As [`Store::take_vertices`], for tetrahedra.
+    pub(super) fn take_tets(&self, count: usize) -> Option<std::ops::Range<u32>> {
+        take(&self.next_tet, self.tets.len(), count, |i| self.clear_tet(TetId(i)))
+    }
+
+    /// The block of ids from `start` on, which nobody else takes; `None` when there is no room. What lies between it and the ids taken
+    /// before must be taken too before the next sweep.
+    pub(super) fn take_vertices_at(&self, start: usize, count: usize) -> Option<std::ops::Range<u32>> {
+        take_at(&self.next_vertex, self.vertices.len(), start..start + count, |i| {
+            self.vertices[i as usize].tet.store(TetId::NONE.0, Relaxed);
+        })
+    }
+
+    /// As [`Store::take_vertices_at`], for tetrahedra.
+    pub(super) fn take_tets_at(&self, start: usize, count: usize) -> Option<std::ops::Range<u32>> {
+        take_at(&self.next_tet, self.tets.len(), start..start + count, |i| self.clear_tet(TetId(i)))
+    }
+
+    /// Ids of live vertices. Between sweeps only.
+    pub fn live_vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+        (0..self.vertex_bound() as u32).map(VertexId).filter(|&v| self.is_vertex(v))
+    }
+
+    /// As [`Store::live_vertices`], of some ids.
+    pub fn live_vertices_in(&self, ids: std::ops::Range<usize>) -> impl Iterator<Item = VertexId> + '_ {
+        (ids.start as u32..ids.end as u32).map(VertexId).filter(|&v| self.is_vertex(v))
+    }
+
+    /// As [`Store::live_tets`], of some ids.
+    pub fn live_tets_in(&self, ids: std::ops::Range<usize>) -> impl Iterator<Item = TetId> + '_ {
+        (ids.start as u32..ids.end as u32).map(TetId).filter(|&t| self.is_tet(t))
+    }
+
+    /// Ids of live tetrahedra. Between sweeps only.
+    pub fn live_tets(&self) -> impl Iterator<Item = TetId> + '_ {
+        (0..self.tet_bound() as u32).map(TetId).filter(|&t| self.is_tet(t))
+    }
+
+    /// The clock that stamps changes.
+    pub fn clock(&self) -> u32 {
+        self.clock.load(Relaxed)
+    }
+
+    /// Begins a new sweep; returns the new time.
+    pub fn tick(&self) -> u32 {
+        self.clock.fetch_add(1, Relaxed) + 1
+    }
+
+    // ---- vertices
+
+    /// Position, model units.
+    #[inline(always)]
+    pub fn position(&self, v: VertexId) -> Vec3 {
+        self.must_hold(v);
+        load(&self.vertices[v.index()].position)
+    }
+
+    /// Moves a vertex.
+    #[inline(always)]
+    pub(super) fn set_position(&self, v: VertexId, p: Vec3) {
+        self.must_hold(v);
+        save(&self.vertices[v.index()].position, p);
+    }
+
+    /// ln M.
+    #[inline(always)]
+    pub fn log(&self, v: VertexId) -> Sym3 {
+        self.must_hold(v);
+        Sym3(load(&self.vertices[v.index()].log))
+    }
+
+    /// M.
+    #[inline(always)]
+    pub fn metric(&self, v: VertexId) -> Sym3 {
+        self.must_hold(v);
+        Sym3(load(&self.vertices[v.index()].metric))
+    }
+
+    /// Sets ln M and M together.
+    #[inline]
+    pub(super) fn set_metric(&self, v: VertexId, log: &Sym3, metric: &Sym3) {
+        self.must_hold(v);
+        save(&self.vertices[v.index()].log, log.0);
+        save(&self.vertices[v.index()].metric, metric.0);
+    }
+
+    /// Whose the vertex is in this round, 0 when it is nobody's.
+    #[inline(always)]
+    pub fn owner(&self, v: VertexId) -> &AtomicU8 {
+        &self.owners[v.index()]
+    }
+
+    /// The lock word, 0 when free.
+    #[inline(always)]
+    pub fn lock(&self, v: VertexId) -> &AtomicU32 {
+        &self.vertices[v.index()].lock
+    }
+
+    /// One tetrahedron at the vertex; none when the vertex is dead.
+    #[inline(always)]
+    pub fn tet_of(&self, v: VertexId) -> TetId {
+        self.must_hold(v);
+        TetId(self.vertices[v.index()].tet.load(Relaxed))
+    }
+
+    /// Sets the tetrahedron at the vertex.
+    #[inline(always)]
+    pub(super) fn set_tet_of(&self, v: VertexId, t: TetId) {
+        self.must_hold(v);
+        self.vertices[v.index()].tet.store(t.0, Relaxed);
+    }
+
+    /// Tells the vertex of a tetrahedron: it keeps the first of all that it is told of.
+    #[inline]
+    pub(super) fn lower_tet_of(&self, v: VertexId, t: TetId) {
+        let first = &self.vertices[v.index()].tet;
+        if t.0 < first.load(Relaxed) {
+            first.fetch_min(t.0, Relaxed);
+        }
+    }
+
+    /// Whether the vertex is alive.
+    #[inline(always)]
+    pub fn is_vertex(&self, v: VertexId) -> bool {
+        self.tet_of(v).is_some()
+    }
+
+    /// The model entity the vertex lies on.
+    #[inline(always)]
+    pub fn entity(&self, v: VertexId) -> Entity {
+        self.must_hold(v);
+        unpack(self.places[v.index()].entity.load(Relaxed))
+    }
+
+    /// Dimension of the entity: 0 corner, 1 ridge, 2 surface, 3 interior.
+    #[inline(always)]
+    pub fn dimension(&self, v: VertexId) -> u32 {
+        self.must_hold(v);
+        self.places[v.index()].entity.load(Relaxed) >> INDEX_BITS
+    }
+
+    /// Parameters on the entity.
+    #[inline(always)]
+    pub fn parameters(&self, v: VertexId) -> [f64; 2] {
+        self.must_hold(v);
+        load(&self.places[v.index()].parameters)
+    }
+
+    /// Sets entity and parameters.
+    #[inline]
+    pub(super) fn set_place(&self, v: VertexId, entity: Entity, parameters: [f64; 2]) {
+        self.must_hold(v);
+        let place = &self.places[v.index()];
+        place.entity.store(pack(entity), Relaxed);
+        save(&place.parameters, parameters);
+    }
+
+    /// The background tetrahedron that last held the vertex.
+    #[inline(always)]
+    pub fn hint(&self, v: VertexId) -> u32 {
+        self.must_hold(v);
+        self.places[v.index()].hint.load(Relaxed)
+    }
+
+    /// Sets the hint.
+    #[inline(always)]
+    pub(super) fn set_hint(&self, v: VertexId, hint: u32) {
+        self.must_hold(v);
+        self.places[v.index()].hint.store(hint, Relaxed);
+    }
+
+    // ---- ridges
+
+    /// Sets the two ridge neighbours of a vertex on a model edge.
+    pub(super) fn set_ridge(&self, v: VertexId, ends: [VertexId; 2]) {
+        self.must_hold(v);
+        for (slot, end) in self.places[v.index()].ridge.iter().zip(ends) {
+            slot.store(end.0, Relaxed);
+        }
+    }
+
+    /// The two ridge neighbours of a vertex on a model edge.
+    #[inline]
+    pub fn ridge(&self, v: VertexId) -> [VertexId; 2] {
+        self.must_hold(v);
+        std::array::from_fn(|i| VertexId(self.places[v.index()].ridge[i].load(Relaxed)))
+    }
+
+    /// Gives a corner its ridges. At the building of the store only.
+    pub(super) fn set_corner(&mut self, v: VertexId, ridges: Vec<(VertexId, u32)>) {
+        let list = ridges.into_iter().map(|(other, curve)| CornerRidge { other: AtomicU32::new(other.0), curve });
+        self.places[v.index()].ridge[0].store(self.corners.len() as u32, Relaxed);
+        self.corners.push(list.collect());
+    }
+
+    /// The ridges that leave a corner: other end and model edge.
+    pub fn corner_ridges(&self, v: VertexId) -> impl Iterator<Item = (VertexId, u32)> + '_ {
+        self.must_hold(v);
+        let index = self.places[v.index()].ridge[0].load(Relaxed) as usize;
+        self.corners[index].iter().map(|ridge| (VertexId(ridge.other.load(Relaxed)), ridge.curve))
+    }
+
+    /// The model edge that the mesh edge lies on, if it is a ridge.
+    #[inline]
+    pub fn ridge_curve(&self, a: VertexId, b: VertexId) -> Option<u32> {
+        match (self.entity(a), self.entity(b)) {
+            (Entity::Edge(curve), _) => self.ridge(a).contains(&b).then_some(curve),
+            (_, Entity::Edge(curve)) => self.ridge(b).contains(&a).then_some(curve),
+            (Entity::Vertex(_), Entity::Vertex(_)) => {
+                self.corner_ridges(a).find(|&(other, _)| other == b).map(|(_, curve)| curve)
+            }
+            _ => None,
+        }
+    }
+
+    /// Redirects the ridge v–old to v–new.
+    pub(super) fn redirect_ridge(&self, v: VertexId, old: VertexId, new: VertexId) {
+        self.must_hold(v);
+        let place = &self.places[v.index()];
+        let slot = if self.dimension(v) == 1 {
+            place.ridge.iter().find(|end| end.load(Relaxed) == old.0)
+        } else {
+            let index = place.ridge[0].load(Relaxed) as usize;
+            self.corners[index].iter().map(|ridge| &ridge.other).find(|other| other.load(Relaxed) == old.0)
+        };
+        slot.expect("a ridge is known at both of its ends").store(new.0, Relaxed);
+    }
+
+    // ---- tetrahedra
+
+    /// The four vertices.
+    #[inline(always)]
+    pub fn vertices(&self, t: TetId) -> [VertexId; 4] {
+        self.must_hold_one_of(t);
+        self.peek(t)
+    }
+
+    /// What is written as the vertices of a tetrahedron of which no vertex need be held: it may be dead, or half another one.
+    /// Only a vertex that the reader holds is certain: while it is held, it is in the record exactly if the tetrahedron
+    /// is alive and has it (whoever writes or clears the record holds what it had and what it gets).
+    #[inline(always)]
+    pub fn peek(&self, t: TetId) -> [VertexId; 4] {
+        let record = &self.tets[t.index()].vertices;
+        std::array::from_fn(|i| VertexId(record[i].load(Relaxed)))
+    }
+
+    /// The neighbour opposite each vertex.
+    #[inline(always)]
+    pub fn neighbours(&self, t: TetId) -> [TetId; 4] {
+        self.must_hold_one_of(t);
+        let record = &self.tets[t.index()].neighbours;
+        std::array::from_fn(|i| TetId(record[i].load(Relaxed)))
+    }
+
+    /// The neighbour opposite local vertex i.
+    #[inline(always)]
+    pub fn neighbour(&self, t: TetId, i: usize) -> TetId {
+        self.must_hold_one_of(t);
+        TetId(self.tets[t.index()].neighbours[i].load(Relaxed))
+    }
+
+    /// Sets the neighbour opposite local vertex i.
+    #[inline(always)]
+    pub(super) fn set_neighbour(&self, t: TetId, i: usize, n: TetId) {
+        self.must_own_face(t, i);
+        self.tets[t.index()].neighbours[i].store(n.0, Relaxed);
+    }
+
+    /// The tag of each face: 0, or the model face counted from 1.
+    #[inline(always)]
+    pub fn tags(&self, t: TetId) -> [u32; 4] {
+        self.must_hold_one_of(t);
+        let record = &self.tets[t.index()].tags;
+        std::array::from_fn(|i| record[i].load(Relaxed))
+    }
+
+    /// Sets the tag of the face opposite local vertex i.
+    #[inline(always)]
+    pub(super) fn set_tag(&self, t: TetId, i: usize, tag: u32) {
+        self.must_own_face(t, i);
+        self.tets[t.index()].tags[i].store(tag, Relaxed);
+    }
+
+    /// The region.
+    #[inline(always)]
+    pub fn region(&self, t: TetId) -> u32 {
+        self.must_hold_one_of(t);
+        self.tets[t.index()].region.load(Relaxed)
+    }
+
+    /// The mean ratio kept with the tetrahedron.
+    #[inline(always)]
+    pub fn quality(&self, t: TetId) -> f64 {
+        self.must_hold_one_of(t);
+        f64::from(f32::from_bits(self.tets[t.index()].quality.load(Relaxed)))
+    }
+
+    /// Sets the kept mean ratio.
+    #[inline(always)]
+    pub(super) fn set_quality(&self, t: TetId, quality: f64) {
+        self.must_own_tet(t);
+        self.tets[t.index()].quality.store((quality as f32).to_bits(), Relaxed);
+    }
+
+    /// When the tetrahedron, or one of its vertices, last changed.
+    #[inline(always)]
+    pub fn stamp(&self, t: TetId) -> u32 {
+        self.must_hold_one_of(t);
+        self.tets[t.index()].stamp.load(Relaxed)
+    }
+
+    /// When the tetrahedron last changed, or one of its vertices moved, be it ever so little.
+    #[inline(always)]
+    pub fn moved(&self, t: TetId) -> u32 {
+        self.must_hold_one_of(t);
+        self.tets[t.index()].moved.load(Relaxed)
+    }
+
+    /// Stamps the tetrahedron with the present time.
+    #[inline(always)]
+    pub(super) fn touch(&self, t: TetId) {
+        self.touch_moved(t);
+        self.tets[t.index()].stamp.store(self.clock.load(Relaxed), Relaxed);
+    }
+
+    /// Notes that a vertex of the tetrahedron moved a little.
+    #[inline(always)]
+    pub(super) fn touch_moved(&self, t: TetId) {
+        self.must_own_tet(t);
+        self.tets[t.index()].moved.store(self.clock.load(Relaxed), Relaxed);
+    }
+
+    /// Writes vertices, region and quality, without neighbours and tags.
+    #[inline]
+    pub(super) fn write_tet(&self, t: TetId, vertices: [VertexId; 4], region: u32, quality: f64) {
+        self.must_own_tet(t);
+        let record = &self.tets[t.index()];
+        for i in 0..4 {
+            record.vertices[i].store(vertices[i].0, Relaxed);
+            record.neighbours[i].store(TetId::NONE.0, Relaxed);
+            record.tags[i].store(0, Relaxed);
+        }
+        self.must_own_tet(t);
+        record.region.store(region, Relaxed);
+        self.set_quality(t, quality);
+        self.touch(t);
+    }
+
+    /// Replaces local vertex i by another.
+    #[inline]
+    pub(super) fn set_vertex(&self, t: TetId, i: usize, v: VertexId) {
+        self.must_own_tet(t);
+        self.tets[t.index()].vertices[i].store(v.0, Relaxed);
+        self.must_own_tet(t);
+    }
+
+    /// Marks a tetrahedron dead.
+    #[inline]
+    pub(super) fn kill_tet(&self, t: TetId) {
+        self.must_own_tet(t);
+        self.clear_tet(t);
+    }
+
+    /// Forgets all four vertices: who holds one of them and comes with an old id must not find it here any more.
+    #[inline]
+    fn clear_tet(&self, t: TetId) {
+        for slot in &self.tets[t.index()].vertices {
+            slot.store(VertexId::NONE.0, Relaxed);
+        }
+    }
+
+    /// Whether the tetrahedron is alive.
+    #[inline(always)]
+    pub fn is_tet(&self, t: TetId) -> bool {
+        self.tets[t.index()].vertices[0].load(Relaxed) != VertexId::NONE.0
+    }
+}
+
+fn take(next: &AtomicUsize, room: usize, count: usize, fresh: impl Fn(u32)) -> Option<std::ops::Range<u32>> {
+    let start = next.fetch_add(count, Relaxed);
+    if start + count > room {
+        next.fetch_sub(count, Relaxed);
+        return None;
+    }
+    (start..start + count).for_each(|i| fresh(i as u32));
+    Some(start as u32..(start + count) as u32)
+}
+
+fn take_at(
+    next: &AtomicUsize,
+    room: usize,
+    ids: std::ops::Range<usize>,
+    fresh: impl Fn(u32),
+) -> Option<std::ops::Range<u32>> {
+    if ids.end > room {
+        return None;
+    }
+    let ids = ids.start as u32..ids.end as u32;
+    ids.clone().for_each(fresh);
+    next.fetch_max(ids.end as usize, Relaxed);
+    Some(ids)
+}
+
+/// What tests write past the operations, to have something to repair.
+#[cfg(test)]
+impl Store {
+    /// Moves a vertex, whatever that inverts.
+    pub fn displace(&self, v: VertexId, to: Vec3) {
+        self.set_position(v, to);
+    }
+
+    /// Tags one side of a face.
+    pub fn tag_face(&self, t: TetId, i: usize, tag: u32) {
+        self.set_tag(t, i, tag);
+    }
+}

@@ -1,0 +1,155 @@
+//! Renumbering along a space-filling curve: what is near in space comes near in memory, and dead records go.
+//!
+//! Tetrahedra, which are most of the memory, go through a list half as large: a half of each record at a time.
+use super::{PlaceRecord, ROOM, Store, TetRecord, VertexRecord, rehouse};
+use crate::adapt::core::ids::{TetId, VertexId};
+use crate::adapt::core::numbering::{by_first, inverse};
+use crate::geometry::Entity;
+use crate::mesh::hilbert;
+use crate::tasks::{Buckets, GRAIN, Team};
+use bytemuck::allocation::zeroed_vec;
+use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
+
+/// Part of the records that must be dead for their memory to be given back.
+const DEAD: usize = 8;
+
+impl Store {
+    /// Numbers the mesh along the Hilbert curve; returns for each old vertex id the new one (`NONE` for dead ones). Blocks of ids
+    /// that were taken before mean nothing any more. Between sweeps only.
+    pub fn reorder(&mut self, team: Team<'_>) -> Vec<VertexId> {
+        if self.ordered == Some(self.clock()) {
+            return (0..self.vertex_bound() as u32).map(VertexId).collect();
+        }
+        let bounds = [self.vertex_bound(), self.tet_bound()];
+        let vertices = self.vertices_along_curve(team);
+        let number = inverse(team, &vertices, bounds[0], VertexId);
+        let tets = self.tets_by_first(team, &number, vertices.len());
+        let tet_number = inverse(team, &tets, bounds[1], TetId);
+        self.move_vertices(team, &vertices, &number);
+        self.move_tets(team, &tets, &number, &tet_number);
+        self.next_vertex = AtomicUsize::new(vertices.len());
+        self.next_tet = AtomicUsize::new(tets.len());
+        if tets.len() < bounds[1] - bounds[1] / DEAD {
+            rehouse(team, &mut self.tets, tets.len(), 2 * tets.len() + 6 * ROOM);
+        }
+        self.note_order();
+        number
+    }
+
+    /// Notes that the ids are in the order of the curve, until the next sweep.
+    pub fn note_order(&mut self) {
+        self.ordered = Some(self.clock());
+    }
+
+    /// The live vertices in the order of the curve.
+    fn vertices_along_curve(&self, team: Team<'_>) -> Vec<u32> {
+        let live = team.collect(GRAIN, self.vertex_bound(), |range, live| {
+            live.extend(self.live_vertices_in(range).map(|v| v.0));
+        });
+        let order = hilbert::order(team, live.len(), |i| self.position(VertexId(live[i])));
+        team.map(GRAIN, order.len(), |i| live[order[i] as usize])
+    }
+
+    /// The live tetrahedra in the order of their first vertex by its new number.
+    fn tets_by_first(&self, team: Team<'_>, number: &[VertexId], vertices: usize) -> Vec<u32> {
+        by_first(team, self.tet_bound(), vertices, |t| {
+            let numbers =
+                self.peek(TetId(t as u32)).map(|v| if v.is_some() { number[v.index()].0 } else { Buckets::NOWHERE });
+            numbers.into_iter().min().unwrap_or(Buckets::NOWHERE)
+        })
+    }
+
+    /// Brings the vertices into an order, with the ridges renumbered; they do not know their tetrahedra then.
+    fn move_vertices(&mut self, team: Team<'_>, order: &[u32], number: &[VertexId]) {
+        let many_dead = order.len() < self.vertex_bound() - self.vertex_bound() / DEAD;
+        let room = if many_dead { 2 * order.len() + ROOM } else { self.vertices.len() };
+        let mut vertices: Vec<VertexRecord> = zeroed_vec(room);
+        team.fill(GRAIN, &mut vertices[..order.len()], |start, chunk| {
+            for (to, &old) in chunk.iter_mut().zip(&order[start..]) {
+                *to = self.vertices[old as usize].moved();
+            }
+        });
+        self.vertices = vertices;
+        self.owners = zeroed_vec(room);
+        let mut places: Vec<PlaceRecord> = zeroed_vec(room);
+        team.fill(GRAIN, &mut places[..order.len()], |start, chunk| {
+            for (to, &old) in chunk.iter_mut().zip(&order[start..]) {
+                *to = self.places[old as usize].moved(number);
+            }
+        });
+        self.places = places;
+        for ridge in self.corners.iter().flatten() {
+            ridge.other.store(number[ridge.other.load(Relaxed) as usize].0, Relaxed);
+        }
+    }
+
+    /// Brings the tetrahedra into an order, renumbered, and tells the vertices the first of their tetrahedra.
+    fn move_tets(&mut self, team: Team<'_>, order: &[u32], number: &[VertexId], tet_number: &[TetId]) {
+        let Self { tets, vertices, .. } = self;
+        let renumbered = |n: u32| if n == TetId::NONE.0 { n } else { tet_number[n as usize].0 };
+        let links = team.map(GRAIN, order.len(), |new| {
+            let TetRecord { vertices, neighbours, .. } = &tets[order[new] as usize];
+            (load(vertices).map(|v| number[v as usize].0), load(neighbours).map(renumbered))
+        });
+        team.fill(GRAIN, &mut tets[..order.len()], |start, chunk| {
+            for (tet, (to, (of, neighbours))) in (start as u32..).zip(chunk.iter_mut().zip(&links[start..])) {
+                (to.vertices, to.neighbours) = (of.map(AtomicU32::new), neighbours.map(AtomicU32::new));
+                for v in *of {
+                    let first = &vertices[v as usize].tet;
+                    if tet < first.load(Relaxed) {
+                        first.fetch_min(tet, Relaxed);
+                    }
+                }
+            }
+        });
+        drop(links);
+        let marks = team.map(GRAIN, order.len(), |new| {
+            let TetRecord { tags, region, quality, stamp, moved, .. } = &tets[order[new] as usize];
+            (load(tags), [region, quality, stamp, moved].map(|field| field.load(Relaxed)))
+        });
+        team.fill(GRAIN, &mut tets[..order.len()], |start, chunk| {
+            for (to, (tags, fields)) in chunk.iter_mut().zip(&marks[start..]) {
+                to.tags = tags.map(AtomicU32::new);
+                [to.region, to.quality, to.stamp, to.moved] = fields.map(AtomicU32::new);
+            }
+        });
+    }
+}
+
+fn load<const N: usize>(from: &[AtomicU32; N]) -> [u32; N] {
+    std::array::from_fn(|i| from[i].load(Relaxed))
+}
+
+fn copy<const N: usize>(from: &[AtomicU64; N]) -> [AtomicU64; N] {
+    std::array::from_fn(|i| AtomicU64::new(from[i].load(Relaxed)))
+}
+
+impl VertexRecord {
+    /// The same elsewhere: free, without a tetrahedron.
+    fn moved(&self) -> Self {
+        Self {
+            position: copy(&self.position),
+            log: copy(&self.log),
+            metric: copy(&self.metric),
+            lock: AtomicU32::new(0),
+            tet: AtomicU32::new(TetId::NONE.0),
+        }
+    }
+}
+
+impl PlaceRecord {
+    /// The same elsewhere, with its ridges renumbered.
+    fn moved(&self, number: &[VertexId]) -> Self {
+        let entity = self.entity.load(Relaxed);
+        let renumbered = |end: u32| if end == VertexId::NONE.0 { end } else { number[end as usize].0 };
+        let ridge = load(&self.ridge);
+        // A corner has the number of its list there.
+        let ridge = if matches!(super::unpack(entity), Entity::Edge(_)) { ridge.map(renumbered) } else { ridge };
+        Self {
+            parameters: copy(&self.parameters),
+            ridge: ridge.map(AtomicU32::new),
+            entity: AtomicU32::new(entity),
+            hint: AtomicU32::new(self.hint.load(Relaxed)),
+        }
+    }
+}

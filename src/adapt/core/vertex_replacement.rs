@@ -1,0 +1,70 @@
+//! A vertex inside goes onto a neighbour, and its records are changed where they are: for sweeps that remove most of a crowded mesh.
+use super::access::Access;
+use super::ids::{TetId, VertexId};
+use super::refusal::Refusal;
+use super::worker::Worker;
+
+/// A tetrahedron of the ball that stays, with a vertex replaced.
+#[derive(Clone, Copy)]
+pub struct Kept {
+    /// The tetrahedron.
+    pub tet: TetId,
+    /// Which of its vertices is replaced.
+    pub local: usize,
+    /// Its mean ratio then.
+    pub quality: f64,
+}
+
+/// What becomes of the ball of a vertex that goes. Allocated once.
+#[derive(Default)]
+pub struct BallSplit {
+    /// What stays.
+    pub kept: Vec<Kept>,
+    /// Tetrahedra at the edge that goes, with the places in them of the vertex that goes and of the one that it goes onto.
+    pub gone: Vec<(TetId, [usize; 2])>,
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Writes w in the place of v, joins what lay on both sides of the tetrahedra that go. Everything in the ball is claimed, and what stays is positive.
+    ///
+    /// # Errors
+    /// `Geometry` when something required would go.
+    pub fn replace_vertex(&mut self, v: VertexId, w: VertexId, ball: &BallSplit) -> Result<(), Refusal> {
+        self.check_ball_required(v, ball)?;
+        let store = self.store;
+        for &Kept { tet, local, quality } in &ball.kept {
+            store.set_vertex(tet, local, w);
+            store.set_quality(tet, quality);
+            store.touch(tet);
+            store.vertices(tet).iter().for_each(|&x| store.set_tet_of(x, tet));
+        }
+        let place = |at: TetId, of: TetId| store.neighbours(at).iter().position(|&n| n == of);
+        for &(tet, [of_v, of_w]) in &ball.gone {
+            let (neighbours, tag) = (store.neighbours(tet), store.tags(tet)[of_v]);
+            let (beyond, kept) = (neighbours[of_v], neighbours[of_w]);
+            let side = place(kept, tet).expect("neighbours know each other");
+            store.set_neighbour(kept, side, beyond);
+            store.set_tag(kept, side, tag);
+            if beyond.is_some() {
+                store.set_neighbour(beyond, place(beyond, tet).expect("neighbours know each other"), kept);
+            }
+        }
+        for &(tet, _) in &ball.gone {
+            store.kill_tet(tet);
+            self.state.id_pool.free_tet(tet);
+        }
+        store.set_tet_of(v, TetId::NONE);
+        self.state.id_pool.free_vertex(v);
+        Ok(())
+    }
+
+    /// All that is required at an inner vertex is required of itself, or in a frozen region.
+    fn check_ball_required(&self, v: VertexId, ball: &BallSplit) -> Result<(), Refusal> {
+        let tets = ball.kept.iter().map(|kept| kept.tet).chain(ball.gone.iter().map(|gone| gone.0));
+        let required = &self.context.required;
+        match required.is_frozen(v) || tets.into_iter().any(|t| required.holds_region(self.store.region(t))) {
+            true => Err(Refusal::Geometry),
+            false => Ok(()),
+        }
+    }
+}

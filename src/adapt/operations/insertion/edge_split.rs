@@ -1,0 +1,89 @@
+//! Edges that are too long are split, at their middles or thirds in the metric.
+use crate::adapt::core::access::Access;
+use crate::adapt::core::edge_list::EdgeItem;
+use crate::adapt::core::ids::VertexId;
+use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::star::Seed;
+use crate::adapt::core::vertex_moves::Placed;
+use crate::adapt::core::worker::Worker;
+use crate::adapt::schedule::Operation;
+use crate::geometry::Entity;
+use crate::mesh::vector::{Vec3, lerp, sub};
+use crate::metric::quality::mean_length;
+
+/// Where along a–b the metric length from a is this share of the whole, for sizes that change geometrically: la, lb are the lengths of
+/// the whole edge in the metrics of its ends.
+fn at_share(share: f64, la: f64, lb: f64) -> f64 {
+    let growth = lb / la - 1.0;
+    if growth.abs() < 1e-3 { share } else { ((share * growth).ln_1p() / growth.ln_1p()).clamp(0.1, 0.9) }
+}
+
+/// The share of an edge that is cut off: a third from √6, where three pieces come nearer to unit length than two, up to √18, where three
+/// would be too long; else half. Halves of edges of length three would be halved again, and be too short then.
+fn cut_off(length: f64) -> f64 {
+    if length * length > 6.0 && length * length < 18.0 { 1.0 / 3.0 } else { 0.5 }
+}
+
+/// Splits edges that are too long.
+pub struct Split;
+
+impl Operation for Split {
+    type Item = EdgeItem;
+    type Scratch = ();
+    const WHOLE_BALLS: bool = false;
+
+    fn attempt<A: Access>(
+        &self,
+        worker: &mut Worker<'_, '_, A>,
+        _scratch: &mut (),
+        item: EdgeItem,
+    ) -> Result<(), Refusal> {
+        worker.split_edge(item)
+    }
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Splits an edge that is too long, at its middle or its third in the metric, on its entity of the model.
+    pub fn split_edge(&mut self, item: EdgeItem) -> Result<(), Refusal> {
+        let EdgeItem { a, b, tet } = item;
+        self.claim_live(a)?;
+        self.claim_live(b)?;
+        let tet = self.tet_with_edge(a, b, tet)?;
+        let length = self.length(a, b);
+        if length <= self.context.limits.long {
+            return Err(Refusal::Stale);
+        }
+        self.split_at(EdgeItem { a, b, tet }, self.cut(a, b))
+    }
+
+    /// Splits an edge whose vertices are claimed, at a point of its straight line, on its entity of the model.
+    pub fn split_at(&mut self, EdgeItem { a, b, tet }: EdgeItem, straight: Vec3) -> Result<(), Refusal> {
+        self.gather_shell(a, b, tet)?;
+        let entity = self.entity_of_edge(a, b);
+        let placed = self.place(entity, straight, &[a, b]);
+        let seeds = std::mem::take(&mut self.state.shell.tets);
+        let mut result = self.insert(Seed::Edge(a, b), &seeds, placed, a);
+        if matches!(result, Err(Refusal::Inverted | Refusal::Topology)) && placed.point != straight {
+            // No room on the model: the point waits on the straight edge until there is (project.rs).
+            result = self.insert(Seed::Edge(a, b), &seeds, Placed { point: straight, ..placed }, a);
+            if let Ok(v) = result {
+                self.state.unprojected.push(v);
+            }
+        }
+        self.state.shell.tets = seeds;
+        let v = result?;
+        if let Entity::Edge(_) = entity {
+            self.split_ridge([a, b], v);
+        }
+        Ok(())
+    }
+
+    /// The point of the straight edge where it is cut.
+    fn cut(&self, a: VertexId, b: VertexId) -> Vec3 {
+        let (p, q) = (self.store.position(a), self.store.position(b));
+        let v = sub(q, p);
+        let la = self.store.metric(a).quadratic(v).sqrt();
+        let lb = self.store.metric(b).quadratic(v).sqrt();
+        lerp(p, q, at_share(cut_off(mean_length(la, lb)), la, lb))
+    }
+}

@@ -1,0 +1,57 @@
+//! A new vertex in the star over the tetrahedra that hold it.
+use crate::adapt::core::access::Access;
+use crate::adapt::core::ids::{TetId, VertexId};
+use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::star::{Bounds, Seed};
+use crate::adapt::core::vertex_moves::Placed;
+use crate::adapt::core::worker::Worker;
+
+/// What is taken from the least length of a new edge where a much too long one is split: a power of how much too long it is. With more
+/// the short edges are collapsed again at great cost, with less edges of many unit lengths stay beside coarse boundaries.
+const SHORT_FOR_LONG: f64 = 0.7;
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Inserts a vertex into the star over `seeds`; returns it.
+    ///
+    /// # Errors
+    /// Besides those of the star: `Length` when an edge would be too short, `Shape` when a tetrahedron would
+    /// be worse than the floor and than what stood there, `Normal` on the surface.
+    pub fn insert(&mut self, seed: Seed, seeds: &[TetId], placed: Placed, near: VertexId) -> Result<VertexId, Refusal> {
+        let state = self.state_at(placed, self.store.hint(near));
+        self.with_new_vertex(&state, |worker, v| {
+            worker.try_insert(seed, seeds, v)?;
+            worker.commit()
+        })
+    }
+
+    fn try_insert(&mut self, seed: Seed, seeds: &[TetId], v: VertexId) -> Result<(), Refusal> {
+        let limits = self.context.limits;
+        // A much too long edge is worth a bad tetrahedron or a short edge: what comes after it finds better places for those.
+        let excess = match seed {
+            Seed::Edge(a, b) if limits.long_first => (limits.long / self.length(a, b)).min(1.0),
+            _ => 1.0,
+        };
+        let shortest_new = limits.shortest_new * excess.powf(SHORT_FOR_LONG);
+        if let Seed::Edge(..) = seed
+            && self.state.shell.ring.iter().any(|&x| self.is_shorter(v, x, shortest_new))
+        {
+            // It will be joined to the ring in any case.
+            return Err(Refusal::Length);
+        }
+        let allowed = |worker: &Self| excess.powi(3) * limits.insert_floor.min(limits.insert_loss * worker.worst_old());
+        let worst = self.build_star(seed, v, seeds, Bounds::default())?;
+        if worst < allowed(self) {
+            let larger = Bounds { wanted: limits.insert_floor, floor: 0.0 };
+            if self.build_star(seed, v, seeds, larger).map_err(Refusal::or_shape)? < allowed(self) {
+                return Err(Refusal::Shape);
+            }
+        }
+        let (shortest, _) = self.star_lengths(v);
+        if shortest < shortest_new {
+            return Err(Refusal::Length);
+        }
+        // Where triangles stand across a round edge that the mesh does not resolve, the model's normal near their centroids may be any;
+        // cut into pieces that lie as they did they are no worse.
+        self.check_normals(0.3).or_else(|refusal| if self.turns_little() { Ok(()) } else { Err(refusal) })
+    }
+}

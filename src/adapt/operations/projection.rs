@@ -1,0 +1,116 @@
+//! Boundary vertices that could not be put on the model when they were made go there once there is room.
+use super::collapse::onto_end::CollapseScratch;
+use crate::adapt::core::access::Access;
+use crate::adapt::core::ids::{TetId, VertexId};
+use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::star::{Bounds, Seed};
+use crate::adapt::core::vertex_moves::{Placed, VertexState};
+use crate::adapt::core::worker::Worker;
+use crate::adapt::schedule::Operation;
+use crate::mesh::vector::{Vec3, distance, lerp, norm};
+
+/// Halvings of the way to the model within one attempt.
+const HALVINGS: u32 = 5;
+
+/// A vertex this near to its entity, in parts of its distance from the origin, is on it: the rounding of a projection.
+const ARRIVED: f64 = 1e-15;
+
+/// Removes boundary vertices that never arrived on the model: what a sweep of [`Project`] just before has left over, so that no id can
+/// stand for another vertex by now.
+pub struct RemoveUnprojected;
+
+impl Operation for RemoveUnprojected {
+    type Item = VertexId;
+    type Scratch = CollapseScratch;
+    const WHOLE_BALLS: bool = true;
+
+    fn attempt<A: Access>(
+        &self,
+        worker: &mut Worker<'_, '_, A>,
+        scratch: &mut CollapseScratch,
+        item: VertexId,
+    ) -> Result<(), Refusal> {
+        let result = worker.claim_live(item).and_then(|()| worker.remove(scratch, item, 0.0));
+        if result.is_err_and(|refusal| !matches!(refusal, Refusal::Conflict | Refusal::Stale)) {
+            worker.state.unprojected.push(item);
+        }
+        result
+    }
+}
+
+/// Moves boundary vertices that are not on the model there.
+pub struct Project;
+
+impl Operation for Project {
+    type Item = VertexId;
+    type Scratch = ();
+    const WHOLE_BALLS: bool = true;
+
+    fn attempt<A: Access>(
+        &self,
+        worker: &mut Worker<'_, '_, A>,
+        _scratch: &mut (),
+        item: VertexId,
+    ) -> Result<(), Refusal> {
+        let result = worker.project(item);
+        if result == Err(Refusal::Inverted) {
+            worker.state.unprojected.push(item);
+        }
+        result
+    }
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Moves a unprojected vertex to the closest point of its entity, its cavity growing where it must; if that fails, as far
+    /// towards it as inverts no tetrahedron, by up to five halvings.
+    /// Refused as `Inverted` while it has not arrived: to be tried again after reconnection.
+    pub fn project(&mut self, v: VertexId) -> Result<(), Refusal> {
+        self.claim_live(v)?;
+        let mut ball = std::mem::take(&mut self.state.ball);
+        let result = self.gather_ball(v, &mut ball).and_then(|()| self.project_ball(v, &ball.tets));
+        self.state.ball = ball;
+        result
+    }
+
+    fn project_ball(&mut self, v: VertexId, ball: &[TetId]) -> Result<(), Refusal> {
+        if self.context.is_frozen(v) {
+            return Err(Refusal::Geometry);
+        }
+        let (start, hint) = (self.store.position(v), self.store.hint(v));
+        let goal = self.place(self.store.entity(v), start, &[v]);
+        if has_arrived(start, goal) {
+            // Smoothing was here before, or the id belongs to another vertex now.
+            return Ok(());
+        }
+        let to = self.state_at(goal, hint);
+        let arrived = self.with_vertex_at(v, &to, |worker| {
+            worker.build_star(Seed::Vertex(v), v, ball, Bounds::default())?;
+            worker.state.replacement.keeps_surface = true;
+            worker.commit()
+        });
+        match arrived {
+            Err(Refusal::Conflict) | Ok(()) => arrived,
+            Err(_) => self.approach(v, ball, goal),
+        }
+    }
+
+    fn approach(&mut self, v: VertexId, ball: &[TetId], goal: Placed) -> Result<(), Refusal> {
+        let VertexState { placed, hint, .. } = self.vertex_state(v);
+        let mut step = 0.5;
+        for _ in 0..HALVINGS {
+            let point = lerp(placed.point, goal.point, step);
+            if self.is_positive_at(v, point, ball) {
+                let to = self.state_at(Placed { point, ..placed }, hint);
+                self.with_vertex_at(v, &to, |_| Ok(()))?;
+                break;
+            }
+            step *= 0.5;
+        }
+        self.remeasure(ball);
+        Err(Refusal::Inverted)
+    }
+}
+
+fn has_arrived(point: Vec3, goal: Placed) -> bool {
+    distance(point, goal.point) <= ARRIVED * norm(point)
+}

@@ -1,0 +1,67 @@
+//! Local reconnection: each bad tetrahedron tries to remove its edges and its faces.
+use super::criteria::Criterion;
+use super::ring::Ring;
+use crate::adapt::core::access::Access;
+use crate::adapt::core::ids::{EDGE, TetId};
+use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::worker::Worker;
+use crate::adapt::schedule::Operation;
+
+/// Reconnects bad tetrahedra.
+pub struct Reconnect(pub Criterion);
+
+impl Operation for Reconnect {
+    type Item = TetId;
+    type Scratch = Box<Ring>;
+    const WHOLE_BALLS: bool = false;
+
+    fn attempt<A: Access>(
+        &self,
+        worker: &mut Worker<'_, '_, A>,
+        scratch: &mut Box<Ring>,
+        item: TetId,
+    ) -> Result<(), Refusal> {
+        worker.reconnect(scratch, item, self.0)
+    }
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Of the tetrahedra about an edge or face that are looked at in this sweep, the worst tries to remove it: once is enough.
+    #[inline]
+    pub fn goes_first(&self, t: TetId, other: TetId) -> bool {
+        other == t || self.store.stamp(other) < self.context.limits.since || {
+            let (mine, theirs) = (self.store.quality(t), self.store.quality(other));
+            mine < theirs || (mine == theirs && t < other)
+        }
+    }
+
+    /// Flips what the criterion gains by at one tetrahedron: the first edge, else face, whose removal gains.
+    pub fn reconnect(&mut self, ring: &mut Ring, t: TetId, criterion: Criterion) -> Result<(), Refusal> {
+        let v = self.claim_moving_tet(t)?;
+        if self.store.quality(t) >= self.context.limits.flip_below {
+            return Err(Refusal::Stale);
+        }
+        if A::IS_LASTING {
+            // Its edges and faces need these sooner or later.
+            for n in self.store.neighbours(t).into_iter().filter(|n| n.is_some()) {
+                self.claim_tet(n)?;
+            }
+        }
+        let mut refusal = Refusal::Shape;
+        for [i, j] in EDGE {
+            match self.remove_edge(ring, [v[i], v[j]], t, criterion) {
+                Ok(()) => return Ok(()),
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                Err(other) => refusal = other,
+            }
+        }
+        for i in 0..4 {
+            match self.remove_face(t, i, criterion) {
+                Ok(()) => return Ok(()),
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                Err(other) => refusal = other,
+            }
+        }
+        Err(refusal)
+    }
+}

@@ -1,0 +1,111 @@
+//! The end-game on the worst tetrahedra: what reconnection and smoothing left is tried with larger cavities.
+use crate::adapt::core::access::Access;
+use crate::adapt::core::edge_list::EdgeItem;
+use crate::adapt::core::ids::{EDGE, TetId, VertexId};
+use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::star::{Bounds, Seed};
+use crate::adapt::core::worker::Worker;
+use crate::adapt::operations::collapse::onto_end::CollapseScratch;
+use crate::adapt::schedule::Operation;
+use crate::mesh::vector::{Vec3, dot, lerp, sub};
+use std::ops::RangeInclusive;
+
+/// How much better, in part, the worst tetrahedron of a larger cavity must become.
+pub const GAIN: f64 = 1.05;
+
+/// Below this mean ratio an edge may be split for the shape alone. Where two edges of the model run side by side, nearer than the metric's
+/// sizes (a blunt trailing edge), their vertices must face each other, and a vertex may be missing for that.
+const SPLIT_BELOW: f64 = 0.25;
+
+/// Where along an edge it may be split for the shape.
+const BETWEEN: RangeInclusive<f64> = 0.1..=0.9;
+
+/// Repairs the worst tetrahedra.
+pub struct Repair;
+
+impl Operation for Repair {
+    type Item = TetId;
+    type Scratch = CollapseScratch;
+    const WHOLE_BALLS: bool = false;
+
+    fn attempt<A: Access>(
+        &self,
+        worker: &mut Worker<'_, '_, A>,
+        scratch: &mut CollapseScratch,
+        item: TetId,
+    ) -> Result<(), Refusal> {
+        worker.repair(scratch, item)
+    }
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Repairs one bad tetrahedron: one of its vertices is joined anew to a larger cavity, or removed onto any neighbour, if the
+    /// worst tetrahedron becomes clearly better by it.
+    pub fn repair(&mut self, scratch: &mut CollapseScratch, t: TetId) -> Result<(), Refusal> {
+        let vertices = self.claim_moving_tet(t)?;
+        let quality = self.store.quality(t);
+        if quality >= self.context.limits.improve_below {
+            return Err(Refusal::Stale);
+        }
+        let floor = (GAIN * quality).max(1e-9);
+        for v in vertices {
+            match self.restar(v, floor) {
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                Err(_) => {}
+                Ok(()) => return Ok(()),
+            }
+        }
+        for v in vertices {
+            match self.remove(scratch, v, floor) {
+                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                Err(_) => {}
+                Ok(()) => return Ok(()),
+            }
+        }
+        if quality < SPLIT_BELOW { self.split_opposite(t, vertices) } else { Err(Refusal::Shape) }
+    }
+
+    /// Splits an edge of a tetrahedron where another of its vertices faces it, the longest for which that is possible. The limits of the
+    /// end-game ask of insertion that the worst tetrahedron becomes better, and nothing of lengths.
+    fn split_opposite(&mut self, t: TetId, vertices: [VertexId; 4]) -> Result<(), Refusal> {
+        let mut edges = EDGE.map(|[i, j]| (self.length(vertices[i], vertices[j]), i, j));
+        edges.sort_by(|x, y| y.0.total_cmp(&x.0));
+        for (_, i, j) in edges {
+            for x in (0..4).filter(|&x| x != i && x != j) {
+                let (a, b) = (vertices[i].min(vertices[j]), vertices[i].max(vertices[j]));
+                let Some(opposite) = self.opposite_point(vertices[x], a, b) else { continue };
+                match self.split_at(EdgeItem { a, b, tet: t }, opposite) {
+                    Err(Refusal::Conflict) => return Err(Refusal::Conflict),
+                    Err(_) => {}
+                    Ok(()) => return Ok(()),
+                }
+            }
+        }
+        Err(Refusal::Shape)
+    }
+
+    /// The point of the line a–b closest to x in the metric, where it is well between them.
+    fn opposite_point(&self, x: VertexId, a: VertexId, b: VertexId) -> Option<Vec3> {
+        let [p, q, r] = [a, b, x].map(|v| self.store.position(v));
+        let (along, off) = (sub(q, p), sub(r, p));
+        let metric = self.store.metric(x);
+        let share = dot(metric.apply(off), along) / metric.quadratic(along);
+        BETWEEN.contains(&share).then(|| lerp(p, q, share))
+    }
+
+    /// Makes the ball of a vertex a star over a cavity that grows where tetrahedra would be bad.
+    fn restar(&mut self, v: VertexId, floor: f64) -> Result<(), Refusal> {
+        let mut ball = std::mem::take(&mut self.state.ball);
+        let bounds = Bounds { wanted: self.context.limits.improve_below, floor };
+        let gathered = self.gather_ball(v, &mut ball);
+        let result = gathered.and_then(|()| self.build_star(Seed::Vertex(v), v, &ball.tets, bounds));
+        self.state.ball = ball;
+        let worst = result?;
+        if worst < GAIN * self.worst_old() {
+            return Err(Refusal::Shape);
+        }
+        self.check_normals(0.0)?;
+        self.state.replacement.keeps_surface = true;
+        self.commit()
+    }
+}

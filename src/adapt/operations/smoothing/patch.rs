@@ -1,0 +1,137 @@
+//! The ball of a vertex laid out for trying other places for it: the energy that smoothing lowers.
+//!
+//! E = Σ 1/Q³ over the tetrahedra + Σ ((L − 1/L)/2)² over the edges at the vertex. The second is sinh² ln L: 0 at unit length, the same for
+//! twice and for half of it.
+use crate::adapt::core::ids::{FACE, TetId, VertexId};
+use crate::adapt::core::store::Store;
+use crate::mesh::vector::{Vec3, add, lerp, scale, sub};
+use crate::metric::Sym3;
+use crate::metric::batch::{Batch, IncidentEdges, QuadraticModel, Shapes};
+use crate::metric::lanes::{LANES, Lanes};
+
+/// Q³ at least, where a tetrahedron that is nearly flat would make the energy blind for all others.
+const LEAST_CUBE: f64 = 1e-18;
+
+/// A vertex with the triangles opposite to it and the vertices joined to it. Allocated once.
+#[derive(Default)]
+pub struct SmoothingPatch {
+    batches: Vec<Batch>,
+    incident: Vec<IncidentEdges>,
+    tets: usize,
+    ends: usize,
+    /// Q³ at the place that was tried last.
+    cubes: Vec<Lanes>,
+    /// Part of the energy of the shapes there.
+    energy: f64,
+}
+
+#[inline(always)]
+fn misfit(length: f64) -> f64 {
+    let difference = length - 1.0 / length;
+    0.25 * difference * difference
+}
+
+impl SmoothingPatch {
+    /// Lays out the ball of v: its tetrahedra, and the vertices joined to it.
+    pub fn fill(&mut self, store: &Store, v: VertexId, ball: &[TetId], link: &[VertexId]) {
+        (self.tets, self.ends) = (ball.len(), link.len());
+        self.batches.resize_with(ball.len().div_ceil(LANES), Batch::default);
+        for (some, batch) in ball.chunks(LANES).zip(&mut self.batches) {
+            for lane in 0..LANES {
+                let w = store.vertices(some[lane.min(some.len() - 1)]);
+                let i = w.iter().position(|&x| x == v).expect("the ball holds its vertex");
+                let face = FACE[i].map(|k| w[k]);
+                let logs = face.map(|x| store.log(x));
+                batch.set(lane, face.map(|x| store.position(x)), [&logs[0], &logs[1], &logs[2]]);
+            }
+            batch.prepare();
+        }
+        self.incident.resize_with(link.len().div_ceil(LANES), IncidentEdges::default);
+        for (some, incident) in link.chunks(LANES).zip(&mut self.incident) {
+            for lane in 0..LANES {
+                let x = some[lane.min(some.len() - 1)];
+                incident.set(lane, store.position(x), &store.metric(x));
+            }
+        }
+    }
+
+    /// The energy about p to second order, with the metric as it is at p; `None` where a tetrahedron is flat.
+    pub fn quadratic_model(&self, p: Vec3, log: &Sym3, metric: &Sym3) -> Option<QuadraticModel> {
+        let mut sum = QuadraticModel { energy: 0.0, gradient: [0.0; 3], hessian: Sym3::ZERO };
+        for (first, batch) in (0..self.tets).step_by(LANES).zip(&self.batches) {
+            let model = batch.quadratic_model(p, log, LANES.min(self.tets - first))?;
+            sum.energy += model.energy;
+            sum.gradient = add(sum.gradient, model.gradient);
+            sum.hessian = sum.hessian.plus(model.hessian);
+        }
+        for (first, incident) in (0..self.ends).step_by(LANES).zip(&self.incident) {
+            let lengths = incident.lengths(p, metric);
+            for lane in 0..LANES.min(self.ends - first) {
+                let length = lengths[lane].max(0.1);
+                sum.energy += misfit(length);
+                // φ = ((L − 1/L)/2)²; ∇L = M(p − x)/L. Of the Hessian the part that is never negative.
+                let inverse = 1.0 / length;
+                let slope = 0.5 * (length - inverse) * (1.0 + inverse * inverse);
+                let curvature = 0.5 * (1.0 + 3.0 * inverse.powi(4));
+                let out = scale(metric.apply(sub(p, incident.end(lane))), inverse);
+                sum.gradient = add(sum.gradient, scale(out, slope));
+                sum.hessian = sum.hessian.plus(Sym3::outer(out, curvature));
+            }
+        }
+        Some(sum)
+    }
+
+    /// The mean of the points that have unit distance from the neighbours, in the direction of p (pliant).
+    pub fn pliant(&self, p: Vec3, metric: &Sym3) -> Vec3 {
+        let mut sum = [0.0; 3];
+        for (first, incident) in (0..self.ends).step_by(LANES).zip(&self.incident) {
+            let lengths = incident.lengths(p, metric);
+            for lane in 0..LANES.min(self.ends - first) {
+                sum = add(sum, lerp(incident.end(lane), p, 1.0 / lengths[lane].max(0.1)));
+            }
+        }
+        scale(sum, 1.0 / self.ends as f64)
+    }
+
+    /// The energy with the vertex at p; flat tetrahedra count as all but flat.
+    pub fn energy(&mut self, p: Vec3, log: &Sym3, metric: &Sym3) -> f64 {
+        self.falls_below(f64::INFINITY, p, log);
+        self.with_lengths(p, metric)
+    }
+
+    /// Whether the shapes' part of the energy is below the limit with the vertex at p: no tetrahedron is inverted then (exact).
+    /// Without a limit flat tetrahedra count as all but flat.
+    pub fn falls_below(&mut self, limit: f64, p: Vec3, log: &Sym3) -> bool {
+        self.cubes.clear();
+        self.energy = 0.0;
+        for (first, batch) in (0..self.tets).step_by(LANES).zip(&self.batches) {
+            let Shapes { cubes } = batch.shapes(p, log);
+            for lane in 0..LANES.min(self.tets - first) {
+                if limit.is_finite() && cubes.0[lane] <= 0.0 {
+                    return false;
+                }
+                self.energy += 1.0 / cubes.0[lane].max(LEAST_CUBE);
+            }
+            if self.energy >= limit {
+                return false;
+            }
+            self.cubes.push(cubes);
+        }
+        true
+    }
+
+    /// The whole energy, after [`SmoothingPatch::falls_below`] at the same place.
+    pub fn with_lengths(&self, p: Vec3, metric: &Sym3) -> f64 {
+        let mut energy = self.energy;
+        for (first, incident) in (0..self.ends).step_by(LANES).zip(&self.incident) {
+            let lengths = incident.lengths(p, metric);
+            energy += lengths.iter().take(self.ends - first).map(|&length| misfit(length)).sum::<f64>();
+        }
+        energy
+    }
+
+    /// Mean ratios at the place that was tried last, in the order of the ball.
+    pub fn mean_ratios(&self) -> impl Iterator<Item = f64> + '_ {
+        self.cubes.iter().flat_map(|&cubes| Shapes { cubes }.mean_ratios()).take(self.tets)
+    }
+}

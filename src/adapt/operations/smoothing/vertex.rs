@@ -1,0 +1,158 @@
+//! Smoothing: a vertex moves, within its entity of the model, to where its tetrahedra and edges are better.
+//!
+//! The energy of [`super::patch`] is convex about a vertex as long as the metric is held, so Newton's step finds its minimum at
+//! once; how much a step can save is known before anything is tried. A step counts only if the energy falls
+//! with the metric of the new place, no tetrahedron is inverted (exact), and the surface does not turn from its model.
+use super::patch::SmoothingPatch;
+use crate::adapt::core::access::Access;
+use crate::adapt::core::ball::Ball;
+use crate::adapt::core::ids::VertexId;
+use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::vertex_moves::{Placed, VertexState};
+use crate::adapt::core::worker::Worker;
+use crate::adapt::schedule::Operation;
+use crate::geometry::{Entity, Evaluate};
+use crate::mesh::vector::{Vec3, add, dot, lerp, scale, unit};
+use crate::metric::batch::QuadraticModel;
+use crate::metric::plane_basis;
+
+/// Part of the energy that a step must promise to save, and of which it must keep half.
+const GAIN: f64 = 0.001;
+
+/// Longest step in the metric.
+const LONGEST: f64 = 0.5;
+
+/// Parts of the pliant direction that are tried.
+const STEPS: [f64; 2] = [0.8, 0.3];
+
+/// Smooths vertices.
+pub struct Smooth;
+
+impl Operation for Smooth {
+    type Item = VertexId;
+    type Scratch = SmoothingPatch;
+    const WHOLE_BALLS: bool = true;
+
+    fn attempt<A: Access>(
+        &self,
+        worker: &mut Worker<'_, '_, A>,
+        scratch: &mut SmoothingPatch,
+        item: VertexId,
+    ) -> Result<(), Refusal> {
+        worker.smooth(scratch, item)
+    }
+}
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// Smooths one vertex whose worst tetrahedron is below the limit.
+    pub fn smooth(&mut self, patch: &mut SmoothingPatch, v: VertexId) -> Result<(), Refusal> {
+        self.claim_live(v)?;
+        let entity = self.store.entity(v);
+        if matches!(entity, Entity::Vertex(_)) || self.context.is_frozen(v) {
+            return Err(Refusal::Geometry);
+        }
+        let mut ball = std::mem::take(&mut self.state.ball);
+        let result = self.gather_ball(v, &mut ball).and_then(|()| self.smooth_in(patch, v, &ball));
+        self.state.ball = ball;
+        result
+    }
+
+    fn smooth_in(&mut self, patch: &mut SmoothingPatch, v: VertexId, ball: &Ball) -> Result<(), Refusal> {
+        if self.worst_of(&ball.tets) >= self.context.limits.improve_below {
+            return Err(Refusal::Stale);
+        }
+        let mut triangles = std::mem::take(&mut self.state.star.surface);
+        triangles.clear();
+        self.list_surface(v, &ball.tets, &mut triangles);
+        patch.fill(self.store, v, &ball.tets, &ball.link);
+        let moved = self.descend(v, ball, &triangles, patch);
+        self.state.star.surface = triangles;
+        if moved { Ok(()) } else { Err(Refusal::Shape) }
+    }
+
+    /// Newton's step, whole and shortened; where a tetrahedron is flat, the pliant direction instead.
+    fn descend(
+        &mut self,
+        v: VertexId,
+        ball: &Ball,
+        triangles: &[([VertexId; 3], u32)],
+        patch: &mut SmoothingPatch,
+    ) -> bool {
+        let held = self.vertex_state(v);
+        let from = held.placed.point;
+        let Some(model) = patch.quadratic_model(from, &held.log, &held.metric) else {
+            let limit = patch.energy(from, &held.log, &held.metric) * (1.0 - GAIN);
+            let to = patch.pliant(from, &held.metric);
+            return STEPS
+                .into_iter()
+                .any(|step| self.move_to(v, &held, lerp(from, to, step), ball, triangles, patch, limit));
+        };
+        let step = self.newton_step(&held.placed, &model);
+        let limit = model.energy * (1.0 - 0.5 * GAIN);
+        // What the whole step would save is known; if that is too little, nothing is tried.
+        // No number comes where the surface has no normal, as at a pole: the vertex stays.
+        let saved = -0.5 * dot(model.gradient, step);
+        if saved.is_nan() || saved < GAIN * model.energy {
+            return false;
+        }
+        let length = held.metric.quadratic(step).sqrt();
+        let step = scale(step, (LONGEST / length).min(1.0));
+        [1.0, 0.4]
+            .into_iter()
+            .any(|part| self.move_to(v, &held, add(from, scale(step, part)), ball, triangles, patch, limit))
+    }
+
+    /// −H⁻¹g within the tangent space of the entity.
+    fn newton_step(&mut self, placed: &Placed, model: &QuadraticModel) -> Vec3 {
+        let (g, h) = (model.gradient, &model.hessian);
+        match placed.entity {
+            Entity::Vertex(_) => [0.0; 3],
+            Entity::Edge(curve) => {
+                let t = unit(self.state.evaluator.edge_frame(curve, placed.parameters[0]).d1);
+                scale(t, -dot(g, t) / h.quadratic(t))
+            }
+            Entity::Face(face) => {
+                let normal = match self.context.planes[face as usize] {
+                    Some(normal) => normal,
+                    None => self.state.evaluator.face_normal(face, placed.parameters),
+                };
+                let (x, y) = plane_basis(normal);
+                let (a, b, c) = (h.quadratic(x), dot(x, h.apply(y)), h.quadratic(y));
+                let (gx, gy) = (dot(g, x), dot(g, y));
+                let det = a * c - b * b;
+                add(scale(x, (b * gy - c * gx) / det), scale(y, (b * gx - a * gy) / det))
+            }
+            Entity::Interior => scale(h.solve(g), -1.0),
+        }
+    }
+
+    /// Moves the vertex to the closest point of its entity when the energy falls below `limit` there and the surface stays.
+    #[allow(clippy::too_many_arguments)]
+    fn move_to(
+        &mut self,
+        v: VertexId,
+        held: &VertexState,
+        target: Vec3,
+        ball: &Ball,
+        triangles: &[([VertexId; 3], u32)],
+        patch: &mut SmoothingPatch,
+        limit: f64,
+    ) -> bool {
+        let placed = self.place(held.placed.entity, target, &[v]);
+        let mut hint = held.hint;
+        let log = self.context.source.log_at(placed.point, &mut hint);
+        if !patch.falls_below(limit, placed.point, &log) {
+            return false;
+        }
+        let metric = log.exp();
+        if patch.with_lengths(placed.point, &metric) >= limit {
+            return false;
+        }
+        let before = (!triangles.is_empty()).then(|| self.worst_deviation(triangles));
+        let to = VertexState { placed, log, metric, hint };
+        let moved = self.move_in_ball(v, &to, &ball.tets, patch.mean_ratios(), |worker| {
+            before.is_none_or(|before| worker.compare_normals(before, triangles, 0.0).is_ok())
+        });
+        moved.is_ok()
+    }
+}

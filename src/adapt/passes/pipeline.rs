@@ -1,0 +1,482 @@
+//! The passes: what is done, in which order, until the mesh is a unit mesh.
+mod growth;
+mod surface_bounds;
+mod thinning;
+
+use crate::adapt::core::context::{Context, LONG, Limits};
+use crate::adapt::core::edge_list;
+use crate::adapt::core::edge_list::EdgeItem;
+use crate::adapt::core::id_pool::ID_BLOCK;
+use crate::adapt::core::ids::{TetId, VertexId};
+use crate::adapt::core::measure::{is_longer, is_shorter};
+use crate::adapt::core::refusal::Counts;
+use crate::adapt::core::store::Store;
+use crate::adapt::core::worker::State;
+use crate::adapt::operations::collapse::onto_end::Collapse;
+use crate::adapt::operations::insertion::centroid::InsertCentroids;
+use crate::adapt::operations::insertion::centroid::{self, PointCreation};
+use crate::adapt::operations::insertion::edge_split::Split;
+use crate::adapt::operations::insertion::metric_orthogonal;
+use crate::adapt::operations::insertion::metric_orthogonal::InsertMetricOrthogonal;
+use crate::adapt::operations::projection::{Project, RemoveUnprojected};
+use crate::adapt::operations::reconnection::criteria::Criterion;
+use crate::adapt::operations::reconnection::sweep::Reconnect;
+use crate::adapt::operations::repair::GAIN;
+use crate::adapt::operations::repair::Repair;
+use crate::adapt::operations::smoothing::vertex::Smooth;
+use crate::adapt::schedule::work::{KINDS, Kind, Observer, Work};
+use crate::adapt::schedule::{self, Execution, Operation};
+use crate::adapt::surface::bounds::SurfaceBounds;
+use crate::tasks::{GRAIN, Team};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::Instant;
+
+/// Passes at most that bring the edges to their length.
+const SIZE_PASSES: usize = 20;
+
+/// A size pass that changes less than this part of the vertices is the last.
+const LITTLE: f64 = 0.05;
+
+/// The shapes are done when a pass saves less than this part of the mean of 1/Q − 1.
+const SETTLED: f64 = 0.2;
+
+/// Passes at most that improve the shapes.
+const SHAPE_PASSES: usize = 6;
+
+/// Passes of the shapes after which vertices that wait for room on the model are taken out.
+const PATIENCE: usize = 1;
+
+/// Tetrahedra below this mean ratio go through the end-game.
+const REPAIR_BELOW: f64 = 0.5;
+
+/// The store is renumbered when it has grown by this factor.
+const OUT_OF_ORDER: usize = 2;
+
+/// Tetrahedra that an insertion adds, with much to spare: six is usual.
+const TETS_A_VERTEX: usize = 12;
+
+/// Limits while the sizes are brought about: what is bad is flipped and smoothed, what is fair may wait.
+fn size_limits() -> Limits {
+    Limits {
+        improve_below: 0.4,
+        flip_below: 0.65,
+        short: 0.65,
+        shortest_new: 0.7,
+        long_first: true,
+        several_below: 0.0,
+        ..Limits::default()
+    }
+}
+
+/// Limits while shapes are improved: nothing may become bad that is not.
+fn shape_limits() -> Limits {
+    Limits {
+        improve_below: 0.9,
+        flip_below: 0.82,
+        flip_cost: 0.15,
+        short: 0.75,
+        insert_floor: 0.2,
+        insert_loss: 1.0,
+        ..Limits::default()
+    }
+}
+
+/// The passes on one mesh.
+pub struct Pipeline<'c, 'm> {
+    /// Mesh, metric, model, limits.
+    pub context: &'c mut Context<'m>,
+    /// One a thread.
+    pub states: Vec<State<'m>>,
+    /// The threads.
+    pub execution: Execution<'c>,
+    /// Who is told.
+    pub observer: &'c dyn Observer,
+    /// Criterion of the flips that follow refinement.
+    pub criterion: Criterion,
+    /// Where refinement puts new vertices.
+    pub points: PointCreation,
+    /// Whether the mesh had far too many vertices, some of which may be left.
+    pub crowded: bool,
+    /// How far surface triangles may deviate from the model.
+    pub surface: SurfaceBounds,
+    /// By kind of operation.
+    pub work: [Work; KINDS],
+    /// Boundary vertices that are not on the model yet.
+    pub unprojected: Vec<VertexId>,
+    /// When each kind of operation last looked at everything, on the store's clock.
+    looked: [u32; KINDS],
+    pass: usize,
+    /// Vertices of the mesh that was given.
+    input: usize,
+    /// Whether the mesh has more vertices than its metric accounts for, so that nothing is inserted any more.
+    pub overgrown: bool,
+    /// Tetrahedra when the store was last renumbered.
+    ordered: usize,
+}
+
+impl<'c, 'm> Pipeline<'c, 'm> {
+    /// A pipeline on a filled store.
+    pub fn new(
+        context: &'c mut Context<'m>,
+        execution: Execution<'c>,
+        observer: &'c dyn Observer,
+        criterion: Criterion,
+        unprojected: Vec<VertexId>,
+    ) -> Self {
+        let (input, ordered) = (context.store.vertex_bound(), context.store.tet_bound());
+        let states = (0..execution.pool.threads()).map(|_| State::new(context)).collect();
+        Self {
+            context,
+            states,
+            execution,
+            observer,
+            criterion,
+            points: PointCreation::default(),
+            crowded: false,
+            surface: SurfaceBounds::default(),
+            work: [Work::default(); KINDS],
+            unprojected,
+            looked: [0; KINDS],
+            pass: 0,
+            input,
+            overgrown: false,
+            ordered,
+        }
+    }
+
+    /// Adapts the mesh: first to the sizes, then to the shapes.
+    pub fn run(&mut self) {
+        self.limit(size_limits());
+        if self.crowded {
+            self.thin();
+        }
+        for _ in 0..SIZE_PASSES {
+            if self.size_pass() || self.overgrown || self.observer.stop() {
+                break;
+            }
+            self.pass += 1;
+        }
+        self.looked = [0; KINDS];
+        self.reorder();
+        self.limit(shape_limits());
+        self.reconnect(Criterion::MeanRatio, 1);
+        self.smooth();
+        let mut before = self.cost();
+        for pass in 0..SHAPE_PASSES {
+            self.pass += 1;
+            self.limit(shape_limits());
+            self.shape_pass();
+            self.repair();
+            self.settle(pass);
+            let after = self.cost();
+            let settled = before - after < SETTLED * before;
+            if (settled && self.unprojected.is_empty()) || self.observer.stop() {
+                break;
+            }
+            before = after;
+        }
+    }
+
+    /// The threads, for lists.
+    fn team(&self) -> Team<'c> {
+        Team::new(self.execution.pool, self.execution.plan)
+    }
+
+    /// The tetrahedra that are wanted.
+    fn tets(&self, wanted: impl Fn(&Store, TetId) -> bool + Sync) -> Vec<TetId> {
+        let store = &self.context.store;
+        self.team().collect(GRAIN, store.tet_bound(), |range, found| {
+            found.extend(store.live_tets_in(range).filter(|&t| wanted(store, t)));
+        })
+    }
+
+    /// The vertices that are wanted.
+    fn vertices(&self, wanted: impl Fn(&Store, VertexId) -> bool + Sync) -> Vec<VertexId> {
+        let store = &self.context.store;
+        self.team().collect(GRAIN, store.vertex_bound(), |range, found| {
+            found.extend(store.live_vertices_in(range).filter(|&v| wanted(store, v)));
+        })
+    }
+
+    /// Mean of 1/Q − 1 over the tetrahedra: what is left to improve.
+    fn cost(&self) -> f64 {
+        let store = &self.context.store;
+        let parts = self.team().chunks(GRAIN, store.tet_bound(), |range| {
+            let costs = store.live_tets_in(range).map(|t| 1.0 / store.quality(t).max(1e-3) - 1.0);
+            costs.fold((0.0, 0.0), |(sum, count), cost| (sum + cost, count + 1.0))
+        });
+        let (sum, count) = parts.into_iter().fold((0.0, 0.0), |all, part| (all.0 + part.0, all.1 + part.1));
+        sum / count
+    }
+
+    /// Puts near in memory what is near in space, if much has come since that was done.
+    fn keep_order(&mut self) {
+        if self.context.store.tet_bound() > OUT_OF_ORDER * self.ordered {
+            self.reorder();
+        }
+    }
+
+    /// Puts near in memory what is near in space.
+    fn reorder(&mut self) {
+        self.collect_unprojected();
+        let number = self.context.reorder(self.team());
+        self.unprojected.iter_mut().for_each(|v| *v = number[v.index()]);
+        self.unprojected.retain(|v| v.is_some());
+        self.states.iter_mut().for_each(|state| state.id_pool.clear());
+        self.ordered = self.context.store.tet_bound();
+    }
+
+    /// One pass of insertion and collapse, with as much reconnection as they need; whether it changed little.
+    fn size_pass(&mut self) -> bool {
+        let before = self.changes();
+        self.refine();
+        self.collapse();
+        self.reconnect(self.criterion, 1);
+        self.smooth();
+        self.is_little(self.changes() - before)
+    }
+
+    /// One pass of all operations. Flips come after the edges' turn, where they find most: after smoothing they find next to nothing.
+    fn shape_pass(&mut self) {
+        self.collapse();
+        // Long edges that were refused are tried again: room may have come from farther away.
+        self.looked[Kind::Split as usize] = 0;
+        self.split();
+        self.split_deviating();
+        self.reconnect(Criterion::MeanRatio, 1);
+        self.smooth();
+    }
+
+    /// The end-game on the tetrahedra below the limit, with edges a little longer than elsewhere allowed.
+    fn repair(&mut self) {
+        let looked = self.looked;
+        self.limit(Limits {
+            improve_below: REPAIR_BELOW,
+            flip_below: REPAIR_BELOW,
+            longest_new: 1.3 * LONG,
+            shortest_new: 0.0,
+            insert_floor: 1.0,
+            insert_loss: GAIN,
+            ..shape_limits()
+        });
+        for _ in 0..3 {
+            let mut items = self.tets(|store, t| store.quality(t) < REPAIR_BELOW);
+            let store = &self.context.store;
+            self.team().sort_by(&mut items, |x, y| store.quality(*x).total_cmp(&store.quality(*y)).then(x.cmp(y)));
+            if self.observer.stop() || self.sweep(Kind::Repair, &Repair, &items).done == 0 {
+                break;
+            }
+            self.reconnect(Criterion::MeanRatio, 2);
+            self.smooth();
+        }
+        // Flips have looked at the worst only.
+        self.looked = looked;
+    }
+
+    /// Brings unprojected vertices to the model; after some passes they are taken out instead.
+    fn settle(&mut self, pass: usize) {
+        self.project();
+        if self.unprojected.is_empty() || pass < PATIENCE {
+            return;
+        }
+        self.context.limits.collapse_floor = 0.0;
+        self.context.limits.longest_new = f64::INFINITY;
+        (self.context.limits.cos_deviation, self.context.limits.cos_variation) = (-1.0, -1.0);
+        let items = std::mem::take(&mut self.unprojected);
+        self.sweep(Kind::Project, &RemoveUnprojected, &items);
+        self.collect_unprojected();
+    }
+
+    /// Whether so many changes are few for a mesh of this size.
+    fn is_little(&self, changes: u64) -> bool {
+        (changes as f64) < LITTLE * self.live() as f64
+    }
+
+    fn changes(&self) -> u64 {
+        self.work[Kind::Split as usize].counts.done + self.work[Kind::Collapse as usize].counts.done
+    }
+
+    /// Splits long edges, or refines in another way, and reconnects.
+    fn refine(&mut self) {
+        if !self.may_grow() {
+            return;
+        }
+        let refined = match self.points {
+            PointCreation::Edge => false,
+            PointCreation::Centroid => self.create(),
+            PointCreation::Eigenvector => self.extend(),
+        };
+        if refined {
+            return;
+        }
+        self.split();
+        self.split_deviating();
+        self.reconnect(self.criterion, 1);
+    }
+
+    /// Splits long edges and brings what lies on the model there.
+    fn split(&mut self) {
+        if !self.may_grow() {
+            return;
+        }
+        self.keep_order();
+        let items = self.long_edges();
+        if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
+            self.project();
+        }
+    }
+
+    /// Refines at centroids; whether that went well, so that edges need not be split yet.
+    fn create(&mut self) -> bool {
+        if self.observer.stop() {
+            return false;
+        }
+        let items = centroid::active_tets(self.team(), self.context);
+        let done = self.sweep(Kind::Split, &InsertCentroids, &items).done;
+        self.project();
+        self.reconnect(self.criterion, 1);
+        !self.is_little(done)
+    }
+
+    /// Splits edges that are so long that a point at unit distance from one end would leave bad tetrahedra, and all long ones on the
+    /// model; then creates points along eigenvectors. Whether that went well, so that no other edges need be split yet.
+    fn extend(&mut self) -> bool {
+        let long = self.context.limits.long;
+        self.context.limits.long = metric_orthogonal::FAR * long;
+        self.split();
+        self.context.limits.long = long;
+        self.looked[Kind::Split as usize] = 0;
+        let mut items = self.long_edges();
+        let store = &self.context.store;
+        items.retain(|edge| store.dimension(edge.a).max(store.dimension(edge.b)) < 3);
+        if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
+            self.project();
+        }
+        self.looked[Kind::Split as usize] = 0;
+        self.reconnect(self.criterion, 1);
+        if self.observer.stop() {
+            return false;
+        }
+        let items = metric_orthogonal::active_vertices(self.team(), self.context);
+        let done = self.sweep(Kind::Split, &InsertMetricOrthogonal, &items).done;
+        self.reconnect(self.criterion, 1);
+        !self.is_little(done)
+    }
+
+    /// Collapses short edges.
+    fn collapse(&mut self) {
+        let items = self.short_edges();
+        if !self.observer.stop() {
+            self.sweep(Kind::Collapse, &Collapse, &items);
+        }
+    }
+
+    /// Flips at the tetrahedra that changed since the last time, until little is gained.
+    fn reconnect(&mut self, criterion: Criterion, sweeps: usize) {
+        for _ in 0..sweeps {
+            let since = self.begin(Kind::Reconnect);
+            self.context.limits.since = since;
+            let limit = self.context.limits.flip_below;
+            let items = self.tets(|store, t| store.stamp(t) >= since && store.quality(t) < limit);
+            if self.observer.stop() || self.sweep(Kind::Reconnect, &Reconnect(criterion), &items).done == 0 {
+                break;
+            }
+        }
+    }
+
+    /// Smooths the vertices of tetrahedra that are to be improved and changed since the last time.
+    fn smooth(&mut self) {
+        let since = self.begin(Kind::Smooth);
+        let limit = self.context.limits.improve_below;
+        let changed = self.at_tets(|store, t| store.moved(t) >= since && store.quality(t) < limit);
+        let items = self.vertices(|_, v| changed[v.index()].load(Relaxed));
+        if !self.observer.stop() {
+            self.sweep(Kind::Smooth, &Smooth, &items);
+        }
+    }
+
+    /// Notes that an operation looks at everything now; returns when it did so last.
+    fn begin(&mut self, kind: Kind) -> u32 {
+        std::mem::replace(&mut self.looked[kind as usize], self.context.store.clock() + 1)
+    }
+
+    /// For each vertex whether one of its tetrahedra is wanted.
+    fn at_tets(&self, wanted: impl Fn(&Store, TetId) -> bool + Sync) -> Vec<AtomicBool> {
+        let store = &self.context.store;
+        let at: Vec<_> = (0..store.vertex_bound()).map(|_| AtomicBool::new(false)).collect();
+        self.team().for_each(GRAIN, store.tet_bound(), |range| {
+            for t in store.live_tets_in(range).filter(|&t| wanted(store, t)) {
+                store.vertices(t).iter().for_each(|v| at[v.index()].store(true, Relaxed));
+            }
+        });
+        at
+    }
+
+    /// Tries to bring the unprojected vertices to the model.
+    fn project(&mut self) {
+        self.collect_unprojected();
+        let items = std::mem::take(&mut self.unprojected);
+        self.sweep(Kind::Project, &Project, &items);
+        self.collect_unprojected();
+    }
+
+    fn collect_unprojected(&mut self) {
+        for state in &mut self.states {
+            self.unprojected.append(&mut state.unprojected);
+        }
+    }
+
+    /// Makes room for so many new vertices, with the tetrahedra about them, and for what flips add.
+    fn make_room(&mut self, new: usize) {
+        let team = self.team();
+        let store = &mut self.context.store;
+        // Threads and parts take whole blocks of ids, and not all the same number of them.
+        let slack = ID_BLOCK * (self.states.len() + 2 * schedule::deterministic::MOST_PARTS);
+        let vertices = 2 * new + slack;
+        let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
+        let room = store.room();
+        if room.0 < vertices || room.1 < tets {
+            // More than is needed, so that it is not needed again soon: untouched pages cost no memory. Without memory the mesh stays
+            // as large as it is.
+            self.overgrown |= !store.reserve(team, vertices + store.vertex_bound(), tets + store.tet_bound());
+        }
+    }
+
+    /// One sweep of an operation over its items.
+    fn sweep<O: Operation>(&mut self, kind: Kind, operation: &O, items: &[O::Item]) -> Counts {
+        if items.is_empty() {
+            return Counts::default();
+        }
+        self.make_room(if kind == Kind::Split { items.len() } else { 0 });
+        self.context.store.tick();
+        let start = Instant::now();
+        self.observer.begin(kind, self.pass, items.len());
+        let advance = |n: usize| self.observer.advance(n);
+        let counts = schedule::run(operation, items, self.context, &mut self.states, (self.execution, kind), &advance);
+        self.observer.end(&counts);
+        let work = &mut self.work[kind as usize];
+        work.counts.add(&counts);
+        work.sweeps += 1;
+        work.time += start.elapsed();
+        counts
+    }
+
+    /// Edges to be split: those of the model's edges first, then of its faces, then inside; long ones first.
+    fn long_edges(&mut self) -> Vec<EdgeItem> {
+        let since = self.begin(Kind::Split);
+        let (store, limit) = (&self.context.store, self.context.limits.long);
+        let found = edge_list::listed(self.team(), store, since, |a, b| is_longer(a, b, limit));
+        let dimension = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
+        edge_list::in_order(self.team(), &found, |edge| {
+            (dimension(&edge.item) + 1) * edge_list::CLASSES - 1 - u32::from(edge.class)
+        })
+    }
+
+    /// Edges to be collapsed, short ones first.
+    fn short_edges(&mut self) -> Vec<EdgeItem> {
+        let since = self.begin(Kind::Collapse);
+        let (store, limit) = (&self.context.store, self.context.limits.short);
+        let found = edge_list::listed(self.team(), store, since, |a, b| is_shorter(a, b, limit));
+        edge_list::in_order(self.team(), &found, |edge| u32::from(edge.class))
+    }
+}

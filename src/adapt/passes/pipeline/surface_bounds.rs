@@ -1,0 +1,54 @@
+//! The bounds that the user sets to the surface: within the passes, and what is left beyond them.
+use super::Pipeline;
+use crate::adapt::core::access::Exclusive;
+use crate::adapt::core::context::Limits;
+use crate::adapt::core::ids::TetId;
+use crate::adapt::core::worker::Worker;
+use crate::adapt::operations::insertion::deviating::SplitDeviating;
+use crate::adapt::schedule::work::Kind;
+
+/// Sweeps in a row that split what deviates: each halves edges.
+const SWEEPS: usize = 4;
+
+impl Pipeline<'_, '_> {
+    /// Sets the limits of a pass, with the user's bounds of the surface where they are stricter.
+    pub(super) fn limit(&mut self, limits: Limits) {
+        let surface = self.surface;
+        let (cos_deviation, cos_variation) =
+            (surface.cosine(limits.cos_deviation), surface.cosine(limits.cos_variation));
+        self.context.limits = Limits { cos_deviation, cos_variation, chord: surface.chord(), ..limits };
+    }
+
+    /// Tetrahedra with a triangle on a face that is no plane, or on a curved edge.
+    fn on_curved_faces(&self) -> Vec<TetId> {
+        let planes = &self.context.planes;
+        self.tets(|store, t| store.tags(t).iter().any(|&tag| tag != 0 && planes[tag as usize - 1].is_none()))
+    }
+
+    /// Splits surface triangles that deviate farther from the model than the user allows, whatever their lengths in the metric.
+    pub(super) fn split_deviating(&mut self) {
+        if !self.surface.is_some() {
+            return;
+        }
+        let limits = self.context.limits;
+        self.context.limits = Limits { long: 0.0, shortest_new: 0.0, insert_floor: 0.01, ..limits };
+        for _ in 0..SWEEPS {
+            let items = self.on_curved_faces();
+            if !self.may_grow() || self.observer.stop() || self.sweep(Kind::Split, &SplitDeviating, &items).done == 0 {
+                break;
+            }
+            self.project();
+        }
+        self.context.limits = limits;
+    }
+
+    /// Surface triangles that deviate farther from the model than the user allows.
+    pub fn deviating(&mut self) -> usize {
+        if !self.surface.is_some() {
+            return 0;
+        }
+        let items = self.on_curved_faces();
+        let mut worker = Worker::new(self.context, &mut self.states[0], Exclusive);
+        items.into_iter().map(|t| worker.count_deviating(t)).sum()
+    }
+}

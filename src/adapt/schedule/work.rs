@@ -1,0 +1,72 @@
+//! What the passes tell: kinds of operations, their times and counts, and who is told.
+use crate::adapt::core::refusal::Counts;
+use std::time::Duration;
+
+/// Number of kinds of operations.
+pub const KINDS: usize = 6;
+
+/// A kind of operation, for progress and report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Insertion.
+    Split,
+    /// Collapse.
+    Collapse,
+    /// Reconnection.
+    Reconnect,
+    /// Smoothing.
+    Smooth,
+    /// Projection on the model.
+    Project,
+    /// The end-game on the worst tetrahedra.
+    Repair,
+}
+
+impl Kind {
+    /// All kinds, in the order of their counters.
+    pub const ALL: [Kind; KINDS] =
+        [Kind::Split, Kind::Collapse, Kind::Reconnect, Kind::Smooth, Kind::Project, Kind::Repair];
+
+    /// The name in progress and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Split => "insertion",
+            Kind::Collapse => "collapse",
+            Kind::Reconnect => "reconnection",
+            Kind::Smooth => "smoothing",
+            Kind::Project => "projection",
+            Kind::Repair => "repair",
+        }
+    }
+}
+
+/// Time and counts of one kind of operation.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize)]
+pub struct Work {
+    /// Counts over all sweeps.
+    pub counts: Counts,
+    /// Sweeps.
+    pub sweeps: u32,
+    /// Wall time.
+    pub time: Duration,
+}
+
+/// Is told what happens; called from several threads.
+pub trait Observer: Sync {
+    /// A sweep begins.
+    fn begin(&self, _kind: Kind, _pass: usize, _items: usize) {}
+    /// So many more items are done.
+    fn advance(&self, _items: usize) {}
+    /// The sweep is over.
+    fn end(&self, _counts: &Counts) {}
+    /// Whether to stop after this sweep.
+    fn stop(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody is told, nobody stops it.
+pub struct Silent;
+
+impl Observer for Silent {}

@@ -1,0 +1,171 @@
+//! How far surface triangles deviate from the model, and that no operation makes it worse.
+use super::placement::MeanParameters;
+use crate::adapt::core::access::Access;
+use crate::adapt::core::ids::VertexId;
+use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::worker::Worker;
+use crate::geometry::{Entity, Evaluate, Geometry};
+use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, scale, unit};
+
+/// How a surface triangle looks to its model, as cosines.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceDeviation {
+    /// n_triangle · n_CAD at the closest point of the centroid: 1 − the normal deviation of METHOD.md §3.
+    pub cos_deviation: f64,
+    /// Of half the greatest angle between the model's normals at the vertices. Without it a sphere could become a
+    /// tetrahedron: its faces are tangent to it.
+    pub cos_variation: f64,
+    /// Distance of the centroid and of the middles of the edges from the model, where that is bounded; else 0.
+    pub chord: f64,
+}
+
+/// How surface triangles deviation to their model.
+#[derive(Clone, Copy, Debug)]
+pub struct WorstDeviation {
+    /// The worst of each cosine, without sign.
+    worst: SurfaceDeviation,
+    /// The side from which they are seen: −1 on an interface that is met from behind.
+    side: f64,
+}
+
+/// A triangle that turns from another by less than this cosine lies as that one did.
+const STILL: f64 = 0.97;
+
+impl<A: Access> Worker<'_, '_, A> {
+    /// How a triangle looks to its face; the cos_deviation is negative when it looks to the model's inside.
+    pub fn surface_deviation(&mut self, triangle: [VertexId; 3], face: u32) -> SurfaceDeviation {
+        let [a, b, c] = triangle.map(|v| self.store.position(v));
+        let normal = unit(area2(a, b, c));
+        if let Some(plane) = self.context.planes[face as usize] {
+            return SurfaceDeviation {
+                cos_deviation: dot(normal, plane),
+                cos_variation: 1.0,
+                chord: self.chord(triangle, face, 0.0),
+            };
+        }
+        let mut mean = MeanParameters::new(self.context.model.topology().faces[face as usize].period);
+        let known = triangle.map(|v| self.uv_of(v, face));
+        known.into_iter().flatten().for_each(|uv| mean.add(uv));
+        let centroid = scale(add(a, add(b, c)), 1.0 / 3.0);
+        let foot = match mean.get() {
+            Some(uv) => self.state.evaluator.closest_on_surface(face, centroid, uv),
+            None => self.state.evaluator.closest_on_face(face, centroid, None),
+        };
+        let cos_deviation = dot(normal, self.state.evaluator.face_normal(face, foot.uv));
+        let ends = [(a, known[0]), (b, known[1]), (c, known[2])].map(|(p, uv)| self.normal_near(face, p, uv, foot.uv));
+        let least = dot(ends[0], ends[1]).min(dot(ends[1], ends[2])).min(dot(ends[2], ends[0]));
+        SurfaceDeviation {
+            cos_deviation,
+            cos_variation: (0.5 * (1.0 + least)).max(0.0).sqrt(),
+            chord: self.chord(triangle, face, foot.distance),
+        }
+    }
+
+    /// Greatest distance from the model of a triangle's centroid, which is given, and of the middles of its edges, where it is bounded.
+    fn chord(&mut self, [a, b, c]: [VertexId; 3], face: u32, centroid: f64) -> f64 {
+        if self.context.limits.chord == f64::INFINITY {
+            return 0.0;
+        }
+        [[a, b], [b, c], [c, a]].into_iter().fold(centroid, |most, edge| self.chord_of(edge, face).max(most))
+    }
+
+    /// Distance from the model of the middle of an edge of a triangle on a face: of an edge on the model's edge from that one.
+    pub fn chord_of(&mut self, [a, b]: [VertexId; 2], face: u32) -> f64 {
+        let middle = lerp(self.store.position(a), self.store.position(b), 0.5);
+        let entity = self.store.ridge_curve(a, b).map_or(Entity::Face(face), Entity::Edge);
+        if entity == Entity::Face(face) && self.context.planes[face as usize].is_some() {
+            return 0.0;
+        }
+        distance(middle, self.place(entity, middle, &[a, b]).point)
+    }
+
+    /// Normal at a vertex of a face, at its parameters if it knows them; at a pole or an apex, where there is none, a little towards
+    /// `inner`.
+    fn normal_near(&mut self, face: u32, p: Vec3, uv: Option<[f64; 2]>, inner: [f64; 2]) -> Vec3 {
+        let evaluator = &mut self.state.evaluator;
+        let uv = uv.unwrap_or_else(|| evaluator.closest_on_surface(face, p, inner).uv);
+        let normal = evaluator.face_normal(face, uv);
+        if normal != [0.0; 3] {
+            return normal;
+        }
+        evaluator.face_normal(face, [0, 1].map(|k| uv[k] + 1e-3 * (inner[k] - uv[k])))
+    }
+
+    /// Cosine of half the angle between the model edge's tangents at two neighbours on it.
+    pub fn ridge_variation(&mut self, curve: u32, a: VertexId, b: VertexId) -> f64 {
+        let [ta, tb] = [[a, b], [b, a]].map(|near| self.parameter_beside(curve, near));
+        let [da, db] = [ta, tb].map(|t| unit(self.state.evaluator.edge_frame(curve, t).d1));
+        (0.5 * (1.0 + dot(da, db))).max(0.0).sqrt()
+    }
+
+    /// How the triangles that are there deviation to the model; with their tags.
+    pub fn worst_deviation(&mut self, triangles: &[([VertexId; 3], u32)]) -> WorstDeviation {
+        let (mut worst, mut sum) = (SurfaceDeviation { cos_deviation: 1.0, cos_variation: 1.0, chord: 0.0 }, 0.0);
+        for &(triangle, tag) in triangles {
+            let deviation = self.surface_deviation(triangle, tag - 1);
+            sum += deviation.cos_deviation;
+            worst = SurfaceDeviation {
+                cos_deviation: worst.cos_deviation.min(deviation.cos_deviation.abs()),
+                cos_variation: worst.cos_variation.min(deviation.cos_variation),
+                chord: worst.chord.max(deviation.chord),
+            };
+        }
+        WorstDeviation { worst, side: if sum < 0.0 { -1.0 } else { 1.0 } }
+    }
+
+    /// Refuses a star whose surface triangles turn from the model more than good ones may, and by `slack` more than those that go.
+    pub fn check_normals(&mut self, slack: f64) -> Result<(), Refusal> {
+        if self.state.star.surface.is_empty() {
+            return Ok(());
+        }
+        let old = std::mem::take(&mut self.state.star.surface);
+        let before = self.worst_deviation(&old);
+        self.state.star.surface = old;
+        self.check_star_normals(before, slack)
+    }
+
+    /// Whether each new surface triangle of the star lies nearly as one of its face that goes.
+    pub fn turns_little(&self) -> bool {
+        let normal = |triangle: [VertexId; 3]| {
+            let [a, b, c] = triangle.map(|v| self.store.position(v));
+            unit(area2(a, b, c))
+        };
+        self.state.replacement.faces.iter().all(|&(new, tag)| {
+            let old = self.state.star.surface.iter().filter(|(_, of)| *of == tag);
+            old.map(|&(triangle, _)| dot(normal(triangle), normal(new))).any(|cosine| cosine > STILL)
+        })
+    }
+
+    /// As [`Worker::check_normals`], when the old triangles were looked at before.
+    pub fn check_star_normals(&mut self, old: WorstDeviation, slack: f64) -> Result<(), Refusal> {
+        let new = std::mem::take(&mut self.state.replacement.faces);
+        let result = self.compare_normals(old, &new, slack);
+        self.state.replacement.faces = new;
+        result
+    }
+
+    /// Holds new triangles, with tags, against the old ones: `slack` is for the cos_deviation alone.
+    pub fn compare_normals(
+        &mut self,
+        old: WorstDeviation,
+        new: &[([VertexId; 3], u32)],
+        slack: f64,
+    ) -> Result<(), Refusal> {
+        let limits = self.context.limits;
+        // A negative limit allows any: a vertex that must go, goes.
+        let cos_deviation = if limits.cos_deviation < 0.0 {
+            -1.0
+        } else {
+            (old.worst.cos_deviation - slack).min(limits.cos_deviation).max(1e-3)
+        };
+        let cos_variation = old.worst.cos_variation.min(limits.cos_variation);
+        let chord = old.worst.chord.max(limits.chord);
+        let turned = new.iter().any(|&(triangle, tag)| {
+            let deviation = self.surface_deviation(triangle, tag - 1);
+            old.side * deviation.cos_deviation < cos_deviation
+                || deviation.cos_variation < cos_variation
+                || deviation.chord > chord
+        });
+        if turned { Err(Refusal::Normal) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,22 @@
+//! The orientation of tetrahedra.
+use crate::mesh::TetMesh;
+use crate::mesh::vector::volume6;
+
+/// Turns all tetrahedra where most are negative: programs number them either way. Returns what was done, or that some stay negative.
+pub(super) fn unify(mesh: &mut TetMesh) -> Option<String> {
+    let points = &mesh.vertices;
+    let is_negative = |nodes: &&[u32; 4]| {
+        let [a, b, c, d] = nodes.map(|v| points[v as usize]);
+        volume6(a, b, c, d) < 0.0
+    };
+    let (negative, all) = (mesh.tets.nodes.iter().filter(is_negative).count(), mesh.tets.len());
+    let turned = 2 * negative > all;
+    if turned {
+        mesh.tets.nodes.iter_mut().for_each(|nodes| nodes.swap(0, 1));
+    }
+    match (turned, if turned { all - negative } else { negative }) {
+        (false, 0) => None,
+        (true, 0) => Some("the tetrahedra were numbered the other way; all were turned".into()),
+        (_, left) => Some(format!("{left} of {all} tetrahedra are negative or flat, against the others")),
+    }
+}
