@@ -27,7 +27,7 @@ pub use format::Format;
 pub use msh::read_msh;
 
 use crate::geometry::names;
-use crate::mesh::io::{Error, Read};
+use crate::mesh::io::{Batch, Error, Read};
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 
@@ -127,19 +127,36 @@ pub fn write(path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
 /// # Errors
 /// As there.
 pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, options: Options) -> Result<Vec<String>, Error> {
+    let mut batch = Batch::new();
+    let notices = add(&mut batch, team, path, data, options)?;
+    batch.commit()?;
+    Ok(notices)
+}
+
+/// Adds what [`write_on`] writes to files that belong together; the mesh is the main one.
+///
+/// # Errors
+/// As there.
+pub fn add(
+    batch: &mut Batch,
+    team: Team<'_>,
+    path: &Path,
+    data: &Dataset,
+    options: Options,
+) -> Result<Vec<String>, Error> {
     let format = Format::of(path)?;
     check::check(path, data)?;
     let mut notices = lacks::notices(format, data);
     notices.extend(match format {
-        Format::Libmeshb => libmeshb::write(team, path, data)?,
-        Format::Su2 => su2::write(path, data)?,
-        Format::Vtu => vtu::write(team, path, data, options.text)?,
-        Format::Foam => foam::write_on(team, path, data, options.text)?,
-        Format::Msh { is_new } => msh::write(path, data, is_new, options.text)?,
-        Format::Ugrid(encoding) => ugrid::write(path, data, encoding)?,
-        Format::Solution => libmeshb::write_solution(team, path, data)?,
-        Format::Table => columns::write_text(path, data)?,
-        Format::Restart => columns::write_binary(path, data)?,
+        Format::Libmeshb => libmeshb::write(batch, team, path, data)?,
+        Format::Su2 => su2::write(batch, path, data)?,
+        Format::Vtu => vtu::write(batch, team, path, data, options.text)?,
+        Format::Foam => foam::add(batch, team, path, data, options.text)?,
+        Format::Msh { is_new } => msh::write(batch, path, data, is_new, options.text)?,
+        Format::Ugrid(encoding) => ugrid::write(batch, path, data, encoding)?,
+        Format::Solution => libmeshb::write_solution(batch, team, path, data)?,
+        Format::Table => columns::write_text(batch, path, data)?,
+        Format::Restart => columns::write_binary(batch, path, data)?,
     });
     Ok(notices)
 }

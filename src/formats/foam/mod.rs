@@ -17,7 +17,7 @@ pub use write::write_poly_mesh;
 use super::{Dataset, NamedField, cells_to_vertices, vertices_to_cells};
 use crate::geometry::Names;
 use crate::mesh::TetMesh;
-use crate::mesh::io::{Error, Read, write_beside};
+use crate::mesh::io::{Batch, Error, Read};
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 
@@ -149,9 +149,26 @@ pub fn write(path: &Path, data: &Dataset, text: bool) -> Result<Vec<String>, Err
 /// # Errors
 /// As [`write`].
 pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Result<Vec<String>, Error> {
+    let mut batch = Batch::new();
+    let notices = add(&mut batch, team, path, data, text)?;
+    batch.commit()?;
+    Ok(notices)
+}
+
+/// Adds what [`write_on`] writes to files that belong together.
+///
+/// # Errors
+/// As [`write`].
+pub fn add(
+    batch: &mut Batch,
+    team: Team<'_>,
+    path: &Path,
+    data: &Dataset,
+    text: bool,
+) -> Result<Vec<String>, Error> {
     let mesh = &data.mesh;
     let folder = poly_mesh_of(path);
-    let patches = write_poly_mesh(team, &folder, mesh, &data.names, &|_, _| "patch".to_owned(), text)?;
+    let patches = write::add_poly_mesh(batch, team, &folder, mesh, &data.names, &|_, _| "patch".to_owned(), text)?;
     let mut notices = Vec::new();
     let lost = [
         ("edges", mesh.edges.len()),
@@ -169,12 +186,12 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Resu
         }
         return Ok(notices);
     }
-    write_system(path)?;
+    add_system(batch, path)?;
     if data.fields.is_empty() {
         return Ok(notices);
     }
     let time = path.join("0");
-    std::fs::create_dir_all(&time).map_err(|source| Error::System { path: time.clone(), source })?;
+    batch.folder(&time)?;
     let entries: Vec<_> = patches.into_iter().map(|patch| (patch.name, "type zeroGradient;".to_owned())).collect();
     for NamedField { name, kind, values } in &data.fields {
         let values = vertices_to_cells(team, mesh, values, kind.values());
@@ -182,15 +199,16 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Resu
         if file != *name {
             notices.push(format!("the field {name} is called {file} there"));
         }
-        write_cell_field(&time.join(file), &CellField { kind: *kind, values }, mesh.tets.len(), &entries, text)?;
+        let field = CellField { kind: *kind, values };
+        field::add_cell_field(batch, &time.join(file), &field, mesh.tets.len(), &entries, text)?;
     }
     Ok(notices)
 }
 
 /// The least that OpenFOAM's tools ask for; files that are there stay.
-fn write_system(case: &Path) -> Result<(), Error> {
+fn add_system(batch: &mut Batch, case: &Path) -> Result<(), Error> {
     let folder = case.join("system");
-    std::fs::create_dir_all(&folder).map_err(|source| Error::System { path: folder.clone(), source })?;
+    batch.folder(&folder)?;
     let files = [
         (
             "controlDict",
@@ -202,7 +220,7 @@ fn write_system(case: &Path) -> Result<(), Error> {
     for (name, body) in files {
         let path = folder.join(name);
         if !path.is_file() {
-            write_beside(&path, |w| write!(w, "{}{body}", file::head_text("dictionary", "system", name, true)))?;
+            batch.add(&path, |w| write!(w, "{}{body}", file::head_text("dictionary", "system", name, true)))?;
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ mod header;
 mod write;
 
 use super::frame::Frame;
-use crate::mesh::io::Error;
+use crate::mesh::io::{Error, read_file};
 use std::path::Path;
 
 pub use write::write;
@@ -113,7 +113,7 @@ impl Image {
 /// # Errors
 /// [`Error::System`] when a file cannot be read, [`Error::Content`] when what it says cannot be true or is not supported.
 pub fn read(path: &Path) -> Result<Image, Error> {
-    let file = std::fs::read(path).map_err(|source| Error::System { path: path.into(), source })?;
+    let file = read_file(path)?;
     let (header, rest) = header::parse(path, &file)?;
     let bytes = data::read(path, &header, &file[rest..])?;
     Ok(Image { sizes: header.sizes, frame: header.frame, kind: header.kind, bytes })
