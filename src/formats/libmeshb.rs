@@ -56,12 +56,7 @@ fn named(path: &Path, solution: Solution) -> Result<Vec<NamedField>, Error> {
 }
 
 /// Writes a mesh; its fields and names beside it.
-pub(super) fn write(
-    batch: &mut Batch,
-    team: Team<'_>,
-    path: &Path,
-    data: &Dataset,
-) -> Result<Vec<String>, Error> {
+pub(super) fn write(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
     io::add_mesh(batch, path, &data.mesh)?;
     let mut notices = Vec::new();
     let beside = solution_path(path);

@@ -84,15 +84,29 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
     Ok(read)
 }
 
-/// The files beside a mesh that belong to it in its format, whether they are there or not.
+/// The files that [`read`] reads: the mesh and what belongs to it, whether it is there or not.
+pub fn read_files(path: &Path) -> Vec<PathBuf> {
+    match Format::of(path) {
+        Ok(Format::Foam) => foam::read_files(path),
+        Ok(Format::Ugrid(_)) => vec![path.to_owned(), ugrid::names_path(path)],
+        // What has no ending that is known may be a mesh of libMeshb.
+        Ok(Format::Libmeshb) | Err(_) => {
+            vec![path.to_owned(), path.with_extension("solb"), path.with_extension("sol"), names::beside(path)]
+        }
+        Ok(_) => vec![path.to_owned()],
+    }
+}
+
+/// The files that [`write()`] may replace. (The names beside a solution are none of these: the ones that are there are kept.)
 ///
 /// # Errors
 /// When the extension is none that is known.
-pub fn beside(path: &Path) -> Result<Vec<PathBuf>, Error> {
+pub fn written_files(path: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(match Format::of(path)? {
-        Format::Libmeshb => vec![libmeshb::solution_path(path), names::beside(path)],
-        Format::Ugrid(_) => vec![ugrid::names_path(path)],
-        _ => Vec::new(),
+        Format::Foam => foam::written_files(path),
+        Format::Libmeshb => vec![path.to_owned(), libmeshb::solution_path(path), names::beside(path)],
+        Format::Ugrid(_) => vec![path.to_owned(), ugrid::names_path(path)],
+        _ => vec![path.to_owned()],
     })
 }
 

@@ -207,12 +207,7 @@ pub(super) fn read_beside(path: &Path, names: &mut Names) -> Result<(), Error> {
 }
 
 /// Writes a grid, and its names beside it where it has some. Boundary conditions that are there already stay; new boundaries have 0.
-pub(super) fn write(
-    batch: &mut Batch,
-    path: &Path,
-    data: &Dataset,
-    encoding: Encoding,
-) -> Result<Vec<String>, Error> {
+pub(super) fn write(batch: &mut Batch, path: &Path, data: &Dataset, encoding: Encoding) -> Result<Vec<String>, Error> {
     let mesh = &data.mesh;
     if encoding != Encoding::Text
         && mesh.vertices.len().max(mesh.tets.len()) > i32::MAX as usize

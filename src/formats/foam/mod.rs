@@ -134,6 +134,22 @@ fn files_of(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(found)
 }
 
+/// The files that [`read`] reads.
+pub fn read_files(path: &Path) -> Vec<PathBuf> {
+    let folders = [Some(poly_mesh_of(path)), newest_time(&case_of(path))];
+    folders.iter().flatten().flat_map(|folder| files_of(folder).unwrap_or_default()).collect()
+}
+
+/// The files that [`write()`] may replace: of the fields those that are there.
+pub fn written_files(path: &Path) -> Vec<PathBuf> {
+    let folder = poly_mesh_of(path);
+    let mut files: Vec<_> = write::FILES.iter().map(|name| folder.join(name)).collect();
+    if folder != path {
+        files.extend(files_of(&path.join("0")).unwrap_or_default());
+    }
+    files
+}
+
 /// Writes a case, or its polyMesh alone where the path says so: the mesh with a patch a reference, named as it is, and the fields at the
 /// cells (the means of the values at their vertices) in the time folder `0`, with gradient zero at all patches; and a `system` folder
 /// where there is none, so that OpenFOAM's tools take the case. Returns what a case cannot carry, a line each.
@@ -159,13 +175,7 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Resu
 ///
 /// # Errors
 /// As [`write`].
-pub fn add(
-    batch: &mut Batch,
-    team: Team<'_>,
-    path: &Path,
-    data: &Dataset,
-    text: bool,
-) -> Result<Vec<String>, Error> {
+pub fn add(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Result<Vec<String>, Error> {
     let mesh = &data.mesh;
     let folder = poly_mesh_of(path);
     let patches = write::add_poly_mesh(batch, team, &folder, mesh, &data.names, &|_, _| "patch".to_owned(), text)?;

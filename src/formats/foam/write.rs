@@ -96,9 +96,13 @@ fn write_boundary(w: &mut dyn Write, patches: &[Patch], names: &Names) -> std::i
     w.write_all(b")\n")
 }
 
+/// The files of a polyMesh.
+pub(super) const FILES: [&str; 8] =
+    ["faces", "points", "owner", "neighbour", "boundary", "cellZones", "faceZones", "pointZones"];
+
 /// What another mesh may have left, and would be read with this one.
 fn remove_old(batch: &mut Batch, folder: &Path) {
-    for name in ["faces", "points", "owner", "neighbour", "boundary", "cellZones", "faceZones", "pointZones"] {
+    for name in FILES {
         for path in [folder.join(format!("{name}.gz")), folder.join(name)] {
             let is_replaced = path.extension().is_none() && !name.ends_with("Zones") && name != "faces";
             if !is_replaced && path.is_file() {

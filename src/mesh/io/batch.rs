@@ -96,11 +96,7 @@ impl Batch {
     }
 
     /// Writes the bytes; what is to be renamed, if anything.
-    fn stage(
-        &self,
-        path: &Path,
-        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> io::Result<Option<Staged>> {
+    fn stage(&self, path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Option<Staged>> {
         let mut write = Some(write);
         let mut content = |to: &mut dyn Write| write.take().map_or(Ok(()), |write| write(to));
         if let Some(inside) = self.inside(path) {

@@ -17,7 +17,7 @@ pub(super) enum Place {
     File { path: PathBuf, before: Option<Metadata> },
     /// A device or a pipe: it is written directly.
     Device,
-    /// The file that standard output is redirected to: replacing it would lose what is printed.
+    /// `/dev/stdout` that is redirected to a file: replacing that would lose what is printed.
     Stdout,
 }
 
@@ -30,11 +30,12 @@ impl Place {
         if path.file_name().is_none() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
             return Err(refusal("this is a folder; name a file"));
         }
+        let is_device = path.starts_with("/dev") || path.starts_with("/proc");
         let path = follow(path)?;
         match fs::metadata(&path) {
             Ok(metadata) if metadata.is_dir() => Err(refusal("this is a folder; name a file")),
             Ok(metadata) if !metadata.is_file() => Ok(Self::Device),
-            Ok(metadata) if is_stdout(&metadata) => Ok(Self::Stdout),
+            Ok(metadata) if is_device && is_stdout(&metadata) => Ok(Self::Stdout),
             Ok(metadata) if metadata.permissions().readonly() => {
                 Err(refusal("the file is read-only; name another, or allow writing to it"))
             }
@@ -58,6 +59,9 @@ impl Place {
 /// For a folder, a read-only file, and where its folder is not there or takes no new file.
 pub fn check_writable(path: &Path) -> io::Result<()> {
     match Place::of(path)? {
+        Place::File { before: Some(metadata), .. } if is_stdout(&metadata) => {
+            Err(refusal("standard output goes to this file; name another, or /dev/stdout"))
+        }
         Place::File { path, .. } => new_beside(&path, create_file).map(drop),
         Place::Device | Place::Stdout => Ok(()),
     }
@@ -131,10 +135,7 @@ pub(super) fn create_file(path: &Path) -> io::Result<File> {
 }
 
 /// Makes something new in the folder of `target`, hidden, with a name that no other run takes.
-pub(super) fn new_beside<T>(
-    target: &Path,
-    create: impl Fn(&Path) -> io::Result<T>,
-) -> io::Result<(T, Temporary)> {
+pub(super) fn new_beside<T>(target: &Path, create: impl Fn(&Path) -> io::Result<T>) -> io::Result<(T, Temporary)> {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     let Some(name) = target.file_name() else { return Err(refusal("this names no file")) };
     loop {

@@ -20,18 +20,11 @@ pub(super) fn mesh_to(batch: &mut Batch, path: &Path, mesh: &TetMesh) -> Result<
 }
 
 /// Writes a solution by the path's extension.
-pub(super) fn solution_to(
-    batch: &mut Batch,
-    team: Team<'_>,
-    path: &Path,
-    solution: &Solution,
-) -> Result<(), Error> {
+pub(super) fn solution_to(batch: &mut Batch, team: Team<'_>, path: &Path, solution: &Solution) -> Result<(), Error> {
     let binary = is_binary(path, "sol")?;
     check_solution(team, solution).map_err(|(place, message)| Error::content(path, place, message))?;
     let sections = solution_sections(solution);
-    batch.add(path, |to| {
-        write_sections(to, binary, version(&sections), &sections, &Content::Solution(team, solution))
-    })
+    batch.add(path, |to| write_sections(to, binary, version(&sections), &sections, &Content::Solution(team, solution)))
 }
 
 /// Whether a path's extension is `name` with a b behind it, not `name` alone.
