@@ -1,4 +1,5 @@
 //! `geo-adapt classify`.
+use super::files::{Files, Outputs};
 use super::names::on_mesh;
 use super::{Outcome, load};
 use crate::geometry::classify::{Associated, Options, Report, associate, classify};
@@ -29,6 +30,8 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
+    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_models([&arguments.cad]);
+    let target = files.writes_mesh(&arguments.output, "-o")?;
     let pool = super::pool()?;
     let team = Team::new(&pool, Plan::default());
     let mut read = io::read_mesh_on(team, &arguments.mesh)?;
@@ -43,14 +46,15 @@ pub fn run(arguments: &Arguments) -> Outcome {
         .map_err(|error| format!("{} on {}: {error}", arguments.mesh.display(), arguments.cad.display()))?;
     let given = names::read(&arguments.mesh)?;
     let associated = associate(mesh, &classification);
-    io::write_mesh(&arguments.output, mesh)?;
     let known = !given.is_empty() && !associated.references_replaced;
     let names = if known { given } else { on_mesh(mesh, &classification, &model) };
-    names::write(&arguments.output, &names, &[])?;
+    let mut outputs = Outputs::new();
+    outputs.mesh(&target, mesh, &names)?;
+    outputs.commit()?;
     for notice in read.notices.iter().chain(&report.notices) {
-        eprintln!("geo-adapt: note: {notice}");
+        crate::cli::note(notice);
     }
-    super::print(&table(&report, associated));
+    super::print(&table(&report, associated))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,13 +1,13 @@
 //! `geo-adapt convert`.
 use super::Outcome;
-use super::metric::common::check_place;
+use super::files::{Files, Outputs};
 use super::table::Table;
 use crate::formats::{self, Dataset, Format, Options};
 use crate::geometry::{Label, names};
 use crate::mesh::io::FieldKind;
 use crate::tasks::{Plan, Team};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Names that are listed; of more only the number is given.
@@ -39,17 +39,9 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { input, output, fields, names, text } = arguments;
-    let given = [fields.as_deref(), names.as_deref()].into_iter().flatten();
-    let beside = formats::beside(input).unwrap_or_default();
-    let inputs: Vec<&Path> = given.chain([input.as_path()]).chain(beside.iter().map(PathBuf::as_path)).collect();
-    if !output.is_dir() {
-        check_place(output, &inputs)?;
-    } else if output.canonicalize().ok() == input.canonicalize().ok() {
-        return Err(format!("{}: is the input and would be overwritten; give another output", output.display()).into());
-    }
-    for file in formats::beside(output)? {
-        check_place(&file, &inputs)?;
-    }
+    let format = Format::of(output)?;
+    let mut files = Files::new().reads_any([input]).reads(fields).reads(names);
+    let target = files.writes_any(output, "the output")?;
     let pool = super::pool()?;
     let read = formats::read(input)?;
     let (mut data, mut notices) = (read.content, read.notices);
@@ -59,10 +51,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if let Some(path) = names {
         data.names = names::read_file(path)?;
     }
-    let lost = formats::write_on(Team::new(&pool, Plan::default()), output, &data, Options { text: *text })?;
-    notices.iter().for_each(|notice| eprintln!("geo-adapt: note: {notice}"));
-    lost.iter().for_each(|notice| eprintln!("geo-adapt: note: {}: {notice}", output.display()));
-    super::print(describe(&data, Format::of(output)?).text());
+    let mut outputs = Outputs::new();
+    let lost = outputs.dataset(Team::new(&pool, Plan::default()), &target, &data, Options { text: *text })?;
+    outputs.commit()?;
+    notices.iter().for_each(|notice| crate::cli::note(notice));
+    lost.iter().for_each(|notice| crate::cli::note(format_args!("{}: {notice}", output.display())));
+    super::print(describe(&data, format).text())?;
     Ok(ExitCode::SUCCESS)
 }
 

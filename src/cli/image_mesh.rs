@@ -1,13 +1,14 @@
 //! `geo-adapt image-mesh`.
 use super::Outcome;
+use super::files::{Files, Outputs};
 use super::table::{Table, figure};
+use crate::geometry::Names;
 use crate::image::{self, Counts, Domain, Extracted, Limits, Wish};
-use crate::mesh::io;
 use crate::mesh::vector::volume6;
 use crate::tasks::{Backend, Pool, stage};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -78,7 +79,12 @@ struct Seconds {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
-    check(arguments)?;
+    let mut files = Files::new().reads_images([&arguments.image]);
+    let target = files.writes_mesh(&arguments.output, "-o")?;
+    let json = arguments.report.as_ref().map(|report| files.writes(report, "--report", &[])).transpose()?;
+    if arguments.isovalue.is_some_and(|value| !value.is_finite()) {
+        return Err("--isovalue: give a finite number".into());
+    }
     let name = arguments.image.display();
     let image = image::read(&arguments.image)?;
     let domain = Domain::new(&image, arguments.isovalue).map_err(|error| format!("{name}: {error}"))?;
@@ -121,42 +127,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
         threads,
         seconds,
     };
-    io::write_mesh(&arguments.output, &mesh)?;
-    if let Some(path) = &arguments.report {
-        let text = serde_json::to_vec_pretty(&report)?;
-        io::write_beside(path, |file| file.write_all(&text).and_then(|()| file.write_all(b"\n")))?;
-    }
+    let mut outputs = Outputs::new();
+    outputs.mesh(&target, &mesh, &Names::default())?;
+    outputs.json(json.as_ref(), &report)?;
+    outputs.commit()?;
     if !arguments.quiet {
-        super::print(&describe(&report));
+        super::print(&describe(&report))?;
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Refuses before the work what would fail after it.
-fn check(arguments: &Arguments) -> Result<(), String> {
-    let output = &arguments.output;
-    let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    if !["mesh", "meshb"].contains(&extension) {
-        return Err(format!("{}: the output must end in .mesh or .meshb", output.display()));
-    }
-    if arguments.report.as_ref() == Some(output) {
-        return Err(format!("{}: is also the mesh's file; give another --report", output.display()));
-    }
-    for written in [Some(output), arguments.report.as_ref()].into_iter().flatten() {
-        let folder = written.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        if !folder.is_dir() {
-            return Err(format!("{}: there is no folder {}; make it first", written.display(), folder.display()));
-        }
-        if let (Ok(a), Ok(b)) = (written.canonicalize(), arguments.image.canonicalize())
-            && a == b
-        {
-            return Err(format!("{}: is the image and would be overwritten; give another", written.display()));
-        }
-    }
-    if arguments.isovalue.is_some_and(|value| !value.is_finite()) {
-        return Err("--isovalue: give a finite number".into());
-    }
-    Ok(())
 }
 
 /// The text for people.

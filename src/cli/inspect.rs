@@ -10,7 +10,6 @@ use crate::mesh::vector::{Vec3, add, scale};
 use crate::metric::{Analytic, Field, Statistics, Sym3};
 use crate::tasks::{Plan, Team};
 use serde::Serialize;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -84,8 +83,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let worst_tet = worst(&mesh, &statistics);
     let inspection = Inspection { valid, validity, statistics, worst_tet, cad };
     let text = if arguments.json { serde_json::to_string_pretty(&inspection)? + "\n" } else { describe(&inspection) };
-    // A closed pipe (`| head`) is no error.
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    super::print(&text)?;
     Ok(if valid { ExitCode::SUCCESS } else { ExitCode::from(INVALID) })
 }
 
@@ -101,7 +99,7 @@ fn read(path: &Path) -> Result<TetMesh, Box<dyn std::error::Error>> {
 
 fn show(notices: &[String]) {
     for notice in notices {
-        eprintln!("geo-adapt: note: {notice}");
+        crate::cli::note(notice);
     }
 }
 

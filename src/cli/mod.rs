@@ -2,6 +2,7 @@
 use crate::tasks::Pool;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
+use terminal::{note, print, tell};
 
 mod adapt;
 mod bootstrap;
@@ -9,6 +10,7 @@ mod classify;
 mod convert;
 mod cycle;
 mod field;
+mod files;
 mod image_mesh;
 mod inspect;
 mod load;
@@ -17,6 +19,7 @@ mod model;
 mod names;
 mod openfoam;
 mod table;
+mod terminal;
 mod transfer;
 mod tune;
 mod view;
@@ -75,7 +78,11 @@ pub fn main() -> ExitCode {
     if let Some(code) = load::probe().or_else(bootstrap::domain::child) {
         return code;
     }
-    let outcome = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(said) => return usage(&said),
+    };
+    let outcome = match arguments.command {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
@@ -92,9 +99,21 @@ pub fn main() -> ExitCode {
         Command::View(arguments) => view::run(&arguments),
     };
     outcome.unwrap_or_else(|error| {
-        eprintln!("geo-adapt: error: {error}");
+        tell(format_args!("geo-adapt: error: {error}"));
         ExitCode::from(BAD_INPUT)
     })
+}
+
+/// Says what is wrong with the command line, or the help or version that it asks for.
+fn usage(said: &clap::Error) -> ExitCode {
+    let printed = said.print();
+    match terminal::check(printed) {
+        Err(error) if !said.use_stderr() => {
+            tell(format_args!("geo-adapt: error: {error}"));
+            ExitCode::from(BAD_INPUT)
+        }
+        _ => ExitCode::from(u8::try_from(said.exit_code()).unwrap_or(BAD_INPUT)),
+    }
 }
 
 /// How many cores this process may use.
@@ -105,11 +124,6 @@ fn cores() -> usize {
 /// A thread for each core.
 fn pool() -> Result<Pool, crate::tasks::Error> {
     Pool::new(cores())
-}
-
-/// Writes to standard output; a closed pipe (`| head`) is no error.
-fn print(text: &str) {
-    let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
 }
 
 /// Parses a positive number.

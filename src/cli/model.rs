@@ -22,7 +22,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let model = load::model(&arguments.file)?;
     let text =
         if arguments.json { serde_json::to_string_pretty(&Listing::new(&model))? + "\n" } else { describe(&model) };
-    super::print(&text);
+    super::print(&text)?;
     Ok(ExitCode::SUCCESS)
 }
 

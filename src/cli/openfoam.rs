@@ -13,12 +13,18 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let outcome = drive::drive(&arguments.case, &mut |line| print(&format!("{line}\n")))?;
+    let mut printed = Ok(());
+    let outcome = drive::drive(&arguments.case, &mut |line| {
+        // The solver goes on: what it has done counts more than what can be said of it.
+        let done = print(&format!("{line}\n"));
+        printed = std::mem::replace(&mut printed, Ok(())).and(done);
+    })?;
+    printed?;
     let ended = if outcome.still { "stands still" } else { "has used up its steps" };
     let drive::Outcome { steps, repeated, first_order, averaged, .. } = outcome;
     let rough = if first_order > 0 { format!(", {first_order} cells of first order") } else { String::new() };
     let mean =
         if averaged > 0 { format!("; it swings about: the mean of {averaged} looks counts") } else { String::new() };
-    print(&format!("{ended} after {steps} steps, {repeated} blocks repeated{rough}{mean}\n"));
+    print(&format!("{ended} after {steps} steps, {repeated} blocks repeated{rough}{mean}\n"))?;
     Ok(ExitCode::SUCCESS)
 }

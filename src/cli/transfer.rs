@@ -1,9 +1,10 @@
 //! `geo-adapt transfer`.
 use super::Outcome;
+use super::files::{Files, Outputs};
 use super::metric::common::{self, Failure, OutputArgument, RunArguments};
 use super::table::{Table, figure};
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::io::{self, Solution, SolutionField};
+use crate::mesh::io::{Solution, SolutionField};
 use crate::mesh::locate::Locator;
 use crate::metric::{Field, Sym3, transfer as of_metric};
 use crate::tasks::{GRAIN, Plan, Team, stage};
@@ -102,11 +103,10 @@ struct Seconds {
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     let Arguments { run, to, .. } = arguments;
-    let inputs = [&arguments.old_mesh, &arguments.old_fields, &arguments.new_mesh].map(PathBuf::as_path);
-    to.check(&inputs)?;
-    if let Some(report) = &arguments.report {
-        common::check_output(report, &["json"], &inputs)?;
-    }
+    let mut files =
+        Files::new().reads_meshes([&arguments.old_mesh, &arguments.new_mesh]).reads([&arguments.old_fields]);
+    let target = to.target(&mut files)?;
+    let json = common::report(&mut files, arguments.report.as_ref())?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let old = common::mesh(run, team, &arguments.old_mesh)?;
@@ -132,7 +132,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     let transferred = start.elapsed().as_secs_f64();
     stage("transferred");
-    io::write_solution_on(team, &to.output, &solution(team, &fields, width, &found))?;
+    let mut outputs = Outputs::new();
+    outputs.solution(team, &target, &solution(team, &fields, width, &found))?;
     stage("written");
     let (old_volume, before) = measure(team, locator.mesh(), width, &rows);
     let (new_volume, after) = measure(team, &new, width, &found);
@@ -158,10 +159,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         values: components(&fields).enumerate().map(value).collect(),
         seconds: Seconds { read, transfer: transferred - read, total: start.elapsed().as_secs_f64() },
     };
-    if let Some(path) = &arguments.report {
-        common::write_json(path, &report)?;
-    }
-    run.print(&report.text());
+    outputs.json(json.as_ref(), &report)?;
+    outputs.commit()?;
+    run.print(&report.text())?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,14 +1,14 @@
 //! `geo-adapt tune`: which back-end, strategy and grain are the fastest, on the user's case and machine.
 use super::Outcome;
 use super::adapt::input::{Input, InputArguments};
-use super::metric::common::check_output;
+use super::files::Outputs;
+use super::metric::common::report;
 use crate::adapt::{self, Grains, Kind, Options, Scheduler, Silent};
-use crate::mesh::io;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team};
 use clap::ValueEnum;
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// The operations whose tasks have a grain worth measuring.
@@ -82,12 +82,7 @@ struct Bench<'b> {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    if let Some(report) = &arguments.report {
-        let given = &arguments.input;
-        let inputs = [Some(&given.mesh), given.cad.as_ref(), given.field.metric.as_ref()];
-        let inputs: Vec<&Path> = inputs.into_iter().flatten().chain(&given.field.field).map(PathBuf::as_path).collect();
-        check_output(report, &["json"], &inputs)?;
-    }
+    let json = report(&mut arguments.input.files(), arguments.report.as_ref())?;
     let pool = Pool::new(arguments.threads.map_or_else(super::cores, usize::from))?;
     let backends = match &arguments.backends[..] {
         [] => Backend::ALL.into_iter().filter(|backend| backend.is_built()).collect(),
@@ -99,7 +94,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let given = arguments.input.read(team, &mut notices)?;
     let input = arguments.input.prepare(team, given, None, &mut notices)?;
     for notice in notices.iter().filter(|_| !arguments.quiet) {
-        eprintln!("geo-adapt: note: {notice}");
+        crate::cli::note(notice);
     }
     let bench = Bench { arguments, input: &input, pool: &pool };
     let reference = bench.measure(Scheduler::Sequential, Plan::default(), None)?;
@@ -113,12 +108,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
             }
         }
     }
-    super::print(&text(&bench, &reference, &speculative, &deterministic));
-    if let Some(path) = &arguments.report {
-        let all: Vec<_> = [reference].into_iter().chain(speculative).chain(deterministic).collect();
-        let text = serde_json::to_vec_pretty(&all)?;
-        io::write_beside(path, |file| file.write_all(&text).and_then(|()| file.write_all(b"\n")))?;
-    }
+    let tables = text(&bench, &reference, &speculative, &deterministic);
+    let all: Vec<_> = [reference].into_iter().chain(speculative).chain(deterministic).collect();
+    let mut outputs = Outputs::new();
+    outputs.json(json.as_ref(), &all)?;
+    outputs.commit()?;
+    super::print(&tables)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -142,7 +137,8 @@ impl Bench<'_> {
         }
         if !self.arguments.quiet {
             let grain = grain.map(|grain| format!(", {grain} items a task")).unwrap_or_default();
-            eprintln!("geo-adapt: {} {}{grain}: {:.2} s", named(scheduler), best.name(), best.total());
+            let (scheduler, name, seconds) = (named(scheduler), best.name(), best.total());
+            super::tell(format_args!("geo-adapt: {scheduler} {name}{grain}: {seconds:.2} s"));
         }
         Ok(best)
     }

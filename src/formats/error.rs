@@ -1,5 +1,5 @@
 //! Errors of files, shortly.
-use crate::mesh::io::Error;
+use crate::mesh::io::{Error, read_file};
 use std::path::Path;
 
 /// Wrong content at a place of a file.
@@ -14,5 +14,5 @@ pub(super) fn short(name: &str) -> String {
 
 /// The bytes of a file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    std::fs::read(path).map_err(|source| Error::System { path: path.to_owned(), source })
+    read_file(path)
 }

@@ -1,7 +1,7 @@
 //! libMeshb's meshes and solutions, with the names beside: the formats of [`crate::mesh::io`].
 use super::{Dataset, NamedField, error};
 use crate::geometry::names;
-use crate::mesh::io::{self, Error, FieldKind, Read, Solution};
+use crate::mesh::io::{self, Batch, Error, FieldKind, Read, Solution};
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 
@@ -56,17 +56,17 @@ fn named(path: &Path, solution: Solution) -> Result<Vec<NamedField>, Error> {
 }
 
 /// Writes a mesh; its fields and names beside it.
-pub(super) fn write(team: Team<'_>, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
-    io::write_mesh(path, &data.mesh)?;
+pub(super) fn write(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
+    io::add_mesh(batch, path, &data.mesh)?;
     let mut notices = Vec::new();
     let beside = solution_path(path);
     if !data.fields.is_empty() {
-        io::write_solution_on(team, &beside, &data.solution())?;
+        io::add_solution(batch, team, &beside, &data.solution())?;
         notices.push(format!("the fields are in {}", beside.display()));
     } else if beside.exists() {
         notices.push(format!("{} was there before and is not of this mesh; remove it", beside.display()));
     }
-    names::write(path, &data.names, &field_names(data))?;
+    names::add(batch, path, &data.names, &field_names(data))?;
     if !(data.names.is_empty() && data.fields.is_empty()) {
         notices.push(format!("the names are in {}", names::beside(path).display()));
     }
@@ -74,10 +74,15 @@ pub(super) fn write(team: Team<'_>, path: &Path, data: &Dataset) -> Result<Vec<S
 }
 
 /// Writes the fields alone, and their names beside them; names of references that are there already stay.
-pub(super) fn write_solution(team: Team<'_>, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
-    io::write_solution_on(team, path, &data.solution())?;
+pub(super) fn write_solution(
+    batch: &mut Batch,
+    team: Team<'_>,
+    path: &Path,
+    data: &Dataset,
+) -> Result<Vec<String>, Error> {
+    io::add_solution(batch, team, path, &data.solution())?;
     let there = names::read(path)?;
-    names::write(path, if there.is_empty() { &data.names } else { &there }, &field_names(data))?;
+    names::add(batch, path, if there.is_empty() { &data.names } else { &there }, &field_names(data))?;
     Ok(vec![format!("the names are in {}", names::beside(path).display())])
 }
 

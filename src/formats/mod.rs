@@ -27,7 +27,7 @@ pub use format::Format;
 pub use msh::read_msh;
 
 use crate::geometry::names;
-use crate::mesh::io::{Error, Read};
+use crate::mesh::io::{Batch, Error, Read};
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 
@@ -85,15 +85,29 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
     Ok(read)
 }
 
-/// The files beside a mesh that belong to it in its format, whether they are there or not.
+/// The files that [`read`] reads: the mesh and what belongs to it, whether it is there or not.
+pub fn read_files(path: &Path) -> Vec<PathBuf> {
+    match Format::of(path) {
+        Ok(Format::Foam) => foam::read_files(path),
+        Ok(Format::Ugrid(_)) => vec![path.to_owned(), ugrid::names_path(path)],
+        // What has no ending that is known may be a mesh of libMeshb.
+        Ok(Format::Libmeshb) | Err(_) => {
+            vec![path.to_owned(), path.with_extension("solb"), path.with_extension("sol"), names::beside(path)]
+        }
+        Ok(_) => vec![path.to_owned()],
+    }
+}
+
+/// The files that [`write()`] may replace. (The names beside a solution are none of these: the ones that are there are kept.)
 ///
 /// # Errors
 /// When the extension is none that is known.
-pub fn beside(path: &Path) -> Result<Vec<PathBuf>, Error> {
+pub fn written_files(path: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(match Format::of(path)? {
-        Format::Libmeshb => vec![libmeshb::solution_path(path), names::beside(path)],
-        Format::Ugrid(_) => vec![ugrid::names_path(path)],
-        _ => Vec::new(),
+        Format::Foam => foam::written_files(path),
+        Format::Libmeshb => vec![path.to_owned(), libmeshb::solution_path(path), names::beside(path)],
+        Format::Ugrid(_) => vec![path.to_owned(), ugrid::names_path(path)],
+        _ => vec![path.to_owned()],
     })
 }
 
@@ -128,19 +142,36 @@ pub fn write(path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
 /// # Errors
 /// As there.
 pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, options: Options) -> Result<Vec<String>, Error> {
+    let mut batch = Batch::new();
+    let notices = add(&mut batch, team, path, data, options)?;
+    batch.commit()?;
+    Ok(notices)
+}
+
+/// Adds what [`write_on`] writes to files that belong together; the mesh is the main one.
+///
+/// # Errors
+/// As there.
+pub fn add(
+    batch: &mut Batch,
+    team: Team<'_>,
+    path: &Path,
+    data: &Dataset,
+    options: Options,
+) -> Result<Vec<String>, Error> {
     let format = Format::of(path)?;
     check::check(path, data)?;
     let mut notices = unsupported::notices(format, data);
     notices.extend(match format {
-        Format::Libmeshb => libmeshb::write(team, path, data)?,
-        Format::Su2 => su2::write(path, data)?,
-        Format::Vtu => vtu::write(team, path, data, options.text)?,
-        Format::Foam => foam::write_on(team, path, data, options.text)?,
-        Format::Msh { is_new } => msh::write(path, data, is_new, options.text)?,
-        Format::Ugrid(encoding) => ugrid::write(path, data, encoding)?,
-        Format::Solution => libmeshb::write_solution(team, path, data)?,
-        Format::Table => columns::write_text(path, data)?,
-        Format::Restart => columns::write_binary(path, data)?,
+        Format::Libmeshb => libmeshb::write(batch, team, path, data)?,
+        Format::Su2 => su2::write(batch, path, data)?,
+        Format::Vtu => vtu::write(batch, team, path, data, options.text)?,
+        Format::Foam => foam::add(batch, team, path, data, options.text)?,
+        Format::Msh { is_new } => msh::write(batch, path, data, is_new, options.text)?,
+        Format::Ugrid(encoding) => ugrid::write(batch, path, data, encoding)?,
+        Format::Solution => libmeshb::write_solution(batch, team, path, data)?,
+        Format::Table => columns::write_text(batch, path, data)?,
+        Format::Restart => columns::write_binary(batch, path, data)?,
     });
     Ok(notices)
 }

@@ -6,7 +6,7 @@ use super::text::Text;
 use super::{Dataset, markers};
 use crate::geometry::Label;
 use crate::mesh::TetMesh;
-use crate::mesh::io::{Error, Read, write_beside};
+use crate::mesh::io::{Batch, Error, Read};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::Path;
@@ -162,10 +162,10 @@ impl Reader<'_> {
 }
 
 /// Writes tetrahedra, points and markers.
-pub(super) fn write(path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
+pub(super) fn write(batch: &mut Batch, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
     let found = data.mesh.triangles.refs.iter().copied().collect();
     let (tags, notices) = markers::tags(&found, &data.names.triangles);
-    write_beside(path, |to| emit(to, &data.mesh, &tags))?;
+    batch.add_main(path, |to| emit(to, &data.mesh, &tags))?;
     Ok(notices)
 }
 

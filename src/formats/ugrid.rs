@@ -5,7 +5,7 @@ use super::scan::Scan;
 use super::text::Text;
 use super::{Dataset, error};
 use crate::geometry::{Label, Names};
-use crate::mesh::io::{Error, Read, write_beside};
+use crate::mesh::io::{Batch, Error, Read};
 use crate::mesh::{Elements, TetMesh};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
@@ -207,7 +207,7 @@ pub(super) fn read_beside(path: &Path, names: &mut Names) -> Result<(), Error> {
 }
 
 /// Writes a grid, and its names beside it where it has some. Boundary conditions that are there already stay; new boundaries have 0.
-pub(super) fn write(path: &Path, data: &Dataset, encoding: Encoding) -> Result<Vec<String>, Error> {
+pub(super) fn write(batch: &mut Batch, path: &Path, data: &Dataset, encoding: Encoding) -> Result<Vec<String>, Error> {
     let mesh = &data.mesh;
     if encoding != Encoding::Text
         && mesh.vertices.len().max(mesh.tets.len()) > i32::MAX as usize
@@ -215,7 +215,7 @@ pub(super) fn write(path: &Path, data: &Dataset, encoding: Encoding) -> Result<V
     {
         return Err(error::at(path, "counts", "they do not fit 32 bits; write .lb8l.ugrid"));
     }
-    write_beside(path, |to| emit(to, mesh, encoding))?;
+    batch.add_main(path, |to| emit(to, mesh, encoding))?;
     let references: BTreeSet<i32> = mesh.triangles.refs.iter().copied().collect();
     let name = |reference: &i32| data.names.triangles.get(reference).and_then(|label| label.name.clone());
     let beside = names_path(path);
@@ -230,7 +230,7 @@ pub(super) fn write(path: &Path, data: &Dataset, encoding: Encoding) -> Result<V
     } else {
         BTreeMap::new()
     };
-    write_beside(&beside, |to| {
+    batch.add(&beside, |to| {
         writeln!(to, "{}", references.len())?;
         for reference in &references {
             let name = name(reference).unwrap_or_default();

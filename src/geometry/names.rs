@@ -3,10 +3,9 @@
 //! MESH.names.json (or MESH.meshb.names.json, which is looked for first) says for triangles, edges and tetrahedra what each reference is
 //! called, and its colour; `fields` are the names of the fields of the solution file beside:
 //! `{"triangles": {"3": {"name": "inlet", "colour": "#FF0000"}}, "tetrahedra": {"1": {"name": "fluid"}}, "fields": ["Mach"]}`.
-use crate::mesh::io::{Error, write_beside};
+use crate::mesh::io::{self, Batch, Error};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// What a CAD program calls a part, and how it paints it.
@@ -58,9 +57,12 @@ fn colour<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error
     }
 }
 
-/// The names file that is written for a mesh or model.
+/// The names file of a mesh or model, whether it is there or not: the one that is read, and so the one that is written.
 pub fn beside(of: &Path) -> PathBuf {
-    of.with_extension("names.json")
+    let mut long = of.as_os_str().to_owned();
+    long.push(".names.json");
+    let long = PathBuf::from(long);
+    if long.exists() { long } else { of.with_extension("names.json") }
 }
 
 /// The names of the fields in a names file.
@@ -93,8 +95,7 @@ pub fn read(of: &Path) -> Result<Names, Error> {
 /// # Errors
 /// [`Error::System`] when the file cannot be read, [`Error::Content`] when it holds something else.
 pub fn read_file(path: &Path) -> Result<Names, Error> {
-    let bytes = std::fs::read(path).map_err(|source| Error::System { path: path.into(), source })?;
-    parse(path, &bytes)
+    parse(path, &io::read_file(path)?)
 }
 
 /// Reads the names of the fields of a solution, from the names file beside it; none where there is no such file.
@@ -112,11 +113,21 @@ pub fn read_fields(of: &Path) -> Result<Vec<String>, Error> {
 /// # Errors
 /// When the file cannot be written.
 pub fn write(of: &Path, names: &Names, fields: &[String]) -> Result<(), Error> {
+    let mut batch = Batch::new();
+    add(&mut batch, of, names, fields)?;
+    batch.commit()
+}
+
+/// Adds the names file, as [`write`] writes it, to files that belong together.
+///
+/// # Errors
+/// As there.
+pub fn add(batch: &mut Batch, of: &Path, names: &Names, fields: &[String]) -> Result<(), Error> {
     let path = beside(of);
     if names.is_empty() && fields.is_empty() && !path.exists() {
         return Ok(());
     }
-    write_beside(&path, |file| {
+    batch.add(&path, |file| {
         serde_json::to_writer_pretty(&mut *file, &File { names, fields })?;
         file.write_all(b"\n")
     })
@@ -124,16 +135,11 @@ pub fn write(of: &Path, names: &Names, fields: &[String]) -> Result<(), Error> {
 
 /// The names file beside a mesh, and its bytes.
 fn bytes_beside(of: &Path) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
-    let mut long = of.as_os_str().to_owned();
-    long.push(".names.json");
-    for path in [PathBuf::from(long), beside(of)] {
-        match std::fs::read(&path) {
-            Ok(bytes) => return Ok(Some((path, bytes))),
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            Err(source) => return Err(Error::System { path, source }),
-        }
+    let path = beside(of);
+    match path.try_exists() {
+        Ok(false) => Ok(None),
+        _ => io::read_file(&path).map(|bytes| Some((path, bytes))),
     }
-    Ok(None)
 }
 
 fn parse<'b, T: Deserialize<'b>>(path: &Path, bytes: &'b [u8]) -> Result<T, Error> {

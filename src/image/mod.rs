@@ -24,7 +24,7 @@ pub use domain::{Domain, DomainError};
 pub use extract::{Extracted, RadiusEdge, Surface};
 pub use frame::Frame;
 pub use list::Counts;
-pub use nrrd::{Encoding, Image, Kind, read, write};
+pub use nrrd::{Encoding, Image, Kind, data_file, read, write};
 pub use refine::mesh;
 pub use rules::{Error, Limits, Wish};
 pub use smoothed::{Smoothed, borders};

@@ -1,6 +1,6 @@
 //! Metric fields at the vertices of a mesh: files, complexity.
 use super::{Error, Sym3};
-use crate::mesh::io::{self, FieldKind, Read, Solution, SolutionField};
+use crate::mesh::io::{self, Batch, FieldKind, Read, Solution, SolutionField};
 use crate::mesh::{TetMesh, vector::volume6};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
@@ -49,7 +49,35 @@ impl Field {
         Self::write_each(team, path, logs.len(), |v| logs[v].exp())
     }
 
+    /// Adds M = exp of these logarithms, as [`Field::write_logs`] writes it, to files that belong together.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn add_logs(batch: &mut Batch, team: Team<'_>, path: &Path, logs: &[Sym3]) -> Result<(), Error> {
+        Self::add_each(batch, team, path, logs.len(), |v| logs[v].exp())
+    }
+
+    /// Adds .sol or .solb, as [`Field::write`] writes it, to files that belong together.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn add(&self, batch: &mut Batch, path: &Path) -> Result<(), Error> {
+        Self::add_each(batch, Team::alone(), path, self.metrics.len(), |v| self.metrics[v])
+    }
+
     fn write_each(
+        team: Team<'_>,
+        path: &Path,
+        count: usize,
+        metric: impl Fn(usize) -> Sym3 + Sync,
+    ) -> Result<(), Error> {
+        let mut batch = Batch::new();
+        Self::add_each(&mut batch, team, path, count, metric)?;
+        Ok(batch.commit()?)
+    }
+
+    fn add_each(
+        batch: &mut Batch,
         team: Team<'_>,
         path: &Path,
         count: usize,
@@ -62,7 +90,7 @@ impl Field {
             rows.iter_mut().zip(start / kind.values()..).for_each(|(row, v)| *row = metric(v).0);
         });
         let solution = Solution { vertices: count, fields: vec![SolutionField { kind, values }] };
-        Ok(io::write_solution_on(team, path, &solution)?)
+        Ok(io::add_solution(batch, team, path, &solution)?)
     }
 }
 

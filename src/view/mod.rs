@@ -18,6 +18,6 @@ mod surface;
 mod values;
 
 pub(crate) use pack::base64;
-pub use page::write_page;
+pub use page::{add_page, write_page};
 pub use scene::{Given, Quality, Scene};
 pub use values::ScalarField;

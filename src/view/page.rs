@@ -3,7 +3,7 @@ use super::colour::{self, Rgb};
 use super::pack::{Entry, Kind, Packer};
 use super::picture::{Colour, Options};
 use super::scene::{Reference, Scene};
-use crate::mesh::io::{self, Error};
+use crate::mesh::io::{Batch, Error};
 use crate::mesh::vector::{Vec3, sub};
 use crate::tasks::{GRAIN, Team};
 use serde::Serialize;
@@ -83,6 +83,22 @@ struct Maps {
 /// # Errors
 /// [`Error::System`] when the file cannot be written.
 pub fn write_page(team: Team<'_>, scene: &Scene<'_>, options: &Options, path: &Path) -> Result<(), Error> {
+    let mut batch = Batch::new();
+    add_page(&mut batch, team, scene, options, path)?;
+    batch.commit()
+}
+
+/// Adds the page, as [`write_page`] writes it, to files that belong together.
+///
+/// # Errors
+/// As there.
+pub fn add_page(
+    batch: &mut Batch,
+    team: Team<'_>,
+    scene: &Scene<'_>,
+    options: &Options,
+    path: &Path,
+) -> Result<(), Error> {
     let packer = packed(team, scene);
     let given = &scene.given;
     let head = Head {
@@ -106,7 +122,7 @@ pub fn write_page(team: Team<'_>, scene: &Scene<'_>, options: &Options, path: &P
     // A "<" in a string could end the element that it stands in.
     let head = serde_json::to_string(&head).unwrap_or_default().replace('<', "\\u003c");
     let blocks = packer.blocks();
-    io::write_beside(path, |file| {
+    batch.add(path, |file| {
         let mut rest = FRAME;
         while let Some((before, after)) = rest.split_once("{{") {
             let (name, behind) = after.split_once("}}").unwrap_or((after, ""));

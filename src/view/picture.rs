@@ -8,7 +8,7 @@ use super::scene::{Reference, Scene};
 use super::sheet::{PAPER, Sheet};
 use super::values::ScalarField;
 use crate::mesh::adjacency::FACES;
-use crate::mesh::io::{self, Error};
+use crate::mesh::io::{Batch, Error};
 use crate::mesh::vector::{Vec3, area2, distance, dot, scale, unit};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
@@ -56,8 +56,24 @@ pub struct Options {
 /// # Errors
 /// [`Error::System`] when the file cannot be written.
 pub fn write_picture(team: Team<'_>, scene: &Scene<'_>, options: &Options, path: &Path) -> Result<(), Error> {
+    let mut batch = Batch::new();
+    add_picture(&mut batch, team, scene, options, path)?;
+    batch.commit()
+}
+
+/// Adds the picture, as [`write_picture`] writes it, to files that belong together.
+///
+/// # Errors
+/// As there.
+pub fn add_picture(
+    batch: &mut Batch,
+    team: Team<'_>,
+    scene: &Scene<'_>,
+    options: &Options,
+    path: &Path,
+) -> Result<(), Error> {
     let image = draw(team, scene, options);
-    io::write_beside(path, |file| {
+    batch.add(path, |file| {
         let mut encoder = png::Encoder::new(file, image.width as u32, image.height as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);

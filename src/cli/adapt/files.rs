@@ -1,47 +1,63 @@
 //! The files of a run: checked before it, written after it.
-use super::Arguments;
-use super::report::{Asked, Report};
-use crate::cli::metric::common::{check_output, check_place};
-use crate::geometry::names;
-use crate::mesh::io;
+use super::report::Report;
+use crate::cli::files::{Files, Outputs, Target};
+use crate::geometry::Names;
+use crate::mesh::TetMesh;
 use crate::metric::Field;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Refuses before the work what would fail after it: outputs that cannot be written, or that are inputs.
-pub fn check(arguments: &Arguments) -> Result<(), String> {
-    let output = &arguments.output;
-    let metric = arguments.asked(0).metric_path();
-    if let Some(report) = arguments.report.as_ref().filter(|&report| report == output || *report == metric) {
-        return Err(format!("{}: is also the mesh's or its metric's file; give another --report", report.display()));
-    }
-    let given = &arguments.input;
-    let inputs = [Some(&given.mesh), given.cad.as_ref(), given.field.metric.as_ref()];
-    let inputs: Vec<&Path> = inputs.into_iter().flatten().chain(&given.field.field).map(PathBuf::as_path).collect();
-    check_output(output, &["mesh", "meshb"], &inputs)?;
-    check_output(&metric, &["solb"], &inputs)?;
-    arguments.report.as_ref().map_or(Ok(()), |report| check_place(report, &inputs))
+/// Where a run writes: the mesh with its names, its metric beside it, and the report, where it is asked for.
+pub struct Targets {
+    mesh: Target,
+    metric: Target,
+    report: Option<Target>,
+    /// A model that was made on the way, and where it goes.
+    model: Option<(PathBuf, Target)>,
 }
 
-/// Writes mesh, metric and, where it is asked for, the report; `times` since the start: when the work began, when it ended, now.
-pub fn write(
-    asked: &Asked,
-    json: Option<&Path>,
-    mut report: Report,
-    times: [Duration; 3],
-) -> Result<Report, Box<dyn std::error::Error>> {
-    io::write_mesh(&asked.output, &report.mesh)?;
-    names::write(&asked.output, &report.names, &[])?;
-    let field = Field { metrics: std::mem::take(&mut report.metrics) };
-    field.write(&asked.metric_path())?;
-    report.metrics = field.metrics;
-    let [prepared, finished, measured] = times.map(|time| time.as_secs_f64());
-    report.seconds.read_and_classify = prepared;
-    report.seconds.adapt = finished - prepared;
-    report.seconds.total = measured;
-    if let Some(path) = json {
-        let text = serde_json::to_vec_pretty(&report)?;
-        io::write_beside(path, |file| file.write_all(&text).and_then(|()| file.write_all(b"\n")))?;
+impl Targets {
+    /// Refuses before the work what would fail after it; `endings` of the report.
+    pub fn of(files: &mut Files, output: &Path, report: Option<&PathBuf>, endings: &[&str]) -> Result<Self, String> {
+        let mesh = files.writes_mesh(output, "-o")?;
+        let metric = files.writes(&super::report::metric_path(output), "the metric beside -o", &[])?;
+        let report = report.map(|report| files.writes(report, "--report", endings)).transpose()?;
+        Ok(Self { mesh, metric, report, model: None })
     }
-    Ok(report)
+
+    /// The model that was made on the way belongs to the result too.
+    pub fn with_model(&mut self, made: PathBuf, to: Target) {
+        self.model = Some((made, to));
+    }
+
+    /// Writes a mesh without a metric.
+    pub fn write_mesh(&self, mesh: &TetMesh, names: &Names) -> Result<(), Box<dyn std::error::Error>> {
+        let mut outputs = self.outputs()?;
+        outputs.mesh(&self.mesh, mesh, names)?;
+        outputs.commit()
+    }
+
+    fn outputs(&self) -> Result<Outputs, Box<dyn std::error::Error>> {
+        let mut outputs = Outputs::new();
+        if let Some((made, to)) = &self.model {
+            outputs.copy(made, to)?;
+        }
+        Ok(outputs)
+    }
+
+    /// Writes mesh, metric and report together; `times` since the start: when the work began, when it ended, now.
+    pub fn write(&self, mut report: Report, times: [Duration; 3]) -> Result<Report, Box<dyn std::error::Error>> {
+        let mut outputs = self.outputs()?;
+        outputs.mesh(&self.mesh, &report.mesh, &report.names)?;
+        let field = Field { metrics: std::mem::take(&mut report.metrics) };
+        outputs.metric(&self.metric, &field)?;
+        report.metrics = field.metrics;
+        let [prepared, finished, measured] = times.map(|time| time.as_secs_f64());
+        report.seconds.read_and_classify = prepared;
+        report.seconds.adapt = finished - prepared;
+        report.seconds.total = measured;
+        outputs.json(self.report.as_ref(), &report)?;
+        outputs.commit()?;
+        Ok(report)
+    }
 }

@@ -1,4 +1,5 @@
 //! What a run begins with: the mesh, where it lies on its model, and the metric.
+use super::super::files::Files;
 use super::super::load;
 use super::super::names::on_mesh;
 use super::field::FieldArguments;
@@ -81,6 +82,12 @@ pub struct Input {
 type Error = Box<dyn std::error::Error>;
 
 impl InputArguments {
+    /// The files that are read.
+    pub fn files(&self) -> Files {
+        let Self { mesh, cad, field, .. } = self;
+        Files::new().reads_meshes([mesh]).reads_models(cad).reads(&field.metric).reads(&field.field)
+    }
+
     /// Reads the mesh and, if it comes from a file, its metric. What the user should know is added to `notices`.
     pub fn read(&self, team: Team<'_>, notices: &mut Vec<String>) -> Result<Given, Error> {
         let read = io::read_mesh_on(team, &self.mesh)?;

@@ -10,6 +10,7 @@ use super::Outcome;
 use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
 use crate::metric::Field;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
+use files::Targets;
 use input::{Given, Input, InputArguments};
 use progress::Progress;
 use report::{Asked, Report};
@@ -88,7 +89,8 @@ fn chord(text: &str) -> Result<f64, String> {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
-    files::check(arguments)?;
+    let report = arguments.report.as_ref();
+    let targets = Targets::of(&mut arguments.input.files(), &arguments.output, report, &[])?;
     if arguments.cycles > 1 && !arguments.input.field.field.is_empty() {
         return Err("--cycles: the field of --field lies on the first mesh alone; give one cycle, or a --metric".into());
     }
@@ -107,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let start = start.take().unwrap_or_else(Instant::now);
         let input = arguments.input.prepare(team, given, cad.take(), &mut notices)?;
         for notice in notices.drain(..).filter(|_| !arguments.quiet) {
-            eprintln!("geo-adapt: note: {notice}");
+            crate::cli::note(notice);
         }
         let prepared = start.elapsed();
         let progress = Progress::new(!arguments.quiet, stop.clone());
@@ -120,14 +122,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let finished = start.elapsed();
         let report = Report::new(team, &asked, &input, adapted);
         stage("report");
-        let json = arguments.report.as_deref();
-        let mut report = files::write(&asked, json, report, [prepared, finished, start.elapsed()])?;
+        let mut report = targets.write(report, [prepared, finished, start.elapsed()])?;
         stage("written");
         if !arguments.quiet {
             if arguments.cycles > 1 {
-                super::print(&format!("cycle {cycle} of {}\n", arguments.cycles));
+                super::print(&format!("cycle {cycle} of {}\n", arguments.cycles))?;
             }
-            super::print(&report.text());
+            super::print(&report.text())?;
         }
         if progress.interrupted() {
             return Ok(ExitCode::from(INTERRUPTED));

@@ -16,7 +16,7 @@ pub fn stop_on_interrupt() -> Stop {
         if seen.swap(true, Relaxed) {
             std::process::exit(i32::from(super::INTERRUPTED));
         }
-        eprintln!("\ngeo-adapt: interrupted: ends after this sweep and writes the mesh (again: ends at once)");
+        crate::cli::tell("\ngeo-adapt: interrupted: ends after this sweep and writes the mesh (again: ends at once)");
     };
     // Where no handler can be set an interrupt ends the program, and the inputs are untouched all the same.
     let _ = ctrlc::set_handler(handler);
@@ -68,7 +68,7 @@ impl State {
     fn leave(&self) {
         if !self.bar.is_hidden() {
             self.bar.abandon();
-            eprintln!();
+            crate::cli::tell("");
         }
     }
 
@@ -114,14 +114,14 @@ impl Observer for Progress {
         state.bar.set_message(text);
         if std::env::var_os("GEO_ADAPT_TRACE").is_some() {
             let ms = state.began.elapsed().as_secs_f64() * 1e3;
-            eprintln!(
+            crate::cli::tell(format_args!(
                 "{:2} {:8} {ms:7.1} ms {:8} {:7} {:?}",
                 state.pass.unwrap_or(0),
                 format!("{:?}", state.kind),
                 counts.attempts,
                 counts.done,
                 counts.refused
-            );
+            ));
         }
     }
 

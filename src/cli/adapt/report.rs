@@ -13,7 +13,7 @@ use crate::metric::statistics::Statistics;
 use crate::tasks::Team;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Wall times, s.
 #[derive(Default, Serialize)]
@@ -51,11 +51,9 @@ pub struct Asked {
     pub complexity_wanted: Option<f64>,
 }
 
-impl Asked {
-    /// The metric of the adapted mesh goes beside it.
-    pub fn metric_path(&self) -> PathBuf {
-        self.output.with_extension("solb")
-    }
+/// The metric of an adapted mesh goes beside it.
+pub fn metric_path(mesh: &Path) -> PathBuf {
+    mesh.with_extension("solb")
 }
 
 /// The report of a run.
@@ -177,7 +175,7 @@ impl Report {
                 self.asked.threads
             ),
         );
-        let metric = self.asked.metric_path();
+        let metric = metric_path(&self.asked.output);
         table.row("written", format_args!("{}, {}", self.asked.output.display(), metric.display()));
         table.text().to_owned()
     }

@@ -67,25 +67,19 @@ impl Axis {
     const ALL: [(Self, &'static str); 3] = [(Self::X, "x"), (Self::Y, "y"), (Self::Z, "z")];
 }
 
-/// The file that the domain of a mesh is written to.
-pub fn path(output: &Path) -> PathBuf {
-    output.with_extension("brep")
-}
-
-/// Builds the domain around `body` and writes it, with the names of its faces, beside `output`. Returns its file.
+/// Builds the domain around `body` and writes it to `file`, with the names of its faces beside. Returns the file.
 ///
 /// # Errors
 /// When the body has no solid or no plane side where the symmetry is, reaches beyond the far field, or cannot be subtracted.
-pub fn build(body: &Path, spec: &Spec, symmetry: Option<Axis>, output: &Path) -> Result<PathBuf, String> {
-    let file = path(output);
+pub fn build(body: &Path, spec: &Spec, symmetry: Option<Axis>, file: &Path) -> Result<PathBuf, String> {
     let axis = Axis::ALL.iter().find(|(axis, _)| Some(*axis) == symmetry).map_or("-", |(_, name)| name);
     let program = std::env::current_exe().map_err(|error| format!("geo-adapt cannot start itself: {error}"))?;
     let mut command = Command::new(program);
-    command.arg(CHILD).arg(body).arg(&file).args([&spec.text, axis]).stdin(Stdio::null()).stdout(Stdio::null());
+    command.arg(CHILD).arg(body).arg(file).args([&spec.text, axis]).stdin(Stdio::null()).stdout(Stdio::null());
     let ended =
         command.stderr(Stdio::piped()).output().map_err(|error| format!("geo-adapt cannot start itself: {error}"))?;
     if ended.status.success() {
-        return Ok(file);
+        return Ok(file.to_owned());
     }
     let told = String::from_utf8_lossy(&ended.stderr);
     match ended.status.code() {
@@ -108,7 +102,7 @@ pub fn child() -> Option<ExitCode> {
     Some(match write(&body, &file, &spec, &axis) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{error}");
+            crate::cli::tell(error);
             ExitCode::from(crate::cli::BAD_INPUT)
         }
     })
@@ -121,12 +115,7 @@ fn write(body: &Path, file: &Path, spec: &str, axis: &str) -> Result<(), Box<dyn
     let named = |error: String| format!("{}: {error}", body.display());
     let far = spec.parse::<Spec>().and_then(|spec| place(&model, &spec.kind, symmetry)).map_err(named)?;
     let domain = model.domain(&far).map_err(|error| named(error.to_string()))?;
-    let mut hidden = std::ffi::OsString::from(".");
-    hidden.push(file.file_name().unwrap_or_default());
-    hidden.push(format!(".{}.tmp", std::process::id()));
-    let beside = file.with_file_name(hidden);
-    domain.write_brep(&beside)?;
-    std::fs::rename(&beside, file)?;
+    domain.write_brep(file)?;
     Ok(names::write(file, domain.names(), &[])?)
 }
 

@@ -63,7 +63,7 @@ pub struct Ladder<'a> {
     model: &'a Model,
     wish: &'a Wish,
     log: &'a Path,
-    place: Workplace,
+    place: &'a Workplace,
     brep: PathBuf,
     queue: Queue,
     /// What is not there, for the user.
@@ -82,9 +82,8 @@ impl<'a> Ladder<'a> {
         model: &'a Model,
         wish: &'a Wish,
         choice: Choice,
-        log: &'a Path,
+        (place, log): (&'a Workplace, &'a Path),
     ) -> Result<Self, String> {
-        let place = Workplace::new().map_err(|error| format!("no folder for the mesher's files: {error}"))?;
         process::begin(log).map_err(|error| error.to_string())?;
         let brep = place.file("model.brep");
         model.write_brep(&brep).map_err(|error| error.to_string())?;
@@ -126,9 +125,9 @@ impl<'a> Ladder<'a> {
         let out = self.place.file("out.msh");
         let _ = std::fs::remove_file(&out);
         if matches!(rung, Rung::Triangles) {
-            gmsh::write_triangles(self.model, self.wish, &self.place).map_err(Miss::Failed)?;
+            gmsh::write_triangles(self.model, self.wish, self.place).map_err(Miss::Failed)?;
         }
-        start((self.wish, limit), rung, &self.place, [&self.brep, &out], self.log)?;
+        start((self.wish, limit), rung, self.place, [&self.brep, &out], self.log)?;
         let failed = |why: String| {
             let told = process::last_lines(self.log);
             Miss::Failed(if told.contains("rror") { format!("{why} ({told})") } else { why })

@@ -12,14 +12,15 @@ mod queue;
 mod refine;
 
 use super::adapt::INTERRUPTED;
+use super::adapt::files::Targets;
 use super::adapt::progress::stop_on_interrupt;
 use super::adapt::report::Asked;
-use super::metric::common::check_output;
+use super::files::{Files, JSON, Target};
 use super::metric::geometry::GeometryArguments;
+use super::workplace::Workplace;
 use super::{Outcome, load};
 use crate::geometry::classify::associate;
-use crate::geometry::{Evaluate, Geometry, Model, Topology, names};
-use crate::mesh::io;
+use crate::geometry::{Evaluate, Geometry, Model, Topology};
 use crate::mesh::vector::distance;
 use crate::tasks::{Plan, Pool, Team, stage};
 use driver::Choice;
@@ -79,15 +80,19 @@ pub struct Arguments {
     quiet: bool,
 }
 
+/// The domain of a far field, until it is written with the mesh.
+const DOMAIN: &str = "domain.brep";
+
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
-    arguments.check()?;
+    let place = Workplace::new().map_err(|error| format!("no folder for the mesher's files: {error}"))?;
+    let (targets, log) = arguments.targets(&place)?;
     let threads = arguments.threads.map_or_else(super::cores, usize::from);
     let pool = Pool::new(threads)?;
     let team = Team::new(&pool, Plan::default());
     let domain = arguments.far_field.as_ref();
-    let domain = domain.map(|spec| domain::build(&arguments.model, spec, arguments.symmetry, &arguments.output));
+    let domain = domain.map(|spec| domain::build(&arguments.model, spec, arguments.symmetry, &place.file(DOMAIN)));
     let domain = domain.transpose()?;
     let path = domain.as_ref().unwrap_or(&arguments.model);
     let model = load::model(path)?;
@@ -102,19 +107,18 @@ pub fn run(arguments: &Arguments) -> Outcome {
         stop: stop_on_interrupt(),
         limit: Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX),
     };
-    let log = arguments.log();
     let named = |error: String| format!("{}: {error}", arguments.model.display());
-    let mut ladder = Ladder::new(team, &model, &wish, arguments.mesher, &log).map_err(named)?;
+    let mut ladder = Ladder::new(team, &model, &wish, arguments.mesher, (&place, log.path())).map_err(named)?;
     let ended = |error: String| -> Outcome {
         if !wish.stop.load(Ordering::Relaxed) {
             return Err(named(error).into());
         }
-        eprintln!("geo-adapt: error: {}", named(error));
+        super::tell(format_args!("geo-adapt: error: {}", named(error)));
         Ok(ExitCode::from(INTERRUPTED))
     };
     if arguments.no_adapt {
         return match ladder.climb() {
-            Ok(meshed) => arguments.write_as_it_is(&meshed, &model),
+            Ok(meshed) => arguments.write_as_it_is(&meshed, &model, &targets),
             Err(error) => ended(error),
         };
     }
@@ -140,7 +144,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
     }
     let best = best.ok_or("no rung was tried")?;
-    best.write(arguments, team, &asked, model, start)
+    best.write(arguments, team, (&asked, &targets), model, start)
 }
 
 /// Meshes of the mesher that are adapted where there is a flaw in what comes of the first; the best is taken.
@@ -185,20 +189,15 @@ fn open_edges(model: &Model) -> String {
 
 impl Arguments {
     /// Refuses before the work what would fail after it.
-    fn check(&self) -> Result<(), String> {
-        let inputs = [self.model.as_path()];
-        check_output(&self.output, &["mesh", "meshb"], &inputs)?;
-        check_output(&self.output.with_extension("solb"), &["solb"], &inputs)?;
-        check_output(&self.log(), &["log"], &inputs)?;
+    fn targets(&self, place: &Workplace) -> Result<(Targets, Target), String> {
+        let mut files = Files::new().reads_models([&self.model]);
+        let mut targets = Targets::of(&mut files, &self.output, self.report.as_ref(), JSON)?;
+        let log = files.writes(&self.output.with_extension("log"), "the log beside -o", &[])?;
         if self.far_field.is_some() {
-            check_output(&domain::path(&self.output), &["brep"], &inputs)?;
+            let domain = files.writes(&self.output.with_extension("brep"), "the domain beside -o", &[])?;
+            targets.with_model(place.file(DOMAIN), domain);
         }
-        self.report.as_ref().map_or(Ok(()), |report| check_output(report, &["json"], &inputs))
-    }
-
-    /// What the mesher says goes beside the mesh.
-    fn log(&self) -> PathBuf {
-        self.output.with_extension("log")
+        Ok((targets, log))
     }
 
     fn limits(&self) -> crate::metric::Limits {
@@ -206,11 +205,10 @@ impl Arguments {
     }
 
     /// Writes the mesher's own mesh, on the model.
-    fn write_as_it_is(&self, meshed: &Meshed, model: &Model) -> Outcome {
+    fn write_as_it_is(&self, meshed: &Meshed, model: &Model, targets: &Targets) -> Outcome {
         let mut mesh = meshed.mesh.clone();
         associate(&mut mesh, &meshed.place);
-        io::write_mesh(&self.output, &mesh)?;
-        names::write(&self.output, model.names(), &[])?;
+        targets.write_mesh(&mesh, model.names())?;
         if !self.quiet {
             let solids = model.topology().solids;
             super::print(&format!(
@@ -220,7 +218,7 @@ impl Arguments {
                 mesh.tets.len(),
                 if solids == 1 { "" } else { "s" },
                 self.output.display()
-            ));
+            ))?;
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -5,7 +5,7 @@ use super::{Arguments, domain};
 use crate::adapt::{self, Adapted, Options};
 use crate::cli::Outcome;
 use crate::cli::adapt::INTERRUPTED;
-use crate::cli::adapt::files;
+use crate::cli::adapt::files::Targets;
 use crate::cli::adapt::input::Input;
 use crate::cli::adapt::progress::{Progress, Stop};
 use crate::cli::adapt::report::{Asked, Report};
@@ -108,19 +108,26 @@ impl Refined {
     }
 
     /// Writes it, and prints the table of `adapt`.
-    pub fn write(self, arguments: &Arguments, team: Team<'_>, asked: &Asked, model: Model, start: Instant) -> Outcome {
+    pub fn write(
+        self,
+        arguments: &Arguments,
+        team: Team<'_>,
+        (asked, targets): (&Asked, &Targets),
+        model: Model,
+        start: Instant,
+    ) -> Outcome {
         let flaw = self.flaw().map(|flaw| format!("{}: {flaw}; no mesh to begin with gave a better one", self.by));
         for notice in self.notices.iter().chain(&flaw).filter(|_| !arguments.quiet) {
-            eprintln!("geo-adapt: note: {notice}");
+            crate::cli::note(notice);
         }
         let names = model.names().clone();
         let place = self.adapted.extracted.classification.clone();
         let input = Input { mesh: self.start, place, model, source: self.source, made: None, names };
         let report = Report::new(team, asked, &input, self.adapted);
         let [prepared, finished] = self.times;
-        let report = files::write(asked, arguments.report.as_deref(), report, [prepared, finished, start.elapsed()])?;
+        let report = targets.write(report, [prepared, finished, start.elapsed()])?;
         if !arguments.quiet {
-            crate::cli::print(&format!("{:<26} {}\n{}", "mesher", self.by, report.text()));
+            crate::cli::print(&format!("{:<26} {}\n{}", "mesher", self.by, report.text()))?;
         }
         Ok(if self.interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
     }

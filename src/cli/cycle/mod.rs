@@ -32,7 +32,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     if let Some(text) = arguments.example.as_deref().and_then(example::of) {
-        print(text);
+        print(text)?;
         return Ok(ExitCode::SUCCESS);
     }
     let Some(path) = &arguments.config else { return Err("give a configuration".into()) };
@@ -42,23 +42,24 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let options = Options { threads, restart: arguments.restart };
     let progress = Progress::new(!arguments.quiet, &loaded.config.schedule);
     let ended = cycle::run(&loaded, &options, &progress, &stop);
-    progress.finish();
+    let printed = progress.finish();
     match ended {
         Ok(ended) => {
+            printed?;
             if !arguments.quiet {
                 let seconds: f64 = ended.history.cycles.iter().flat_map(|cycle| cycle.seconds.values()).sum();
                 print(&format!(
                     "{}: ended after {} s of work\n",
                     ended.reason,
                     figure(seconds + ended.history.start_seconds)
-                ));
-                print(&format!("mesh     {}\nsolution {}\n", ended.mesh.display(), ended.solution.display()));
-                print(&format!("report   {}\n", ended.page.display()));
+                ))?;
+                print(&format!("mesh     {}\nsolution {}\n", ended.mesh.display(), ended.solution.display()))?;
+                print(&format!("report   {}\n", ended.page.display()))?;
             }
             Ok(ExitCode::SUCCESS)
         }
         Err(Error::Interrupted) => {
-            eprintln!("geo-adapt: interrupted; the same command goes on after the last finished step");
+            crate::cli::tell("geo-adapt: interrupted; the same command goes on after the last finished step");
             Ok(ExitCode::from(INTERRUPTED))
         }
         Err(error) => Err(error.into()),
@@ -73,7 +74,7 @@ fn stop_on_interrupt() -> Arc<Stop> {
         if seen.asked.swap(true, Relaxed) {
             seen.now.store(true, Relaxed);
         } else {
-            eprintln!("\ngeo-adapt: interrupted: ends after this step (again: ends it at once)");
+            crate::cli::tell("\ngeo-adapt: interrupted: ends after this step (again: ends it at once)");
         }
     };
     // Where no handler can be set an interrupt ends the program, and the loop goes on from there all the same.

@@ -1,6 +1,7 @@
 //! Progress over the whole loop: a bar over its cycles with the step that runs and the last line of its log, and a row for each cycle that is done.
 use crate::cli::print;
 use crate::cli::table::figure;
+use crate::cli::terminal::PrintError;
 use crate::cycle::{Cycle, Observer, Schedule, last_line};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
@@ -14,6 +15,8 @@ pub struct Progress {
     bar: ProgressBar,
     headed: AtomicBool,
     running: Running,
+    /// Why a row could not be printed. The loop goes on all the same: it may have run for days.
+    failed: Mutex<Option<PrintError>>,
 }
 
 /// The step that runs, and its log.
@@ -40,17 +43,24 @@ impl Progress {
         } else {
             ProgressBar::hidden()
         };
-        Self { wanted, bar, headed: AtomicBool::new(false), running }
+        Self { wanted, bar, headed: AtomicBool::new(false), running, failed: Mutex::default() }
     }
 
     /// The work is over.
-    pub fn finish(&self) {
+    ///
+    /// # Errors
+    /// When a row could not be printed.
+    pub fn finish(&self) -> Result<(), PrintError> {
         self.bar.finish_and_clear();
+        self.failed.lock().expect("no panic while it is held").take().map_or(Ok(()), Err)
     }
 
     /// Something that stays above the bar.
     fn tell(&self, line: &str) {
-        self.bar.suspend(|| print(&format!("{line}\n")));
+        let done = self.bar.suspend(|| print(&format!("{line}\n")));
+        if let Err(error) = done {
+            self.failed.lock().expect("no panic while it is held").get_or_insert(error);
+        }
     }
 }
 
@@ -79,7 +89,7 @@ impl Observer for Progress {
 
     fn note(&self, text: &str) {
         if self.wanted {
-            self.bar.suspend(|| eprintln!("geo-adapt: note: {text}"));
+            self.bar.suspend(|| crate::cli::note(text));
         }
     }
 

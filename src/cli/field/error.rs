@@ -1,6 +1,7 @@
 //! `geo-adapt field error`.
 use super::super::Outcome;
-use super::super::metric::common::{self, RunArguments, check_output};
+use super::super::files::{Files, Outputs};
+use super::super::metric::common::{self, RunArguments};
 use super::super::table::{Table, figure};
 use super::super::transfer::{components, rows};
 use crate::mesh::adjacency::MatchedFaces;
@@ -64,9 +65,8 @@ struct Value {
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, mesh, field, truth, .. } = arguments;
     let [truth, true_field] = [&truth[0], &truth[1]];
-    if let Some(report) = &arguments.report {
-        check_output(report, &["json"], &[mesh, field, truth, true_field].map(PathBuf::as_path))?;
-    }
+    let mut files = Files::new().reads_meshes([mesh, truth]).reads([field, true_field]);
+    let json = common::report(&mut files, arguments.report.as_ref())?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let coarse = common::mesh(run, team, mesh)?;
@@ -95,10 +95,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
         farthest: places.farthest,
         values: values.map(|((field, component), error)| Value { field, component, error }).collect(),
     };
-    if let Some(path) = &arguments.report {
-        common::write_json(path, &report)?;
-    }
-    run.print(&report.text());
+    let mut outputs = Outputs::new();
+    outputs.json(json.as_ref(), &report)?;
+    outputs.commit()?;
+    run.print(&report.text())?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,8 +1,9 @@
 //! `geo-adapt field evaluate`.
 use super::super::Outcome;
-use super::super::metric::common::{self, RunArguments, check_output};
+use super::super::files::{Files, Outputs, SOLUTION};
+use super::super::metric::common::{self, RunArguments};
 use super::super::table::{Table, figure};
-use crate::mesh::io::{self, FieldKind, Solution, SolutionField};
+use crate::mesh::io::{FieldKind, Solution, SolutionField};
 use crate::metric::Scalar;
 use crate::tasks::{Plan, Team};
 use serde::Serialize;
@@ -41,9 +42,9 @@ struct Report {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let inputs = [arguments.mesh.as_path()];
-    check_output(&arguments.output, &["sol", "solb"], &inputs)?;
-    arguments.report.as_deref().map(|report| check_output(report, &["json"], &inputs)).transpose()?;
+    let mut files = Files::new().reads_meshes([&arguments.mesh]);
+    let target = files.writes(&arguments.output, "-o", SOLUTION)?;
+    let json = common::report(&mut files, arguments.report.as_ref())?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
@@ -56,7 +57,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
         );
     }
     let solution = Solution { vertices: values.len(), fields: vec![SolutionField { kind: FieldKind::Scalar, values }] };
-    io::write_solution_on(team, &arguments.output, &solution)?;
+    let mut outputs = Outputs::new();
+    outputs.solution(team, &target, &solution)?;
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         mesh: arguments.mesh.clone(),
@@ -65,13 +67,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
         tets: mesh.tets.len(),
         error,
     };
-    if let Some(path) = &arguments.report {
-        common::write_json(path, &report)?;
-    }
+    outputs.json(json.as_ref(), &report)?;
+    outputs.commit()?;
     let mut table = Table::new();
     table.row("vertices", report.vertices);
     table.row("L2 interpolation error", figure(report.error));
     table.row("written", arguments.output.display());
-    arguments.run.print(table.text());
+    arguments.run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

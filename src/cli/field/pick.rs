@@ -1,7 +1,9 @@
 //! `geo-adapt field pick`.
-use super::super::metric::common::{Failure, check_output};
+use super::super::files::{Files, Outputs, SOLUTION};
+use super::super::metric::common::Failure;
 use super::super::print;
-use crate::mesh::io::{self, FieldKind, Solution, SolutionField, read_solution};
+use crate::mesh::io::{FieldKind, Solution, SolutionField, read_solution};
+use crate::tasks::Team;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -44,9 +46,9 @@ impl std::str::FromStr for Take {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    check_output(&arguments.output, &["sol", "solb"], &[&arguments.input])?;
+    let target = Files::new().reads([&arguments.input]).writes(&arguments.output, "-o", SOLUTION)?;
     let read = read_solution(&arguments.input)?;
-    read.notices.iter().for_each(|notice| eprintln!("geo-adapt: note: {notice}"));
+    read.notices.iter().for_each(|notice| crate::cli::note(notice));
     let solution = read.content;
     // The values of a vertex by field.
     let columns: Vec<(usize, usize)> = solution
@@ -74,13 +76,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         fields.push(SolutionField { kind: FieldKind::Scalar, values: values.collect() });
     }
     let picked = Solution { vertices: solution.vertices, fields };
-    io::write_solution(&arguments.output, &picked)?;
+    let mut outputs = Outputs::new();
+    outputs.solution(Team::alone(), &target, &picked)?;
+    outputs.commit()?;
     print(&format!(
         "{}: {} scalars at {} vertices\n",
         arguments.output.display(),
         picked.fields.len(),
         picked.vertices
-    ));
+    ))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,8 +1,10 @@
-//! What the subcommands of `metric` share: arguments to flatten, reading with notices, checks of the output.
+//! What the subcommands of `metric` share: arguments to flatten, reading with notices, the output.
 //!
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
+use crate::cli::files::{Files, JSON, Outputs, SOLUTION, Target};
+use crate::cli::terminal::PrintError;
 use crate::mesh::TetMesh;
-use crate::mesh::io::{self, Read, Solution, read_mesh_on, read_solution_on};
+use crate::mesh::io::{Read, Solution, read_mesh_on, read_solution_on};
 use crate::mesh::vector::distance;
 use crate::metric::{Field, Limits, Sym3, field};
 use crate::tasks::{Pool, Team};
@@ -31,15 +33,13 @@ impl RunArguments {
     /// Shows notes on standard error, unless quiet.
     pub fn note(&self, notices: &[String]) {
         for notice in notices.iter().filter(|_| !self.quiet) {
-            eprintln!("geo-adapt: note: {notice}");
+            crate::cli::note(notice);
         }
     }
 
     /// Prints a table, unless quiet.
-    pub fn print(&self, text: &str) {
-        if !self.quiet {
-            super::super::print(text);
-        }
+    pub fn print(&self, text: &str) -> Result<(), PrintError> {
+        if self.quiet { Ok(()) } else { super::super::print(text) }
     }
 }
 
@@ -52,42 +52,22 @@ pub struct OutputArgument {
 }
 
 impl OutputArgument {
-    /// Refuses before the work what would fail after it: another ending, a folder that is not there, an input as output.
-    pub fn check(&self, inputs: &[&Path]) -> Result<(), String> {
-        check_output(&self.output, &["sol", "solb"], inputs)
-    }
-
-    /// Writes M = exp of these logarithms.
-    pub fn write_logs(&self, team: Team<'_>, logs: &[Sym3]) -> Result<(), Failure> {
-        Ok(Field::write_logs(team, &self.output, logs)?)
+    /// The file, among those of the command.
+    pub fn target(&self, files: &mut Files) -> Result<Target, String> {
+        files.writes(&self.output, "-o", SOLUTION)
     }
 }
 
-/// Refuses an output that cannot be written or that is an input; `endings` without the dot.
-pub fn check_output(output: &Path, endings: &[&str], inputs: &[&Path]) -> Result<(), String> {
-    let name = output.display();
-    let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    if !endings.contains(&extension) {
-        return Err(format!("{name}: the output must end in .{}", endings.join(" or .")));
-    }
-    check_place(output, inputs)
+/// A report, where one is asked for.
+pub fn report(files: &mut Files, path: Option<&PathBuf>) -> Result<Option<Target>, String> {
+    path.map(|path| files.writes(path, "--report", JSON)).transpose()
 }
 
-/// Refuses an output that cannot be written or that is an input.
-pub fn check_place(output: &Path, inputs: &[&Path]) -> Result<(), String> {
-    let name = output.display();
-    let folder = output.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        return Err(format!("{name}: there is no folder {}; make it first", folder.display()));
-    }
-    if output.is_dir() {
-        return Err(format!("{name}: this is a folder; name a file"));
-    }
-    let same = |input: &&Path| matches!((output.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    if inputs.iter().any(same) {
-        return Err(format!("{name}: is an input and would be overwritten; give another output"));
-    }
-    Ok(())
+/// Writes M = exp of these logarithms.
+pub fn write_logs(team: Team<'_>, to: &Target, logs: &[Sym3]) -> Result<(), Failure> {
+    let mut outputs = Outputs::new();
+    outputs.logs(team, to, logs)?;
+    outputs.commit()
 }
 
 /// Bounds of the sizes.
@@ -230,10 +210,4 @@ pub fn diameter(mesh: &TetMesh) -> f64 {
         mesh.vertices.iter().copied().reduce(|a, b| std::array::from_fn(|i| f(a[i], b[i]))).unwrap_or_default()
     };
     distance(corner(f64::min), corner(f64::max))
-}
-
-/// Writes JSON beside, then renames.
-pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_vec_pretty(value)?;
-    Ok(io::write_beside(path, |file| file.write_all(&text).and_then(|()| file.write_all(b"\n")))?)
 }

@@ -1,6 +1,7 @@
 //! `geo-adapt metric from-image`.
 use super::common::{self, GradationArgument, LimitArguments, OutputArgument, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::Files;
 use crate::cli::table::Table;
 use crate::image::{self, Image, Smoothed};
 use crate::mesh::TetMesh;
@@ -50,7 +51,7 @@ fn deviation(text: &str) -> Result<f64, String> {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    to.check(&[&arguments.image, &arguments.mesh])?;
+    let target = to.target(&mut Files::new().reads_images([&arguments.image]).reads_meshes([&arguments.mesh]))?;
     let limits = arguments.limits.limits()?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
@@ -72,11 +73,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     } else {
         labels(team, arguments, &image, &mesh, &wish)
     }?;
-    to.write_logs(team, &logs)?;
+    common::write_logs(team, &target, &logs)?;
     let mut table = Table::new();
     table.row("the image is", if is_grey { "grey" } else { "of labels" });
     super::show::rows(&mut table, &Summary::of(team, &mesh, &logs), None);
-    run.print(table.text());
+    run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }
 

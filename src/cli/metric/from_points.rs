@@ -1,6 +1,7 @@
 //! `geo-adapt metric from-points`.
 use super::common::{self, OutputArgument, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::Files;
 use crate::cli::table::{Table, figure};
 use crate::mesh::io::{Read, read_points};
 use crate::metric::field;
@@ -28,7 +29,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    to.check(&[&arguments.mesh, &arguments.points])?;
+    let target = to.target(&mut Files::new().reads_meshes([&arguments.mesh]).reads([&arguments.points]))?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let mesh = common::mesh(run, team, &arguments.mesh)?;
@@ -45,11 +46,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if flat > 0 {
         run.note(&[format!("at {flat} vertices the nearest points lie in a plane, nearly: sizes across are 1/1000 of the greatest distance; give more --neighbours, or bound them by `metric limit --hmin`")]);
     }
-    to.write_logs(team, &logs)?;
+    common::write_logs(team, &target, &logs)?;
     let mut table = Table::new();
     table.row("points", points.len());
     table.row("vertices", logs.len());
     table.row("complexity", figure(field::complexity_of_logs(team, &mesh, &logs)));
-    run.print(table.text());
+    run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

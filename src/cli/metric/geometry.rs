@@ -1,5 +1,6 @@
 //! `geo-adapt metric geometry`.
 use super::common::{self, Failure, GradationArgument, LimitArguments, OutputArgument, RunArguments};
+use crate::cli::files::{Files, Outputs};
 use crate::cli::table::{Table, figure, place};
 use crate::cli::{Outcome, load, positive};
 use crate::geometry::classify::{self, Classification};
@@ -91,11 +92,9 @@ struct Seconds {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
-    let inputs: Vec<&Path> = std::iter::once(arguments.mesh.as_path()).chain(arguments.cad.as_deref()).collect();
-    arguments.output.check(&inputs)?;
-    if let Some(report) = &arguments.report {
-        common::check_output(report, &["json"], &inputs)?;
-    }
+    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_models(&arguments.cad);
+    let target = arguments.output.target(&mut files)?;
+    let json = common::report(&mut files, arguments.report.as_ref())?;
     let limits = arguments.limits.limits()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
@@ -112,7 +111,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let options = arguments.sizes.options(&model, limits, arguments.gradation.ratio());
     let (logs, summary) = sizing::geometry_metric(team, &mesh, &lies, &model, &options);
     let metric = start.elapsed().as_secs_f64() - read_and_classify;
-    arguments.output.write_logs(team, &logs)?;
+    let mut outputs = Outputs::new();
+    outputs.logs(team, &target, &logs)?;
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         input: &arguments.mesh,
@@ -123,10 +123,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         metric: Figures::of(team, &mesh, &logs),
         seconds: Seconds { read_and_classify, metric },
     };
-    if let Some(path) = &arguments.report {
-        common::write_json(path, &report)?;
-    }
-    arguments.run.print(&describe(&report, !mesh.tets.is_empty()));
+    outputs.json(json.as_ref(), &report)?;
+    outputs.commit()?;
+    arguments.run.print(&describe(&report, !mesh.tets.is_empty()))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,6 +1,7 @@
 //! `geo-adapt metric grade`.
 use super::common::{self, OutputArgument, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::Files;
 use crate::cli::table::{Table, figure};
 use crate::metric::{field, grade};
 use crate::tasks::{Plan, Team};
@@ -26,19 +27,19 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    to.check(&[&arguments.mesh, &arguments.metric])?;
+    let target = to.target(&mut Files::new().reads_meshes([&arguments.mesh]).reads([&arguments.metric]))?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let mesh = common::mesh(run, team, &arguments.mesh)?;
     let mut logs = common::logs(run, team, &arguments.metric, mesh.vertices.len())?;
     let before = common::complexity(team, &arguments.mesh, &mesh, &logs)?;
     let graded = grade(team, &mesh, &mut logs, arguments.ratio);
-    to.write_logs(team, &logs)?;
+    common::write_logs(team, &target, &logs)?;
     let mut table = Table::new();
     table.row("vertices changed", format_args!("{} of {}", graded.changed, logs.len()));
     table.row("rounds", format_args!("{}, {} intersections", graded.rounds, graded.updates));
     table.row("complexity before", figure(before));
     table.row("complexity", figure(field::complexity_of_logs(team, &mesh, &logs)));
-    run.print(table.text());
+    run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,7 @@
 //! `geo-adapt metric implied`.
 use super::common::{self, OutputArgument, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::Files;
 use crate::cli::table::{Table, figure};
 use crate::metric::field;
 use crate::metric::implied::{Implied, implied};
@@ -22,7 +23,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    to.check(&[&arguments.mesh])?;
+    let target = to.target(&mut Files::new().reads_meshes([&arguments.mesh]))?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let mesh = common::mesh(run, team, &arguments.mesh)?;
@@ -36,12 +37,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if bare > 0 {
         run.note(&[format!("{bare} vertices have no tetrahedron that counts; they get the mean of the mesh")]);
     }
-    to.write_logs(team, &logs)?;
+    common::write_logs(team, &target, &logs)?;
     let complexity = field::complexity_of_logs(team, &mesh, &logs);
     let mut table = Table::new();
     table.row("vertices", logs.len());
     table.row("complexity", figure(complexity));
     table.row("vertices / complexity", figure(logs.len() as f64 / complexity));
-    run.print(table.text());
+    run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

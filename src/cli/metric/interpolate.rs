@@ -1,6 +1,7 @@
 //! `geo-adapt metric interpolate`.
 use super::common::{self, OutputArgument, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::Files;
 use crate::cli::table::{Table, figure};
 use crate::metric::transfer::{Transferred, transfer};
 use crate::tasks::{Plan, Team};
@@ -26,18 +27,20 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    to.check(&[&arguments.old_mesh, &arguments.old_metric, &arguments.new_mesh])?;
+    let target = to.target(
+        &mut Files::new().reads_meshes([&arguments.old_mesh, &arguments.new_mesh]).reads([&arguments.old_metric]),
+    )?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let old = common::mesh(run, team, &arguments.old_mesh)?;
     let logs = common::logs(run, team, &arguments.old_metric, old.vertices.len())?;
     let new = common::mesh(run, team, &arguments.new_mesh)?;
     let Transferred { logs, outside, farthest } = transfer(team, Arc::new(old), &logs, &new.vertices);
-    to.write_logs(team, &logs)?;
+    common::write_logs(team, &target, &logs)?;
     let mut table = Table::new();
     table.row("vertices", logs.len());
     table.row("outside the old mesh", format_args!("{outside}, they get the metric of its nearest point"));
     table.row("farthest from it", figure(farthest));
-    run.print(table.text());
+    run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,7 @@
 //! `geo-adapt metric intersect`.
 use super::common::{self, OutputArgument, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::Files;
 use crate::cli::table::{Table, figure};
 use crate::metric::{field, intersect_all};
 use crate::tasks::{Plan, Team};
@@ -22,8 +23,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    let inputs: Vec<_> = arguments.files.iter().map(PathBuf::as_path).collect();
-    to.check(&inputs)?;
+    let target = to.target(&mut Files::new().reads(&arguments.files))?;
     let is_mesh = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "mesh" || ending == "meshb");
     let mesh_path = arguments.files.first().filter(is_mesh);
     let paths = &arguments.files[usize::from(mesh_path.is_some())..];
@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if mesh.is_some() {
         table.row("intersection", &complexity(&logs)[2..]);
     }
-    to.write_logs(team, &logs)?;
-    run.print(table.text());
+    common::write_logs(team, &target, &logs)?;
+    run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

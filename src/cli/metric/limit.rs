@@ -1,6 +1,7 @@
 //! `geo-adapt metric limit`.
 use super::common::{self, LimitArguments, OutputArgument, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::Files;
 use crate::cli::table::Table;
 use crate::tasks::{Plan, Team};
 use std::path::PathBuf;
@@ -22,7 +23,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    to.check(&[&arguments.metric])?;
+    let target = to.target(&mut Files::new().reads([&arguments.metric]))?;
     let limits = arguments.limits.limits()?;
     if limits.are_none() {
         return Err("nothing to limit: give --hmin, --hmax or --aspect-ratio".into());
@@ -31,9 +32,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let team = Team::new(&pool, Plan::default());
     let mut logs = common::all_logs(run, team, &arguments.metric)?;
     let changed = limits.apply(team, &mut logs);
-    to.write_logs(team, &logs)?;
+    common::write_logs(team, &target, &logs)?;
     let mut table = Table::new();
     table.row("vertices changed", format_args!("{changed} of {}", logs.len()));
-    run.print(table.text());
+    run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -2,6 +2,7 @@
 use super::common::{self, OutputArgument, RunArguments};
 use super::fields::MultiscaleArguments;
 use crate::cli::Outcome;
+use crate::cli::files::{Files, Outputs};
 use crate::cli::table::Table;
 use crate::metric::multiscale::Measure;
 use crate::metric::summary::Summary;
@@ -44,11 +45,9 @@ struct Report<'a> {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let inputs: Vec<&Path> = std::iter::once(&arguments.mesh).chain(&arguments.fields).map(PathBuf::as_path).collect();
-    arguments.output.check(&inputs)?;
-    if let Some(report) = &arguments.report {
-        common::check_output(report, &["json"], &inputs)?;
-    }
+    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads(&arguments.fields);
+    let target = arguments.output.target(&mut files)?;
+    let json = common::report(&mut files, arguments.report.as_ref())?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     stage("start");
@@ -57,9 +56,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let (mut notices, wanted) = (Vec::new(), (arguments.complexity, Measure::AtVertices));
     let (logs, made) = arguments.multiscale.make(team, &mesh, &arguments.fields, wanted, None, &mut notices)?;
     arguments.run.note(&notices);
-    arguments.output.write_logs(team, &logs)?;
+    let mut outputs = Outputs::new();
+    outputs.logs(team, &target, &logs)?;
     stage("written");
-    if arguments.report.is_none() && arguments.run.quiet {
+    if json.is_none() && arguments.run.quiet {
+        outputs.commit()?;
         return Ok(ExitCode::SUCCESS);
     }
     let report = Report {
@@ -69,13 +70,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
         multiscale: made,
         metric: Summary::of(team, &mesh, &logs),
     };
-    if let Some(path) = &arguments.report {
-        common::write_json(path, &report)?;
-    }
+    outputs.json(json.as_ref(), &report)?;
+    outputs.commit()?;
     let mut table = Table::new();
     report.multiscale.rows(&mut table);
     super::show::rows(&mut table, &report.metric, None);
     table.row("written", arguments.output.output.display());
-    arguments.run.print(table.text());
+    arguments.run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

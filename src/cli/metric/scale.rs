@@ -1,6 +1,7 @@
 //! `geo-adapt metric scale`.
 use super::common::{self, OutputArgument, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::Files;
 use crate::cli::table::{Table, figure};
 use crate::metric::field;
 use crate::tasks::GRAIN;
@@ -27,7 +28,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    to.check(&[&arguments.mesh, &arguments.metric])?;
+    let target = to.target(&mut Files::new().reads_meshes([&arguments.mesh]).reads([&arguments.metric]))?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let mesh = common::mesh(run, team, &arguments.mesh)?;
@@ -35,11 +36,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let before = common::complexity(team, &arguments.mesh, &mesh, &logs)?;
     let factor = field::complexity_factor(before, arguments.complexity);
     team.fill(GRAIN, &mut logs, |_, logs| logs.iter_mut().for_each(|log| *log = log.plus_identity(factor.ln())));
-    to.write_logs(team, &logs)?;
+    common::write_logs(team, &target, &logs)?;
     let mut table = Table::new();
     table.row("complexity before", figure(before));
     table.row("complexity", figure(field::complexity_of_logs(team, &mesh, &logs)));
     table.row("factor of the sizes", figure(factor.powf(-0.5)));
-    run.print(table.text());
+    run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,7 @@
 //! `geo-adapt metric show`.
 use super::common::{self, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::{Files, JSON, Outputs};
 use crate::cli::table::{Table, figure};
 use crate::metric::gradation::{self, Growths};
 use crate::metric::summary::{Percentiles, Summary};
@@ -33,18 +34,17 @@ struct Shown {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    if let Some(json) = &arguments.json {
-        common::check_output(json, &["json"], &[&arguments.mesh, &arguments.metric])?;
-    }
+    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads([&arguments.metric]);
+    let json = arguments.json.as_ref().map(|path| files.writes(path, "--json", JSON)).transpose()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
     let logs = common::logs(&arguments.run, team, &arguments.metric, mesh.vertices.len())?;
     let shown = Shown { summary: Summary::of(team, &mesh, &logs), gradation: gradation::measure(team, &mesh, &logs) };
-    if let Some(json) = &arguments.json {
-        common::write_json(json, &shown)?;
-    }
-    arguments.run.print(&describe(&shown));
+    let mut outputs = Outputs::new();
+    outputs.json(json.as_ref(), &shown)?;
+    outputs.commit()?;
+    arguments.run.print(&describe(&shown))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,8 +1,9 @@
 //! `geo-adapt view`.
 mod look;
 
+use super::files::{Files, Outputs, Target};
 use super::load;
-use super::metric::common::{Failure, RunArguments, check_output};
+use super::metric::common::{Failure, RunArguments};
 use super::table::figure;
 use crate::geometry::{Evaluate, Geometry, Model, classify, fidelity, names};
 use crate::mesh::TetMesh;
@@ -11,8 +12,8 @@ use crate::mesh::vector::Vec3;
 use crate::metric::{Analytic, Field, Statistics, Sym3};
 use crate::tasks::{GRAIN, Plan, Team, stage};
 use crate::view::cut::Part;
-use crate::view::picture::{Colour, Options, write_picture};
-use crate::view::{Given, ScalarField, Scene, write_page};
+use crate::view::picture::{Colour, Options};
+use crate::view::{Given, ScalarField, Scene};
 use look::LookArguments;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -49,10 +50,7 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let inputs = arguments.inputs();
-    for (output, ending) in [(&arguments.output, "html"), (&arguments.png, "png")] {
-        output.as_deref().map(|output| check_output(output, &[ending], &inputs)).transpose()?;
-    }
+    let [page, picture] = arguments.targets()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let read = read_mesh_on(team, &arguments.mesh)?;
@@ -68,17 +66,19 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let scene = Scene::new(team, &mesh, given);
     stage("scene");
     let options = arguments.options(&scene)?;
-    if let Some(page) = &arguments.output {
-        write_page(team, &scene, &options, page)?;
+    let mut outputs = Outputs::new();
+    if let Some(page) = &page {
+        outputs.page(team, page, &scene, &options)?;
         stage("page written");
     }
-    if let Some(picture) = &arguments.png {
-        write_picture(team, &scene, &options, picture)?;
+    if let Some(picture) = &picture {
+        outputs.picture(team, picture, &scene, &options)?;
         stage("picture written");
     }
+    outputs.commit()?;
     for path in [&arguments.output, &arguments.png].into_iter().flatten() {
         let megabytes = std::fs::metadata(path).map_or(0.0, |file| file.len() as f64 / 1e6);
-        arguments.run.print(&format!("{}: {megabytes:.2} MB\n", path.display()));
+        arguments.run.print(&format!("{}: {megabytes:.2} MB\n", path.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -86,9 +86,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
 type Outcome = Result<ExitCode, Failure>;
 
 impl Arguments {
-    fn inputs(&self) -> Vec<&Path> {
-        let some = [Some(&self.mesh), self.cad.as_ref(), self.metric.as_ref()];
-        some.into_iter().flatten().chain(&self.field).map(PathBuf::as_path).collect()
+    /// Page and picture, as far as they are asked for.
+    fn targets(&self) -> Result<[Option<Target>; 2], String> {
+        let files = Files::new().reads_meshes([&self.mesh]).reads_models(&self.cad);
+        let mut files = files.reads(&self.metric).reads(&self.field);
+        let mut target = |path: &Option<PathBuf>, by: &str, ending: &str| {
+            path.as_ref().map(|path| files.writes(path, by, &[ending])).transpose()
+        };
+        Ok([target(&self.output, "-o", "html")?, target(&self.png, "--png", "png")?])
     }
 
     /// Reads and measures what comes with the mesh.

@@ -5,7 +5,7 @@ mod table;
 
 use super::text::Text;
 use super::{Dataset, NamedField, error};
-use crate::mesh::io::{Error, FieldKind, Read, write_beside};
+use crate::mesh::io::{Batch, Error, FieldKind, Read};
 use crate::mesh::vector::{Vec3, distance};
 use std::path::Path;
 use table::Table;
@@ -143,9 +143,9 @@ fn check_fields(path: &Path, data: &Dataset) -> Result<(), Error> {
 }
 
 /// Writes a text.
-pub(super) fn write_text(path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
+pub(super) fn write_text(batch: &mut Batch, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
     check_fields(path, data)?;
-    write_beside(path, |to| {
+    batch.add(path, |to| {
         let mut text = Text::new(to);
         text.put(format_args!("\"{POINT}\""));
         names(data)
@@ -163,7 +163,7 @@ pub(super) fn write_text(path: &Path, data: &Dataset) -> Result<Vec<String>, Err
 }
 
 /// Writes a binary file.
-pub(super) fn write_binary(path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
+pub(super) fn write_binary(batch: &mut Batch, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
     check_fields(path, data)?;
     let names = names(data);
     if let Some(long) = names.iter().find(|name| name.len() >= NAME) {
@@ -178,7 +178,7 @@ pub(super) fn write_binary(path: &Path, data: &Dataset) -> Result<Vec<String>, E
     let Ok(rows) = i32::try_from(rows) else {
         return Err(error::at(path, "header", format!("{rows} points do not fit 32 bits; write .csv")));
     };
-    write_beside(path, |to| {
+    batch.add(path, |to| {
         let mut bytes = Vec::with_capacity(1 << 17);
         [MAGIC, columns as i32, rows, 0, 0].iter().for_each(|int| bytes.extend(int.to_le_bytes()));
         for name in &names {

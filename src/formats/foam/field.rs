@@ -2,7 +2,7 @@
 use super::file::{FoamFile, head_text};
 use super::list;
 use super::scan::{Scanner, Token};
-use crate::mesh::io::{Error, FieldKind, write_beside};
+use crate::mesh::io::{Batch, Error, FieldKind, write_beside};
 use std::io::Write;
 use std::path::Path;
 
@@ -108,6 +108,20 @@ pub fn write_cell_field(
     patches: &[(String, String)],
     text: bool,
 ) -> Result<(), Error> {
+    let mut batch = Batch::new();
+    add_cell_field(&mut batch, path, field, cells, patches, text)?;
+    batch.commit()
+}
+
+/// Adds what [`write_cell_field`] writes to files that belong together.
+pub(super) fn add_cell_field(
+    batch: &mut Batch,
+    path: &Path,
+    field: &CellField,
+    cells: usize,
+    patches: &[(String, String)],
+    text: bool,
+) -> Result<(), Error> {
     let wrong = |message: String| Error::Content { path: path.to_owned(), place: "values".to_owned(), message };
     let width = field.kind.values();
     if let Some(at) = field.values.iter().position(|value| !value.is_finite()) {
@@ -120,7 +134,8 @@ pub fn write_cell_field(
     let (class, _) = words_of(field.kind);
     let mut values = field.values.clone();
     reorder(field.kind, &mut values);
-    write_field(path, class, field.kind, &values, uniform, patches, text)
+    let content = Content { class, kind: field.kind, values: &values, uniform, patches };
+    batch.add(path, |w| content.write(w, path, text))
 }
 
 /// Writes a value for each inner face (surfaceScalarField), with the entries of the patches.
@@ -128,23 +143,27 @@ pub fn write_cell_field(
 /// # Errors
 /// [`Error::System`] when the file cannot be written.
 pub fn write_face_field(path: &Path, values: &[f64], patches: &[(String, String)], text: bool) -> Result<(), Error> {
-    write_field(path, "surfaceScalarField", FieldKind::Scalar, values, false, patches, text)
+    let content = Content { class: "surfaceScalarField", kind: FieldKind::Scalar, values, uniform: false, patches };
+    write_beside(path, |w| content.write(w, path, text))
 }
 
-fn write_field(
-    path: &Path,
-    class: &str,
+/// What a field file holds.
+struct Content<'a> {
+    class: &'a str,
     kind: FieldKind,
-    values: &[f64],
+    values: &'a [f64],
+    /// One value stands for all.
     uniform: bool,
-    patches: &[(String, String)],
-    text: bool,
-) -> Result<(), Error> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let location = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
-    let (_, word) = words_of(kind);
-    let [mass, length, time, temperature] = dimensions(&name);
-    write_beside(path, |w| {
+    patches: &'a [(String, String)],
+}
+
+impl Content<'_> {
+    fn write(&self, w: &mut dyn Write, path: &Path, text: bool) -> std::io::Result<()> {
+        let Self { class, kind, values, uniform, patches } = *self;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let location = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
+        let (_, word) = words_of(kind);
+        let [mass, length, time, temperature] = dimensions(&name);
         write!(w, "{}", head_text(class, &location, &name, text))?;
         write!(w, "\ndimensions      [{mass} {length} {time} {temperature} 0 0 0];\n\ninternalField   ")?;
         if uniform {
@@ -157,7 +176,7 @@ fn write_field(
         w.write_all(b";\n\nboundaryField\n{\n")?;
         patches.iter().try_for_each(|(name, entries)| writeln!(w, "    {name}\n    {{\n        {entries}\n    }}"))?;
         w.write_all(b"}\n")
-    })
+    }
 }
 
 fn write_tuple(w: &mut dyn Write, values: &[f64]) -> std::io::Result<()> {

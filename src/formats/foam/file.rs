@@ -1,6 +1,6 @@
 //! A file of OpenFOAM: plain or gzip, with its head.
 use super::scan::{Scanner, Token};
-use crate::mesh::io::Error;
+use crate::mesh::io::{Error, read_file};
 use std::ffi::OsString;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ impl FoamFile {
     /// Reads a file; one that ends in `.gz` is unpacked (to at most 1032 times its size: deflate has no higher ratio).
     pub fn open(path: &Path) -> Result<Self, Error> {
         let system = |source| Error::System { path: path.to_owned(), source };
-        let mut bytes = std::fs::read(path).map_err(system)?;
+        let mut bytes = read_file(path)?;
         if path.extension().is_some_and(|extension| extension == "gz") {
             let mut unpacked = Vec::new();
             flate2::read::MultiGzDecoder::new(&bytes[..]).read_to_end(&mut unpacked).map_err(system)?;

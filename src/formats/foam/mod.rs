@@ -17,7 +17,7 @@ pub use write::write_poly_mesh;
 use super::{Dataset, NamedField, cells_to_vertices, vertices_to_cells};
 use crate::geometry::Names;
 use crate::mesh::TetMesh;
-use crate::mesh::io::{Error, Read, write_beside};
+use crate::mesh::io::{Batch, Error, Read};
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 
@@ -134,6 +134,22 @@ fn files_of(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(found)
 }
 
+/// The files that [`read`] reads.
+pub fn read_files(path: &Path) -> Vec<PathBuf> {
+    let folders = [Some(poly_mesh_of(path)), newest_time(&case_of(path))];
+    folders.iter().flatten().flat_map(|folder| files_of(folder).unwrap_or_default()).collect()
+}
+
+/// The files that [`write()`] may replace: of the fields those that are there.
+pub fn written_files(path: &Path) -> Vec<PathBuf> {
+    let folder = poly_mesh_of(path);
+    let mut files: Vec<_> = write::FILES.iter().map(|name| folder.join(name)).collect();
+    if folder != path {
+        files.extend(files_of(&path.join("0")).unwrap_or_default());
+    }
+    files
+}
+
 /// Writes a case, or its polyMesh alone where the path says so: the mesh with a patch a reference, named as it is, and the fields at the
 /// cells (the means of the values at their vertices) in the time folder `0`, with gradient zero at all patches; and a `system` folder
 /// where there is none, so that OpenFOAM's tools take the case. Returns what a case cannot carry, a line each.
@@ -149,9 +165,20 @@ pub fn write(path: &Path, data: &Dataset, text: bool) -> Result<Vec<String>, Err
 /// # Errors
 /// As [`write`].
 pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Result<Vec<String>, Error> {
+    let mut batch = Batch::new();
+    let notices = add(&mut batch, team, path, data, text)?;
+    batch.commit()?;
+    Ok(notices)
+}
+
+/// Adds what [`write_on`] writes to files that belong together.
+///
+/// # Errors
+/// As [`write`].
+pub fn add(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Result<Vec<String>, Error> {
     let mesh = &data.mesh;
     let folder = poly_mesh_of(path);
-    let patches = write_poly_mesh(team, &folder, mesh, &data.names, &|_, _| "patch".to_owned(), text)?;
+    let patches = write::add_poly_mesh(batch, team, &folder, mesh, &data.names, &|_, _| "patch".to_owned(), text)?;
     let mut notices = Vec::new();
     let lost = [
         ("edges", mesh.edges.len()),
@@ -169,12 +196,12 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Resu
         }
         return Ok(notices);
     }
-    write_system(path)?;
+    add_system(batch, path)?;
     if data.fields.is_empty() {
         return Ok(notices);
     }
     let time = path.join("0");
-    std::fs::create_dir_all(&time).map_err(|source| Error::System { path: time.clone(), source })?;
+    batch.folder(&time)?;
     let entries: Vec<_> = patches.into_iter().map(|patch| (patch.name, "type zeroGradient;".to_owned())).collect();
     for NamedField { name, kind, values } in &data.fields {
         let values = vertices_to_cells(team, mesh, values, kind.values());
@@ -182,15 +209,16 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Resu
         if file != *name {
             notices.push(format!("the field {name} is called {file} there"));
         }
-        write_cell_field(&time.join(file), &CellField { kind: *kind, values }, mesh.tets.len(), &entries, text)?;
+        let field = CellField { kind: *kind, values };
+        field::add_cell_field(batch, &time.join(file), &field, mesh.tets.len(), &entries, text)?;
     }
     Ok(notices)
 }
 
 /// The least that OpenFOAM's tools ask for; files that are there stay.
-fn write_system(case: &Path) -> Result<(), Error> {
+fn add_system(batch: &mut Batch, case: &Path) -> Result<(), Error> {
     let folder = case.join("system");
-    std::fs::create_dir_all(&folder).map_err(|source| Error::System { path: folder.clone(), source })?;
+    batch.folder(&folder)?;
     let files = [
         (
             "controlDict",
@@ -202,7 +230,7 @@ fn write_system(case: &Path) -> Result<(), Error> {
     for (name, body) in files {
         let path = folder.join(name);
         if !path.is_file() {
-            write_beside(&path, |w| write!(w, "{}{body}", file::head_text("dictionary", "system", name, true)))?;
+            batch.add(&path, |w| write!(w, "{}{body}", file::head_text("dictionary", "system", name, true)))?;
         }
     }
     Ok(())

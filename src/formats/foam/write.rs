@@ -6,7 +6,7 @@ use super::{unnamed_region, unnamed_surface};
 use crate::geometry::{Label, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, Side, TriangleIndex};
-use crate::mesh::io::{Error, write_beside};
+use crate::mesh::io::{Batch, Error};
 use crate::tasks::Team;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
@@ -36,60 +36,80 @@ pub fn write_poly_mesh(
     kind: &dyn Fn(i32, &str) -> String,
     text: bool,
 ) -> Result<Vec<Patch>, Error> {
+    let mut batch = Batch::new();
+    let patches = add_poly_mesh(&mut batch, team, folder, mesh, names, kind, text)?;
+    batch.commit()?;
+    Ok(patches)
+}
+
+/// Adds what [`write_poly_mesh`] writes to files that belong together. Of a mesh that is there the faces go first, and the new ones come
+/// last: without them there is no mesh, so points of one and faces of another are never read together.
+pub(super) fn add_poly_mesh(
+    batch: &mut Batch,
+    team: Team<'_>,
+    folder: &Path,
+    mesh: &TetMesh,
+    names: &Names,
+    kind: &dyn Fn(i32, &str) -> String,
+    text: bool,
+) -> Result<Vec<Patch>, Error> {
     let faces = Ordered::of(team, folder, mesh, names, kind)?;
-    std::fs::create_dir_all(folder).map_err(|source| Error::System { path: folder.to_owned(), source })?;
-    remove_old(folder)?;
-    let file = |name: &str, class: &str, text, body: &dyn Fn(&mut dyn Write) -> std::io::Result<()>| {
-        write_beside(&folder.join(name), |w| {
-            w.write_all(head_text(class, "constant/polyMesh", name, text).as_bytes())?;
+    batch.folder(folder)?;
+    remove_old(batch, folder);
+    let head = |name: &str, class: &str, text| head_text(class, "constant/polyMesh", name, text);
+    let mut file = |name: &str, class: &str, body: &dyn Fn(&mut dyn Write) -> std::io::Result<()>| {
+        batch.add(&folder.join(name), |w| {
+            w.write_all(head(name, class, text).as_bytes())?;
             body(w)
         })
     };
-    file("points", "vectorField", text, &|w| write_reals(w, mesh.vertices.as_flattened(), 3, text))?;
-    if text {
-        file("faces", "faceList", text, &|w| {
-            write!(w, "\n{}\n(", faces.nodes.len())?;
-            faces.nodes.iter().try_for_each(|[a, b, c]| write!(w, "\n3({a} {b} {c})"))?;
-            w.write_all(b"\n)\n")
-        })?;
-    } else {
-        let starts: Vec<u32> = (0..=faces.nodes.len() as u32).map(|face| 3 * face).collect();
-        file("faces", "faceCompactList", text, &|w| {
-            write_labels(w, &starts, text)?;
-            write_labels(w, faces.nodes.as_flattened(), text)
-        })?;
-    }
-    file("owner", "labelList", text, &|w| write_labels(w, &faces.owner, text))?;
-    file("neighbour", "labelList", text, &|w| write_labels(w, &faces.neighbour, text))?;
-    write_zones(folder, mesh, names, &faces)?;
-    file("boundary", "polyBoundaryMesh", true, &|w| {
-        write!(w, "\n{}\n(\n", faces.patches.len())?;
-        for patch in &faces.patches {
-            let Patch { name, reference, kind, faces } = patch;
-            writeln!(
-                w,
-                "    {name}\n    {{\n        type {kind};\n        nFaces {};\n        startFace {};",
-                faces.len(),
-                faces.start
-            )?;
-            writeln!(w, "        reference {reference};\n{}    }}", label_entry(names.triangles.get(reference), name))?;
-        }
-        w.write_all(b")\n")
-    })?;
+    file("points", "vectorField", &|w| write_reals(w, mesh.vertices.as_flattened(), 3, text))?;
+    file("owner", "labelList", &|w| write_labels(w, &faces.owner, text))?;
+    file("neighbour", "labelList", &|w| write_labels(w, &faces.neighbour, text))?;
+    add_zones(batch, folder, mesh, names, &faces)?;
+    batch.add(&folder.join("boundary"), |w| write_boundary(w, &faces.patches, names))?;
+    batch.add_main(&folder.join("faces"), |w| write_faces(w, &faces.nodes, text))?;
     Ok(faces.patches)
 }
 
+fn write_faces(w: &mut dyn Write, nodes: &[[u32; 3]], text: bool) -> std::io::Result<()> {
+    let class = if text { "faceList" } else { "faceCompactList" };
+    w.write_all(head_text(class, "constant/polyMesh", "faces", text).as_bytes())?;
+    if text {
+        write!(w, "\n{}\n(", nodes.len())?;
+        nodes.iter().try_for_each(|[a, b, c]| write!(w, "\n3({a} {b} {c})"))?;
+        return w.write_all(b"\n)\n");
+    }
+    let starts: Vec<u32> = (0..=nodes.len() as u32).map(|face| 3 * face).collect();
+    write_labels(w, &starts, text)?;
+    write_labels(w, nodes.as_flattened(), text)
+}
+
+fn write_boundary(w: &mut dyn Write, patches: &[Patch], names: &Names) -> std::io::Result<()> {
+    w.write_all(head_text("polyBoundaryMesh", "constant/polyMesh", "boundary", true).as_bytes())?;
+    write!(w, "\n{}\n(\n", patches.len())?;
+    for Patch { name, reference, kind, faces } in patches {
+        let (count, start) = (faces.len(), faces.start);
+        writeln!(w, "    {name}\n    {{\n        type {kind};\n        nFaces {count};\n        startFace {start};")?;
+        writeln!(w, "        reference {reference};\n{}    }}", label_entry(names.triangles.get(reference), name))?;
+    }
+    w.write_all(b")\n")
+}
+
+/// The files of a polyMesh.
+pub(super) const FILES: [&str; 8] =
+    ["faces", "points", "owner", "neighbour", "boundary", "cellZones", "faceZones", "pointZones"];
+
 /// What another mesh may have left, and would be read with this one.
-fn remove_old(folder: &Path) -> Result<(), Error> {
-    for name in ["points", "faces", "owner", "neighbour", "boundary", "cellZones", "faceZones", "pointZones"] {
+fn remove_old(batch: &mut Batch, folder: &Path) {
+    for name in FILES {
         for path in [folder.join(format!("{name}.gz")), folder.join(name)] {
-            let keeps = path.extension().is_none() && !name.ends_with("Zones");
-            if !keeps && path.is_file() {
-                std::fs::remove_file(&path).map_err(|source| Error::System { path, source })?;
+            let is_replaced = path.extension().is_none() && !name.ends_with("Zones") && name != "faces";
+            if !is_replaced && path.is_file() {
+                batch.remove(&path);
             }
         }
     }
-    Ok(())
 }
 
 /// Keeps a name that OpenFOAM would not take as it is.
@@ -197,13 +217,14 @@ impl Ordered {
 }
 
 /// Regions as zones of cells, unless there is but the one of reference 1 without a name; triangles inside as zones of faces.
-fn write_zones(folder: &Path, mesh: &TetMesh, names: &Names, faces: &Ordered) -> Result<(), Error> {
+fn add_zones(batch: &mut Batch, folder: &Path, mesh: &TetMesh, names: &Names, faces: &Ordered) -> Result<(), Error> {
     let mut cells: BTreeMap<i32, Vec<u32>> = BTreeMap::new();
     mesh.tets.refs.iter().zip(0..).for_each(|(&reference, cell)| cells.entry(reference).or_default().push(cell));
     let plain =
         cells.len() < 2 && cells.keys().all(|reference| *reference == 1 && !names.tetrahedra.contains_key(reference));
     if !plain {
-        write_zone_file(
+        add_zone_file(
+            batch,
             folder,
             "cellZone",
             "cellLabels",
@@ -221,10 +242,11 @@ fn write_zones(folder: &Path, mesh: &TetMesh, names: &Names, faces: &Ordered) ->
     }
     // A patch may have the same name: zones have names of their own.
     let words = words(&inside.keys().copied().collect(), &names.triangles, unnamed_surface);
-    write_zone_file(folder, "faceZone", "faceLabels", &inside, words, &names.triangles)
+    add_zone_file(batch, folder, "faceZone", "faceLabels", &inside, words, &names.triangles)
 }
 
-fn write_zone_file(
+fn add_zone_file(
+    batch: &mut Batch,
     folder: &Path,
     kind: &str,
     list: &str,
@@ -233,7 +255,7 @@ fn write_zone_file(
     labels: &BTreeMap<i32, Label>,
 ) -> Result<(), Error> {
     let name = format!("{kind}s");
-    write_beside(&folder.join(&name), |w| {
+    batch.add(&folder.join(&name), |w| {
         w.write_all(head_text("regIOobject", "constant/polyMesh", &name, true).as_bytes())?;
         write!(w, "\n{}\n(\n", zones.len())?;
         for (reference, members) in zones {

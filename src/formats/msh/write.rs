@@ -3,7 +3,7 @@ use super::super::text::Text;
 use super::super::{Dataset, NamedField};
 use super::{LINE, TETRAHEDRON, TRIANGLE};
 use crate::geometry::Label;
-use crate::mesh::io::{Error, FieldKind, write_beside};
+use crate::mesh::io::{Batch, Error, FieldKind};
 use crate::mesh::vector::Vec3;
 use crate::mesh::{Elements, TetMesh};
 use std::collections::{BTreeMap, BTreeSet};
@@ -98,7 +98,13 @@ impl Part {
 }
 
 /// Writes a mesh; nodes and elements are numbered from 1 in their order.
-pub(in super::super) fn write(path: &Path, data: &Dataset, is_new: bool, is_text: bool) -> Result<Vec<String>, Error> {
+pub(in super::super) fn write(
+    batch: &mut Batch,
+    path: &Path,
+    data: &Dataset,
+    is_new: bool,
+    is_text: bool,
+) -> Result<Vec<String>, Error> {
     let (mesh, names) = (&data.mesh, &data.names);
     let mut notices = Vec::new();
     let grouped = !names.is_empty();
@@ -107,7 +113,7 @@ pub(in super::super) fn write(path: &Path, data: &Dataset, is_new: bool, is_text
         Part::new((2, TRIANGLE), &mesh.triangles.refs, &names.triangles, grouped, &mut notices),
         Part::new((3, TETRAHEDRON), &mesh.tets.refs, &names.tetrahedra, grouped, &mut notices),
     ];
-    write_beside(path, |to| emit(&mut Out { text: Text::new(to), is_text }, data, &parts, is_new))?;
+    batch.add_main(path, |to| emit(&mut Out { text: Text::new(to), is_text }, data, &parts, is_new))?;
     Ok(notices)
 }
 

@@ -5,7 +5,7 @@ use super::super::{Dataset, NamedField};
 use super::{REFERENCES, SYMMETRIC};
 use crate::geometry::Names;
 use crate::mesh::TetMesh;
-use crate::mesh::io::{Error, FieldKind, write_beside};
+use crate::mesh::io::{Batch, Error, FieldKind};
 use crate::tasks::Team;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -61,6 +61,7 @@ struct Section<'a> {
 
 /// Writes a grid.
 pub(in super::super) fn write(
+    batch: &mut Batch,
     team: Team<'_>,
     path: &Path,
     data: &Dataset,
@@ -68,14 +69,14 @@ pub(in super::super) fn write(
 ) -> Result<Vec<String>, Error> {
     let sections = sections(data);
     if as_text {
-        write_beside(path, |to| text(to, data, &sections))?;
+        batch.add_main(path, |to| text(to, data, &sections))?;
     } else {
         let stored: Vec<Vec<u8>> = sections
             .iter()
             .flat_map(|section| &section.arrays)
             .map(|array| deflated(team, array.values.bytes()))
             .collect();
-        write_beside(path, |to| appended(to, data, &sections, &stored))?;
+        batch.add_main(path, |to| appended(to, data, &sections, &stored))?;
     }
     Ok(Vec::new())
 }

@@ -3,6 +3,7 @@ use super::OcctModel;
 use super::bridge::ffi;
 use super::entities;
 use crate::geometry::{Error, FarField};
+use crate::mesh::io::{self, check_regular};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -23,6 +24,10 @@ pub fn read(path: &Path) -> Result<OcctModel, Error> {
     let fail = |message: String| Error::Model { path: path.into(), message };
     let format = format_of(path).ok_or_else(|| {
         fail("unknown kind of model; the name must end in .step, .stp, .iges, .igs, .brep or .egads".into())
+    })?;
+    check_regular(path).map_err(|error| match error {
+        io::Error::System { path, source } => Error::Open { path, source },
+        io::Error::Content { .. } => fail(error.to_string()),
     })?;
     let (head, tail) = ends(path).map_err(|source| Error::Open { path: path.into(), source })?;
     check(format, &head, &tail).map_err(|message| fail(message.into()))?;
@@ -97,9 +102,6 @@ fn format_of(path: &Path) -> Option<Format> {
 /// The first and the last kilobytes of a file.
 fn ends(path: &Path) -> std::io::Result<(Vec<u8>, Vec<u8>)> {
     const LENGTH: u64 = 4096;
-    if path.is_dir() {
-        return Err(std::io::Error::other("is a directory; name a model file"));
-    }
     let mut file = File::open(path)?;
     let (mut head, mut tail) = (Vec::new(), Vec::new());
     file.by_ref().take(LENGTH).read_to_end(&mut head)?;

@@ -1,7 +1,7 @@
 //! The voxels: raw, compressed or as text.
 use super::header::Header;
 use super::{Encoding, Kind, content};
-use crate::mesh::io::Error;
+use crate::mesh::io::{Error, read_file};
 use flate2::read::MultiGzDecoder;
 use std::io::Read;
 use std::path::Path;
@@ -41,7 +41,7 @@ pub fn push(bytes: &mut Vec<u8>, kind: Kind, value: f64) {
 /// The voxels, least significant byte first; `behind` is what follows the header in its own file.
 pub fn read(path: &Path, header: &Header, behind: &[u8]) -> Result<Vec<u8>, Error> {
     let Some(other) = &header.data_file else { return decode(path, "behind the header", header, behind) };
-    let file = std::fs::read(other).map_err(|source| Error::System { path: other.clone(), source })?;
+    let file = read_file(other)?;
     decode(other, "voxels", header, &file)
 }
 

@@ -4,8 +4,10 @@ mod header;
 mod write;
 
 use super::frame::Frame;
-use crate::mesh::io::Error;
-use std::path::Path;
+use crate::mesh::io::{Error, check_regular, read_file};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
 pub use write::write;
 
@@ -113,10 +115,21 @@ impl Image {
 /// # Errors
 /// [`Error::System`] when a file cannot be read, [`Error::Content`] when what it says cannot be true or is not supported.
 pub fn read(path: &Path) -> Result<Image, Error> {
-    let file = std::fs::read(path).map_err(|source| Error::System { path: path.into(), source })?;
+    let file = read_file(path)?;
     let (header, rest) = header::parse(path, &file)?;
     let bytes = data::read(path, &header, &file[rest..])?;
     Ok(Image { sizes: header.sizes, frame: header.frame, kind: header.kind, bytes })
+}
+
+/// Bytes in which a header ends.
+const LONGEST_HEADER: u64 = 1 << 20;
+
+/// The file that holds the voxels of an image, where it is another; none too where there is no image to read.
+pub fn data_file(path: &Path) -> Option<PathBuf> {
+    check_regular(path).ok()?;
+    let mut head = Vec::new();
+    File::open(path).ok()?.take(LONGEST_HEADER).read_to_end(&mut head).ok()?;
+    header::parse(path, &head).ok()?.0.data_file
 }
 
 /// An error at a place of a file.

@@ -1,6 +1,6 @@
 //! Writing an image.
 use super::{Encoding, Image, Kind};
-use crate::mesh::io::{Error, write_beside};
+use crate::mesh::io::{Batch, Error, write_beside};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use std::fmt::Write as _;
@@ -26,8 +26,10 @@ pub fn write(path: &Path, image: &Image, encoding: Encoding) -> Result<(), Error
         Encoding::Text => "txt",
     });
     let _ = writeln!(header, "data file: {}", data.file_name().unwrap_or_default().display());
-    write_beside(&data, |file| voxels(file, image, encoding))?;
-    write_beside(path, |file| file.write_all(header.as_bytes()))
+    let mut batch = Batch::new();
+    batch.add(&data, |file| voxels(file, image, encoding))?;
+    batch.add_main(path, |file| file.write_all(header.as_bytes()))?;
+    batch.commit()
 }
 
 fn header(image: &Image, encoding: Encoding) -> String {

@@ -1,13 +1,38 @@
-//! The bytes of a file.
+//! The bytes of a file: the one place where files that users give are opened.
 use super::Error;
 use crate::tasks::Team;
+use std::io::{self, ErrorKind};
 use std::path::Path;
+
+/// Refuses what is no regular file: a folder has no bytes, a device may have no end, and a pipe may never begin.
+///
+/// # Errors
+/// [`Error::System`] for such, and when there is no file.
+pub fn check_regular(path: &Path) -> Result<(), Error> {
+    let metadata = std::fs::metadata(path).map_err(|error| Error::system(path, error))?;
+    let what = match metadata.file_type() {
+        kind if kind.is_file() => return Ok(()),
+        kind if kind.is_dir() => "is a folder; name a file",
+        _ => "is a device or a pipe, which may have no end; write what it gives to a file and name that",
+    };
+    Err(Error::system(path, io::Error::new(ErrorKind::InvalidInput, what)))
+}
+
+/// All bytes of a regular file.
+///
+/// # Errors
+/// [`Error::System`] when it cannot be read, or is none.
+pub fn read_file(path: &Path) -> Result<Vec<u8>, Error> {
+    check_regular(path)?;
+    std::fs::read(path).map_err(|error| Error::system(path, error))
+}
 
 /// All bytes of a file; of a large one every thread of the team reads parts.
 pub(super) fn of_file(team: Team<'_>, path: &Path) -> Result<Vec<u8>, Error> {
+    check_regular(path)?;
     match in_parts(team, path) {
         Some(bytes) => Ok(bytes),
-        None => std::fs::read(path).map_err(|error| Error::system(path, error)),
+        None => read_file(path),
     }
 }
 

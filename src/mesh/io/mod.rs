@@ -1,15 +1,16 @@
 //! Mesh and solution files: libMeshb's .mesh/.meshb and .sol/.solb.
 //!
 //! Reading goes bytes → `source` (sections; found by `ascii` or `binary`) → `read` (arrays, through a `cursor`);
-//! writing goes arrays → `write` (checked) → `sink` → `beside`.
+//! writing goes arrays → `write` (checked) → `sink` → `batch`.
 mod ascii;
-mod beside;
+mod batch;
 mod binary;
 mod bytes;
 mod cursor;
 mod error;
 mod keyword;
 pub mod number;
+mod place;
 mod points;
 mod read;
 mod sink;
@@ -17,8 +18,10 @@ mod solution;
 mod source;
 mod write;
 
-pub use beside::write_beside;
+pub use batch::{Batch, write_beside};
+pub use bytes::{check_regular, read_file};
 pub use error::Error;
+pub use place::{check_writable, follow};
 pub use points::read_points;
 pub use solution::{FieldKind, Solution, SolutionField};
 
@@ -73,7 +76,17 @@ pub fn solution_of_bytes(path: &Path, bytes: &[u8]) -> Result<Read<Solution>, Er
 /// [`Error::Content`] for another extension, an index out of range or a value that is not finite,
 /// [`Error::System`] when the file cannot be written.
 pub fn write_mesh(path: &Path, mesh: &TetMesh) -> Result<(), Error> {
-    write::mesh_to(path, mesh)
+    let mut batch = Batch::new();
+    add_mesh(&mut batch, path, mesh)?;
+    batch.commit()
+}
+
+/// Adds .mesh or .meshb, as [`write_mesh`] writes it, to files that belong together: as the main one.
+///
+/// # Errors
+/// As there.
+pub fn add_mesh(batch: &mut Batch, path: &Path, mesh: &TetMesh) -> Result<(), Error> {
+    write::mesh_to(batch, path, mesh)
 }
 
 /// Reads .sol or .solb (fields at vertices), told apart by the content; every value finite.
@@ -106,5 +119,15 @@ pub fn write_solution(path: &Path, solution: &Solution) -> Result<(), Error> {
 /// # Errors
 /// As there.
 pub fn write_solution_on(team: Team<'_>, path: &Path, solution: &Solution) -> Result<(), Error> {
-    write::solution_to(team, path, solution)
+    let mut batch = Batch::new();
+    add_solution(&mut batch, team, path, solution)?;
+    batch.commit()
+}
+
+/// Adds .sol or .solb, as [`write_solution_on`] writes it, to files that belong together.
+///
+/// # Errors
+/// As there.
+pub fn add_solution(batch: &mut Batch, team: Team<'_>, path: &Path, solution: &Solution) -> Result<(), Error> {
+    write::solution_to(batch, team, path, solution)
 }

@@ -1,5 +1,5 @@
 //! Points from a text file, or from the vertices of a mesh.
-use super::{Error, Read, read_mesh};
+use super::{Error, Read, read_file, read_mesh};
 use crate::mesh::vector::Vec3;
 use std::path::Path;
 
@@ -13,7 +13,7 @@ pub fn read_points(path: &Path) -> Result<Read<Vec<Vec3>>, Error> {
         let Read { content, notices } = read_mesh(path)?;
         return Ok(Read { content: content.vertices, notices });
     }
-    let bytes = std::fs::read(path).map_err(|e| Error::system(path, e))?;
+    let bytes = read_file(path)?;
     let text = std::str::from_utf8(&bytes).map_err(|_| {
         Error::content(path, "the file", "is no text; give x y z in each line, or a .mesh or .meshb file")
     })?;

@@ -2,7 +2,7 @@
 use super::keyword::Keyword;
 use super::sink::{AsciiSink, BinarySink, Sink, version};
 use super::source::Section;
-use super::{Error, Solution, SolutionField, write_beside};
+use super::{Batch, Error, Solution, SolutionField};
 use crate::mesh::{Elements, TetMesh};
 use crate::tasks::{GRAIN, Team};
 use std::io::{self, Write};
@@ -12,21 +12,19 @@ use std::path::Path;
 const ROWS: usize = 64 * GRAIN;
 
 /// Writes a mesh by the path's extension.
-pub(super) fn mesh_to(path: &Path, mesh: &TetMesh) -> Result<(), Error> {
+pub(super) fn mesh_to(batch: &mut Batch, path: &Path, mesh: &TetMesh) -> Result<(), Error> {
     let binary = is_binary(path, "mesh")?;
     check_mesh(mesh).map_err(|(place, message)| Error::content(path, place, message))?;
     let sections = mesh_sections(mesh);
-    write_beside(path, |to| write_sections(to, binary, version(&sections), &sections, &Content::Mesh(mesh)))
+    batch.add_main(path, |to| write_sections(to, binary, version(&sections), &sections, &Content::Mesh(mesh)))
 }
 
 /// Writes a solution by the path's extension.
-pub(super) fn solution_to(team: Team<'_>, path: &Path, solution: &Solution) -> Result<(), Error> {
+pub(super) fn solution_to(batch: &mut Batch, team: Team<'_>, path: &Path, solution: &Solution) -> Result<(), Error> {
     let binary = is_binary(path, "sol")?;
     check_solution(team, solution).map_err(|(place, message)| Error::content(path, place, message))?;
     let sections = solution_sections(solution);
-    write_beside(path, |to| {
-        write_sections(to, binary, version(&sections), &sections, &Content::Solution(team, solution))
-    })
+    batch.add(path, |to| write_sections(to, binary, version(&sections), &sections, &Content::Solution(team, solution)))
 }
 
 /// Whether a path's extension is `name` with a b behind it, not `name` alone.

@@ -1,0 +1,180 @@
+//! The files of a command, side files too: all that it reads and all that it writes are known before its work begins.
+//!
+//! A file is told by device and inode, so that links and roundabout paths are seen through; one that is not there yet by its folder and
+//! name. No input is ever overwritten, no two outputs go to the same file, and what cannot be written is told at once. Nothing else in
+//! `cli` writes files: [`Outputs`] takes a [`Target`], and only [`Files`] makes one.
+mod identity;
+mod outputs;
+
+pub use outputs::Outputs;
+
+use crate::mesh::io::check_writable;
+use crate::{formats, geometry, image};
+use identity::Identity;
+use std::path::{Path, PathBuf};
+
+/// Endings of reports.
+pub const JSON: &[&str] = &["json"];
+/// Endings of meshes.
+pub const MESH: &[&str] = &["mesh", "meshb"];
+/// Endings of solutions and metrics.
+pub const SOLUTION: &[&str] = &["sol", "solb"];
+
+/// What a command reads and writes.
+#[derive(Default)]
+pub struct Files {
+    read: Vec<Known>,
+    written: Vec<Known>,
+}
+
+/// A file that is read or written.
+struct Known {
+    path: PathBuf,
+    /// Which argument asks for it.
+    by: String,
+    identity: Identity,
+}
+
+/// A file that may be written.
+pub struct Target {
+    path: PathBuf,
+}
+
+impl Target {
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Files {
+    /// None yet. All inputs are to be named before the first output.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Reads files with nothing beside them.
+    pub fn reads(mut self, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Self {
+        for path in paths {
+            self.read(path.as_ref());
+        }
+        self
+    }
+
+    /// Reads .mesh or .meshb, with the names of their references.
+    pub fn reads_meshes(mut self, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Self {
+        for path in paths {
+            self.read(path.as_ref());
+            self.read(&geometry::names::beside(path.as_ref()));
+        }
+        self
+    }
+
+    /// Reads CAD models; BREP has its names beside.
+    pub fn reads_models(self, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Self {
+        self.reads_meshes(paths)
+    }
+
+    /// Reads images, whose voxels may be in another file.
+    pub fn reads_images(mut self, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Self {
+        for path in paths {
+            self.read(path.as_ref());
+            image::data_file(path.as_ref()).iter().for_each(|data| self.read(data));
+        }
+        self
+    }
+
+    /// Reads meshes of any format, with all that belongs to them.
+    pub fn reads_any(mut self, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Self {
+        for path in paths {
+            formats::read_files(path.as_ref()).iter().for_each(|file| self.read(file));
+        }
+        self
+    }
+
+    fn read(&mut self, path: &Path) {
+        if let Some(identity) = Identity::of(path) {
+            self.read.push(Known { path: path.to_owned(), by: String::new(), identity });
+        }
+    }
+
+    /// The command writes a file, as this argument says. `endings` without the dot; none for any.
+    ///
+    /// # Errors
+    /// For another ending, an input, a file that is written already, and what cannot be written.
+    pub fn writes(&mut self, path: &Path, by: &str, endings: &[&str]) -> Result<Target, String> {
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        if !endings.is_empty() && !endings.contains(&extension) {
+            return Err(format!("{}: the output must end in .{}", path.display(), endings.join(" or .")));
+        }
+        check_writable(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        self.written(path, by)?;
+        Ok(Target { path: path.to_owned() })
+    }
+
+    /// The command writes .mesh or .meshb, and the names of its references beside it.
+    ///
+    /// # Errors
+    /// As [`Files::writes`].
+    pub fn writes_mesh(&mut self, path: &Path, by: &str) -> Result<Target, String> {
+        let target = self.writes(path, by, MESH)?;
+        self.writes(&geometry::names::beside(path), &format!("the names beside {by}"), &[])?;
+        Ok(target)
+    }
+
+    /// The command writes a mesh of any format, with all that belongs to it.
+    ///
+    /// # Errors
+    /// As [`Files::writes`].
+    pub fn writes_any(&mut self, path: &Path, by: &str) -> Result<Target, String> {
+        let files = formats::written_files(path).map_err(|error| error.to_string())?;
+        for file in &files {
+            if file.parent().is_some_and(Path::is_dir) || !formats::foam::is_folder(path) {
+                self.writes(file, by, &[])?;
+            }
+        }
+        Ok(Target { path: path.to_owned() })
+    }
+
+    fn written(&mut self, path: &Path, by: &str) -> Result<(), String> {
+        let Some(identity) = Identity::of_output(path) else { return Ok(()) };
+        let name = path.display();
+        if let Some(input) = self.read.iter().find(|known| known.identity == identity) {
+            let also = if input.path == path {
+                String::new()
+            } else {
+                format!(" ({} is the same file)", input.path.display())
+            };
+            return Err(format!("{name}: is an input and would be overwritten{also}; give another output"));
+        }
+        if let Some(other) = self.written.iter().find(|known| known.identity == identity) {
+            let (there, before) = (other.path.display(), &other.by);
+            let also = if other.path == path { String::new() } else { format!(", which is {there},") };
+            return Err(format!("{name}: {by} and {before} would write the same file{also}; give {by} another name"));
+        }
+        self.written.push(Known { path: path.to_owned(), by: by.to_owned(), identity });
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_are_not_there_yet_are_told_apart_by_folder_and_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let mut files = Files::new();
+        files.writes_mesh(&path("o.meshb"), "-o").unwrap();
+        let mut refused = |name: &str| files.writes(&path(name), "--report", &[]).err();
+        assert!(
+            refused("o.meshb").unwrap().contains("--report and -o would write the same file; give --report another")
+        );
+        assert!(refused("./o.meshb").unwrap().contains("which is"));
+        assert!(refused("o.names.json").unwrap().contains("the names beside -o"));
+        assert!(refused("no/r.json").unwrap().contains("there is no folder"));
+        assert_eq!(refused("r.json"), None);
+        assert!(refused("r.json").is_some());
+    }
+}

@@ -1,0 +1,157 @@
+//! Where a write to a path goes, and whether it can.
+use std::ffi::OsString;
+use std::fs::{self, File, Metadata, OpenOptions};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Links that are followed before they are called a circle, as Linux counts them.
+const MOST_LINKS: usize = 40;
+
+/// Bytes of a name that a temporary name repeats: file systems take 255 in all.
+const MOST_REPEATED: usize = 100;
+
+/// Where the bytes for a path go.
+pub(super) enum Place {
+    /// A file, which may be there already: it is replaced. Links are followed.
+    File { path: PathBuf, before: Option<Metadata> },
+    /// A device or a pipe: it is written directly.
+    Device,
+    /// `/dev/stdout` that is redirected to a file: replacing that would lose what is printed.
+    Stdout,
+}
+
+impl Place {
+    /// Of a path.
+    ///
+    /// # Errors
+    /// For a folder, a read-only file, a circle of links, and where a part of the path is no folder.
+    pub fn of(path: &Path) -> io::Result<Self> {
+        if path.file_name().is_none() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+            return Err(refusal("this is a folder; name a file"));
+        }
+        let is_device = path.starts_with("/dev") || path.starts_with("/proc");
+        let path = follow(path)?;
+        match fs::metadata(&path) {
+            Ok(metadata) if metadata.is_dir() => Err(refusal("this is a folder; name a file")),
+            Ok(metadata) if !metadata.is_file() => Ok(Self::Device),
+            Ok(metadata) if is_device && is_stdout(&metadata) => Ok(Self::Stdout),
+            Ok(metadata) if metadata.permissions().readonly() => {
+                Err(refusal("the file is read-only; name another, or allow writing to it"))
+            }
+            Ok(metadata) => Ok(Self::File { path, before: Some(metadata) }),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                let folder = folder_of(&path);
+                if !folder.is_dir() {
+                    let message = format!("there is no folder {}; make it first", folder.display());
+                    return Err(io::Error::new(ErrorKind::NotFound, message));
+                }
+                Ok(Self::File { path, before: None })
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Finds out before the work whether a file could be written, without touching it.
+///
+/// # Errors
+/// For a folder, a read-only file, and where its folder is not there or takes no new file.
+pub fn check_writable(path: &Path) -> io::Result<()> {
+    match Place::of(path)? {
+        Place::File { before: Some(metadata), .. } if is_stdout(&metadata) => {
+            Err(refusal("standard output goes to this file; name another, or /dev/stdout"))
+        }
+        Place::File { path, .. } => new_beside(&path, create_file).map(drop),
+        Place::Device | Place::Stdout => Ok(()),
+    }
+}
+
+/// The folder of a file.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// What a path names behind all links, also where that is not there yet.
+///
+/// # Errors
+/// For a circle of links, and where a part of the path is no folder or must not be looked into.
+pub fn follow(path: &Path) -> io::Result<PathBuf> {
+    match fs::canonicalize(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        found => return found,
+    }
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&path) {
+            Ok(next) => path = path.parent().unwrap_or(Path::new("")).join(next),
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(refusal("its links go round in a circle; name a file"))
+}
+
+/// Whether standard output is redirected to this file.
+#[cfg(unix)]
+fn is_stdout(metadata: &Metadata) -> bool {
+    use std::os::fd::AsFd;
+    use std::os::unix::fs::MetadataExt;
+    let own = io::stdout().as_fd().try_clone_to_owned().and_then(|out| File::from(out).metadata());
+    own.is_ok_and(|own| (own.dev(), own.ino()) == (metadata.dev(), metadata.ino()))
+}
+
+#[cfg(not(unix))]
+fn is_stdout(_: &Metadata) -> bool {
+    false
+}
+
+/// Something new beside its target. It goes with this, unless it has been renamed.
+pub(super) struct Temporary {
+    pub path: PathBuf,
+    pub is_renamed: bool,
+}
+
+impl Temporary {
+    /// Gives it the name that it is meant for.
+    pub fn rename(mut self, target: &Path) -> io::Result<()> {
+        fs::rename(&self.path, target)?;
+        self.is_renamed = true;
+        Ok(())
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.is_renamed {
+            // The error that led here is the one to report.
+            let _ = if self.path.is_dir() { fs::remove_dir_all(&self.path) } else { fs::remove_file(&self.path) };
+        }
+    }
+}
+
+/// Makes a new file.
+pub(super) fn create_file(path: &Path) -> io::Result<File> {
+    OpenOptions::new().write(true).create_new(true).open(path)
+}
+
+/// Makes something new in the folder of `target`, hidden, with a name that no other run takes.
+pub(super) fn new_beside<T>(target: &Path, create: impl Fn(&Path) -> io::Result<T>) -> io::Result<(T, Temporary)> {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    let Some(name) = target.file_name() else { return Err(refusal("this names no file")) };
+    loop {
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let mut hidden = OsString::from(".");
+        hidden.push(if name.len() <= MOST_REPEATED { name } else { "geo-adapt".as_ref() });
+        hidden.push(format!(".{}-{number}.tmp", std::process::id()));
+        let path = folder_of(target).join(hidden);
+        match create(&path) {
+            Ok(made) => return Ok((made, Temporary { path, is_renamed: false })),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {} // left by a run that was killed
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+pub(super) fn refusal(message: &str) -> io::Error {
+    io::Error::new(ErrorKind::InvalidInput, message)
+}
