@@ -19,6 +19,7 @@ mod openfoam;
 mod table;
 mod transfer;
 mod tune;
+mod value_enums;
 mod view;
 mod workplace;
 
