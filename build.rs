@@ -121,7 +121,7 @@ mod occt {
         eprintln!(
             "OpenCASCADE's headers were not found. Install OCCT 7.6 (Debian: apt-get install libocct-data-exchange-dev \
              libocct-modeling-algorithms-dev libocct-ocaf-dev), or set OCCT_INCLUDE and OCCT_LIB to its folders, or build \
-             with --no-default-features to leave the CAD backend out."
+             with --no-default-features --features cli to leave the CAD backend out."
         );
         std::process::exit(1);
     }

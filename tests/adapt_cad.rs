@@ -1,5 +1,5 @@
 //! `geo-adapt adapt --cad`: the adapted mesh lies on the model, entity by entity.
-#![cfg(feature = "occt")]
+#![cfg(all(feature = "cli", feature = "occt"))]
 mod common;
 
 use common::adapting::{Adapted, Workplace, areas, isotropic, stderr, text};

@@ -1,4 +1,5 @@
 //! `geo-adapt adapt` without a CAD model: the surface of the input is the geometry.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Adapted, Workplace, areas, cube, faces, isotropic, sorted, stderr, text, volumes};

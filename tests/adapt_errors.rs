@@ -1,4 +1,5 @@
 //! `geo-adapt adapt` on bad input: one error that names the file, the place and the remedy; code 2; nothing is written.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Workplace, complaint, cube, isotropic, stderr, text};

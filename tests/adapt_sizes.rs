@@ -1,4 +1,5 @@
 //! Bounds of the sizes that `adapt` takes: local ones, limits, and what the geometry asks for.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Workplace, cube, isotropic, stderr, text};

@@ -2,7 +2,7 @@
 //!
 //! gmsh must be there (scripts/setup.sh installs it). Without it the tests that need it say so and pass; under tests/run
 //! (GEO_ADAPT_SET_UP) they fail.
-#![cfg(all(feature = "occt", unix))]
+#![cfg(all(feature = "cli", feature = "occt", unix))]
 mod common;
 
 use common::adapting::{complaint, stderr, text};

@@ -1,5 +1,5 @@
 //! `geo-adapt classify`: a mesh finds its place on the CAD model, or the user learns where it does not.
-#![cfg(feature = "occt")]
+#![cfg(all(feature = "cli", feature = "occt"))]
 mod common;
 
 use common::{program, shared_case};

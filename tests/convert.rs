@@ -1,4 +1,5 @@
 //! `geo-adapt convert`.
+#![cfg(feature = "cli")]
 use geo_adapt::formats::{self, Dataset, NamedField};
 use geo_adapt::geometry::Label;
 use geo_adapt::mesh::io::{FieldKind, write_mesh};

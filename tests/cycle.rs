@@ -1,4 +1,5 @@
 //! `geo-adapt cycle`: the loop on its analytic solver and on programs; killed and resumed it ends with the same bytes.
+#![cfg(feature = "cli")]
 mod common;
 use common::adapting::{complaint, stderr};
 use common::program;

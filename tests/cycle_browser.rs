@@ -1,4 +1,5 @@
 //! The report page of `geo-adapt cycle` in a browser: loads nothing, no error, charts and pictures there. Passes where there is no Chromium.
+#![cfg(feature = "cli")]
 mod browser;
 mod common;
 use browser::Browser;

@@ -1,4 +1,5 @@
 //! The same files, byte for byte, whatever the number of threads.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Workplace, stderr, text};

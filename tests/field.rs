@@ -1,4 +1,5 @@
 //! `geo-adapt field`: functions at vertices, values picked out, and the error against a finer mesh, by files.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Workplace, complaint, cube, stderr, text};

@@ -1,4 +1,5 @@
 //! Mesh and solution files: what is read comes out again, and what is wrong is one clear error.
+#![cfg(feature = "cli")]
 mod common;
 #[path = "common/libmeshb.rs"]
 mod libmeshb;

@@ -1,4 +1,5 @@
 //! Cases of OpenFOAM: what we write comes back and passes OpenFOAM's own checks, what it writes is read.
+#![cfg(feature = "cli")]
 use geo_adapt::formats::{Dataset, NamedField, foam};
 use geo_adapt::geometry::{Label, Names};
 use geo_adapt::mesh::TetMesh;

@@ -1,7 +1,7 @@
 //! The scripts in geometry/ still write the STEP and BREP files that lie there, byte for byte.
 //!
-//! They need the virtual environment that tests/run makes (.venv/geometry, cadquery). Without it the test says so and
-//! passes; under tests/run (GEO_ADAPT_SET_UP) it fails. Nothing of it depends on the feature: once is enough.
+//! They need the virtual environments that tests/run makes (.venv/geometry with cadquery, .venv/build123d). Without one its test says so
+//! and passes; under tests/run (GEO_ADAPT_SET_UP) it fails. Nothing of it depends on the feature: once is enough.
 #![cfg(feature = "occt")]
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,10 +12,20 @@ fn geometry() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry")
 }
 
-/// The models below a folder, relative to it: those of the folder itself and of zoo/.
-fn models(folder: &Path) -> BTreeSet<PathBuf> {
+/// The folders of geometry/ whose models one environment writes with one script.
+struct Kind {
+    environment: &'static str,
+    script: &'static str,
+    places: &'static [&'static str],
+}
+
+const CADQUERY: Kind = Kind { environment: "geometry", script: "write_all.py", places: &["", "zoo"] };
+const BUILD123D: Kind = Kind { environment: "build123d", script: "build123d/write_all.py", places: &["build123d"] };
+
+/// The models in these places below a folder, relative to it.
+fn models(folder: &Path, places: &[&str]) -> BTreeSet<PathBuf> {
     let mut found = BTreeSet::new();
-    for place in ["", "zoo"] {
+    for place in places {
         for entry in fs::read_dir(folder.join(place)).expect("the folder") {
             let name = PathBuf::from(entry.expect("an entry").file_name());
             if name.extension().is_some_and(|kind| kind == "step" || kind == "brep") {
@@ -27,8 +37,8 @@ fn models(folder: &Path) -> BTreeSet<PathBuf> {
 }
 
 /// Runs a script with `-o FOLDER`; false where the environment is not there.
-fn written(script: &str, folder: &Path) -> bool {
-    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv/geometry/bin/python");
+fn written(environment: &str, script: &str, folder: &Path) -> bool {
+    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv").join(environment).join("bin/python");
     if !python.exists() {
         assert!(std::env::var_os("GEO_ADAPT_SET_UP").is_none(), "{} is not there", python.display());
         eprintln!("not run: {} is not there; tests/run makes it", python.display());
@@ -49,24 +59,33 @@ fn difference(folder: &Path, model: &Path) -> Option<String> {
     (new != old).then(|| format!("{} comes out otherwise than it lies in geometry/, from line {line}", model.display()))
 }
 
-/// In one process, since importing cadquery takes longer than the models do.
-#[test]
-fn all_models_come_out_as_they_lie_there() {
+/// In one process, since importing cadquery or build123d takes longer than the models do.
+fn all_come_out_as_they_lie_there(kind: &Kind) {
     let folder = tempfile::tempdir().expect("a folder for the new files");
-    if !written("write_all.py", folder.path()) {
+    if !written(kind.environment, kind.script, folder.path()) {
         return;
     }
-    let there = models(&geometry());
-    assert_eq!(models(folder.path()), there, "write_all.py writes other models than lie in geometry/");
+    let there = models(&geometry(), kind.places);
+    assert_eq!(models(folder.path(), kind.places), there, "{} writes other models than lie in geometry/", kind.script);
     let differences: Vec<String> = there.iter().filter_map(|model| difference(folder.path(), model)).collect();
     assert!(differences.is_empty(), "{}", differences.join("\n"));
 }
 
-/// The command line of the scripts outside zoo/.
+#[test]
+fn all_models_of_cadquery_come_out_as_they_lie_there() {
+    all_come_out_as_they_lie_there(&CADQUERY);
+}
+
+#[test]
+fn all_models_of_build123d_come_out_as_they_lie_there() {
+    all_come_out_as_they_lie_there(&BUILD123D);
+}
+
+/// The command line of the scripts outside zoo/ and build123d/.
 #[test]
 fn a_script_alone_writes_the_same() {
     let folder = tempfile::tempdir().expect("a folder for the new file");
-    if written("cube.py", folder.path()) {
+    if written(CADQUERY.environment, "cube.py", folder.path()) {
         assert_eq!(difference(folder.path(), Path::new("cube.step")), None);
     }
 }
@@ -74,7 +93,8 @@ fn a_script_alone_writes_the_same() {
 #[test]
 fn every_model_has_its_line_in_the_readme() {
     let text = fs::read_to_string(geometry().join("README.md")).expect("geometry/README.md");
-    for model in models(&geometry()) {
+    let places = [CADQUERY.places, BUILD123D.places].concat();
+    for model in models(&geometry(), &places) {
         // A BREP stands beside the STEP of its name.
         let name = model.with_extension("step");
         let name = name.file_name().expect("a name").to_string_lossy();

@@ -1,4 +1,5 @@
 //! NRRD files: all kinds and encodings are read as they were written, and what is wrong in a file is told with its place and the remedy.
+#![cfg(feature = "cli")]
 mod common;
 use common::adapting::{Workplace, complaint};
 use common::program;

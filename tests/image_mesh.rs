@@ -1,4 +1,5 @@
 //! `geo-adapt image-mesh` makes a valid mesh of a 3D image, near its surfaces, of round tetrahedra, on any number of threads; and `adapt` takes it.
+#![cfg(feature = "cli")]
 mod common;
 use common::adapting::{Workplace, areas, faces, isotropic, stderr, text, volumes};
 use common::program;

@@ -1,4 +1,5 @@
 //! `geo-adapt inspect` tells a good mesh from a bad one, measures it, and ends with 0, 1 or 2.
+#![cfg(feature = "cli")]
 mod common;
 use common::{program, shared_case};
 use geo_adapt::mesh::io::{FieldKind, Solution, SolutionField, write_mesh, write_solution};

@@ -1,4 +1,5 @@
 //! The adapter in memory: the same meshes as by the program, meshes that go in again, and an error for whatever is wrong with the slices.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Workplace, cube, isotropic, volumes};
@@ -7,6 +8,7 @@ use geo_adapt::geometry::Entity;
 use geo_adapt::mesh::vector::{Vec3, add, distance, scale};
 use geo_adapt::mesh::{TetMesh, io, validity};
 use geo_adapt::metric::Sym3;
+use nalgebra::{Matrix3, Point3};
 
 fn settings() -> Settings {
     Settings { threads: 1, complexity: Some(300.0), ..Settings::default() }
@@ -100,6 +102,33 @@ fn slices_alone_are_enough() {
     assert!(adapted.mesh.tets.refs.iter().all(|&region| region == 1));
     let again = adapt(&mut Adapter::discrete(Settings { threads: 1, ..settings }).unwrap(), &bare, &metric);
     assert!(again.mesh == adapted.mesh && again.metric == adapted.metric && again.parents == adapted.parents);
+}
+
+#[test]
+fn tensors_of_nalgebra_give_the_same_mesh_and_a_report_measures_it() {
+    let input = cube(3, |_| 1);
+    let metric = front(&input, 0.4);
+    let mut adapter = Adapter::discrete(settings()).unwrap();
+    let expected = adapt(&mut adapter, &MeshView::of(&input), &metric);
+    let points: Vec<Point3<f64>> = input.vertices.iter().map(|&p| p.into()).collect();
+    let matrices: Vec<Matrix3<f64>> = metric.iter().map(|&terms| Sym3(terms).into()).collect();
+    let view = MeshView { vertices: geo_adapt::coordinates(&points), ..MeshView::of(&input) };
+    let found = adapter.adapt(&view, &matrices).unwrap();
+    assert!(found.mesh == expected.mesh && found.metric == expected.metric);
+
+    let report = adapter.report(&found).unwrap();
+    assert_eq!(
+        (report.statistics.vertices, report.statistics.tets),
+        (found.mesh.vertices.len(), found.mesh.tets.len())
+    );
+    assert!((report.statistics.volume - 1.0).abs() < 1e-12 && report.statistics.mean_ratios.min > 0.1);
+    assert!(report.fidelity.from_model.unwrap().distance < 1e-12);
+    // Of a mesh on another surface there is none.
+    let other =
+        adapt(&mut Adapter::discrete(settings()).unwrap(), &MeshView::of(&cube(2, |_| 1)), &vec![isotropic(0.4).0; 27]);
+    let torn = AdaptedMesh { mesh: other.mesh, ..found };
+    assert!(matches!(adapter.report(&torn), Err(Error::Length { .. })));
+    assert!(matches!(Adapter::discrete(settings()).unwrap().report(&torn), Err(Error::Place { .. })));
 }
 
 #[test]

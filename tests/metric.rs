@@ -1,4 +1,5 @@
 //! `geo-adapt metric`: each command on a small mesh gives what it should, and bad input one error with code 2 and no file.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Workplace, complaint, cube, isotropic, stderr, text};

@@ -1,5 +1,5 @@
 //! `geo-adapt metric geometry`: sizes from the curvature of a model, and from what is thin or near.
-#![cfg(feature = "occt")]
+#![cfg(all(feature = "cli", feature = "occt"))]
 mod common;
 
 use common::{program, shared_case};

@@ -1,4 +1,5 @@
 //! `geo-adapt metric multiscale`, and `geo-adapt adapt --field`, as a user runs them.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Workplace, stderr, text};

@@ -1,5 +1,5 @@
 //! What a CAD model holds, as `geo-adapt model` and the library tell it, and what a bad file gets.
-#![cfg(feature = "occt")]
+#![cfg(all(feature = "cli", feature = "occt"))]
 mod support;
 
 use geo_adapt::geometry::{CurveKind, Evaluate, Geometry, OcctModel, SurfaceKind};

@@ -1,5 +1,5 @@
 //! A build without OpenCASCADE says so.
-#![cfg(not(feature = "occt"))]
+#![cfg(all(feature = "cli", not(feature = "occt")))]
 use std::process::Command;
 
 #[test]

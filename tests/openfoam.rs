@@ -1,4 +1,5 @@
 //! OpenFOAM in the loop: the case that is prepared, what happens when a solve blows up, and the real solver where it is installed.
+#![cfg(feature = "cli")]
 mod common;
 use common::adapting::stderr;
 use common::program;

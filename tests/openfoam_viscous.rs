@@ -1,4 +1,5 @@
 //! Viscous flow by OpenFOAM, where it is installed: the friction on a flat plate is that of Blasius, and several processes find what one does.
+#![cfg(feature = "cli")]
 use geo_adapt::cycle::solver::openfoam::drive::{drive, last_time};
 use geo_adapt::cycle::solver::openfoam::{Config, Walls};
 use geo_adapt::cycle::solver::{Job, Solver, find_program};

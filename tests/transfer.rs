@@ -1,4 +1,5 @@
 //! `geo-adapt transfer`: fields from one mesh to another, linear and conservative, by files.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Workplace, complaint, cube, isotropic, stderr, text};

@@ -1,4 +1,5 @@
 //! `geo-adapt tune` measures what it is asked to and prints what can be given to `adapt`.
+#![cfg(feature = "cli")]
 mod common;
 
 use common::adapting::{Workplace, stderr, text};

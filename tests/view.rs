@@ -1,4 +1,5 @@
 //! `geo-adapt view`: a page that loads nothing and holds the mesh's numbers, and pictures that show what they should.
+#![cfg(feature = "cli")]
 mod common;
 use common::adapting::{complaint, cube, isotropic};
 use common::program;

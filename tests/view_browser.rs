@@ -1,4 +1,5 @@
 //! The page of `geo-adapt view` in a browser: drawn without an error, turned by the mouse, cut. Passes where there is no Chromium.
+#![cfg(feature = "cli")]
 mod browser;
 mod common;
 use browser::Browser;

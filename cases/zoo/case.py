@@ -26,7 +26,7 @@ LEAST_AT_APEX = {"needle": 0.003}
 
 def models():
     """{name: file}: the STEP files, and the BREP files under their whole names."""
-    folders = [ROOT / "geometry", ROOT / "geometry/zoo"]
+    folders = [ROOT / "geometry", ROOT / "geometry/zoo", ROOT / "geometry/build123d"]
     found = {path.stem: path for folder in folders for path in sorted(folder.glob("*.step"))}
     return found | {path.name: path for folder in folders for path in sorted(folder.glob("*.brep"))}
 

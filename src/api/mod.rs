@@ -32,20 +32,42 @@
 //! **The same mesh** as by `geo-adapt adapt` comes out, to the last bit and on any number of threads, when the same mesh, metric and settings
 //! go in. The one difference is a [`MeshView`] with its `place`, which the program finds anew from its files.
 mod error;
+pub mod io;
 mod output;
+mod report;
 mod view;
 
 pub use error::Error;
 pub use output::{AdaptedMesh, Parents};
-pub use view::MeshView;
+pub use report::Report;
+pub use view::{MeshView, coordinates};
 
-use crate::adapt::{self, Kind, Observer, Options};
-use crate::geometry::classify::{self, Classification};
+// What these are made of.
+#[doc(inline)]
+pub use crate::adapt::{
+    Counts, Criterion, Freeze, Grains, Kind, Observer, Options, PointCreation, Refusal, Scheduler, SurfaceBounds,
+};
+#[doc(inline)]
+pub use crate::geometry::classify::Classification;
+#[doc(inline)]
+pub use crate::geometry::fidelity::{Deviation, Farthest, Fidelity};
+#[doc(inline)]
+pub use crate::geometry::{Entity, Geometry, Model, Topology};
+#[doc(inline)]
+pub use crate::mesh::vector::Vec3;
+#[doc(inline)]
+pub use crate::mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};
+#[doc(inline)]
+pub use crate::metric::{Distribution, Eigen, Statistics, Sym3};
+#[doc(inline)]
+pub use crate::tasks::{Backend, Plan, Strategy};
+
+use crate::adapt;
+use crate::geometry::Discrete;
+use crate::geometry::classify;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
-use crate::geometry::{Discrete, Model};
-use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
-use crate::metric::{Background, Field, Source, Sym3, field};
+use crate::metric::{Background, Field, Source, field};
 use crate::tasks::{Pool, Team};
 use std::path::Path;
 use std::sync::Arc;
@@ -128,23 +150,34 @@ impl Adapter {
         }
     }
 
-    /// Adapts a mesh to a metric at its vertices, shape (vertices, 6): 11 12 22 13 23 33, in 1/length². Triangles that are missing on
-    /// the boundary or between regions are added.
+    /// Measures a mesh that came out of this adapter, in its metric and on the model.
+    ///
+    /// # Errors
+    /// [`Error::Place`], [`Error::Length`] or [`Error::OutOfRange`] when its place is not on the model as it is now.
+    pub fn report(&self, adapted: &AdaptedMesh) -> Result<Report, Error> {
+        let model = self.model().ok_or_else(|| Error::place("no mesh came before it".into()))?;
+        view::fits("metrics", adapted.metric.len(), adapted.mesh.vertices.len())?;
+        view::check_place(&adapted.place, &adapted.mesh, model)?;
+        Ok(Report::of(Team::new(&self.pool, self.settings.options.plan), adapted, model))
+    }
+
+    /// Adapts a mesh to a metric at its vertices, a tensor each, in 1/length²: [`Sym3`], its terms 11 12 22 13 23 33, or nalgebra's
+    /// `Matrix3<f64>`. Triangles that are missing on the boundary or between regions are added.
     ///
     /// # Errors
     /// [`Error`], by what is wrong with the input. The adapter can be used again.
-    pub fn adapt(&mut self, view: &MeshView<'_>, metric: &[[f64; 6]]) -> Result<AdaptedMesh, Error> {
-        self.adapt_observed(view, metric, &Silent)
+    pub fn adapt<M: Copy + Into<Sym3>>(&mut self, view: &MeshView<'_>, metric: &[M]) -> Result<AdaptedMesh, Error> {
+        self.adapt_observed(view, metric, &adapt::Silent)
     }
 
     /// As [`Adapter::adapt`], with an observer that is told what happens and may stop it: the mesh then is valid, but not done.
     ///
     /// # Errors
     /// As there.
-    pub fn adapt_observed(
+    pub fn adapt_observed<M: Copy + Into<Sym3>>(
         &mut self,
         view: &MeshView<'_>,
-        metric: &[[f64; 6]],
+        metric: &[M],
         observer: &dyn Observer,
     ) -> Result<AdaptedMesh, Error> {
         let Self { ground, settings, pool } = self;
@@ -196,9 +229,9 @@ fn placed(team: Team<'_>, ground: &mut Ground, mesh: &TetMesh, settings: &Settin
 }
 
 /// ln M of a metric that fits the mesh and is positive definite.
-fn logs(team: Team<'_>, view: &MeshView<'_>, metric: &[[f64; 6]]) -> Result<Vec<Sym3>, Error> {
+fn logs<M: Copy + Into<Sym3>>(team: Team<'_>, view: &MeshView<'_>, metric: &[M]) -> Result<Vec<Sym3>, Error> {
     view::fits("metrics", metric.len(), view.vertices.len())?;
-    let metrics: Vec<Sym3> = metric.iter().map(|&terms| Sym3(terms)).collect();
+    let metrics: Vec<Sym3> = metric.iter().map(|&tensor| tensor.into()).collect();
     if let Some(vertex) = metrics.iter().position(|metric| !metric.is_spd()) {
         return Err(Error::Metric { vertex });
     }
@@ -223,17 +256,5 @@ fn scale(team: Team<'_>, mesh: &TetMesh, source: &mut Source, wanted: Option<f64
         Ok(())
     } else {
         Err(Error::Complexity { complexity, most: GREATEST_COMPLEXITY })
-    }
-}
-
-/// An observer that listens to nothing.
-struct Silent;
-
-impl Observer for Silent {
-    fn begin(&self, _: Kind, _: usize, _: usize) {}
-    fn advance(&self, _: usize) {}
-    fn end(&self, _: &adapt::Counts) {}
-    fn stop(&self) -> bool {
-        false
     }
 }

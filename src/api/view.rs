@@ -4,6 +4,7 @@ use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Geometry, Model};
 use crate::mesh::vector::Vec3;
 use crate::mesh::{Association, Elements, TetMesh};
+use nalgebra::Point3;
 
 /// Tetrahedra are numbered with 30 bits, and their faces with 32.
 const MOST_TETS: usize = 1 << 30;
@@ -41,6 +42,11 @@ pub struct MeshView<'a> {
     pub association: Option<&'a Association>,
     /// Where the boundary lies on the model, of a mesh that came out of the same adapter: then nothing is looked for.
     pub place: Option<&'a Classification>,
+}
+
+/// The coordinates of nalgebra's points, as slices have them: nothing is copied.
+pub fn coordinates(points: &[Point3<f64>]) -> &[Vec3] {
+    bytemuck::cast_slice(points)
 }
 
 impl<'a> MeshView<'a> {

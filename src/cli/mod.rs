@@ -22,6 +22,7 @@ mod table;
 mod terminal;
 mod transfer;
 mod tune;
+mod value_enums;
 mod view;
 mod workplace;
 

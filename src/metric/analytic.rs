@@ -8,15 +8,13 @@ const H0: f64 = 0.001;
 const H1: f64 = 0.1;
 
 /// An analytic metric field over the unit cube, with or without the cylinder of radius 0.5 about the z axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Analytic {
     /// A layer of thickness 0.001 at z = 0.5.
     Linear,
     /// A layer on the cylinder r = 0.5, tangential sizes 0.1.
-    #[value(name = "polar-1")]
     Polar1,
     /// The same with the circumferential size down to 1/40 at the cylinder.
-    #[value(name = "polar-2")]
     Polar2,
 }
 

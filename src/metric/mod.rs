@@ -2,6 +2,7 @@
 mod analytic;
 mod background;
 pub mod batch;
+mod conversions;
 mod eigen;
 mod ellipsoid;
 mod error;

@@ -5,12 +5,11 @@ use crate::mesh::TetMesh;
 use crate::mesh::quadrature::{KEAST, Rule, WALKINGTON};
 use crate::mesh::vector::{Vec3, volume6};
 use crate::tasks::Team;
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// An analytic scalar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scalar {
     /// Waves of two amplitudes; continuous, with kinks where the amplitude changes.
@@ -22,6 +21,18 @@ pub enum Scalar {
 }
 
 impl Scalar {
+    /// All functions.
+    pub const ALL: [Self; 3] = [Self::Sinfun3, Self::Tanh3, Self::Sinatan3];
+
+    /// As the command line spells it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sinfun3 => "sinfun3",
+            Self::Tanh3 => "tanh3",
+            Self::Sinatan3 => "sinatan3",
+        }
+    }
+
     /// The value at p.
     pub fn at(self, [x, y, z]: Vec3) -> f64 {
         match self {

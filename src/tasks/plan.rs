@@ -1,11 +1,9 @@
 //! How a loop is to be made into tasks, and who runs them.
-use clap::ValueEnum;
 use serde::Serialize;
 
 /// Who runs the tasks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
-#[value(rename_all = "lower")]
 pub enum Backend {
     /// Our own work-stealing threads: each takes its newest task, or another's oldest; the caller is one of them.
     #[default]
@@ -20,7 +18,7 @@ pub enum Backend {
 }
 
 /// In which order tasks are made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strategy {
     /// One task makes all the others.
@@ -59,6 +57,15 @@ impl Backend {
 impl Strategy {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Flat, Self::TwoLevel, Self::Hierarchical];
+
+    /// As the command line spells it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::TwoLevel => "two-level",
+            Self::Hierarchical => "hierarchical",
+        }
+    }
 }
 
 /// How a loop is run.

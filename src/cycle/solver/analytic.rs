@@ -30,8 +30,7 @@ impl Solver for Config {
 
     fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {
         let program = std::env::current_exe().map_err(|error| format!("this program's own file: {error}"))?;
-        let function = clap::ValueEnum::to_possible_value(&self.function)
-            .map_or_else(String::new, |value| value.get_name().into());
+        let function = self.function.name().into();
         let mut words =
             vec![text(&program), "field".into(), "evaluate".into(), text(job.mesh), "--function".into(), function];
         words.extend(["-o".into(), "u.solb".into(), "--report".into(), "u.json".into()]);

@@ -65,7 +65,7 @@ impl Solution {
     /// metric file holds.
     ///
     /// ```
-    /// use geo_adapt::mesh::io::Solution;
+    /// use geo_adapt::io::Solution;
     /// let metric = [[1.0, 0.0, 4.0, 0.0, 0.0, 9.0]];
     /// assert_eq!(Solution::metric(&metric).as_metric(), Some(&metric[..]));
     /// ```

@@ -14,11 +14,10 @@ pub use rings::Rings;
 use super::Sym3;
 use crate::mesh::TetMesh;
 use crate::tasks::Team;
-use clap::ValueEnum;
 use serde::Serialize;
 
 /// How Hessians are recovered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Recovery {
     /// A quadratic function for each vertex, fitted to the values of its neighbours and theirs: exact for quadratics, on the boundary too.
@@ -31,6 +30,9 @@ pub enum Recovery {
 }
 
 impl Recovery {
+    /// All ways.
+    pub const ALL: [Self; 3] = [Self::Fit, Self::L2, Self::Jumps];
+
     /// As the command line spells it.
     pub const fn name(self) -> &'static str {
         match self {
