@@ -8,6 +8,7 @@ use crate::geometry::classify::associate;
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
+use crate::mesh::crossing::{Crossing, Crossings};
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
 use crate::tasks::Team;
@@ -76,6 +77,8 @@ pub struct Report {
     overgrown: bool,
     /// Surface triangles beyond --normal-deviation or --hausdorff.
     astray: usize,
+    /// Pairs of boundary triangles that cross, and the first of them; indices count from 0.
+    crossings: Crossings,
     operations: BTreeMap<&'static str, Operation>,
     /// Wall times.
     pub seconds: Seconds,
@@ -120,6 +123,7 @@ impl Report {
             off_model: extracted.off_model,
             overgrown: adapted.overgrown,
             astray: adapted.astray,
+            crossings: extracted.crossings,
             operations: operations(&adapted.work),
             seconds: Seconds { geometry: adapted.geometry.as_secs_f64(), ..Seconds::default() },
             mesh,
@@ -149,6 +153,13 @@ impl Report {
             table.row(
                 "beyond the bounds",
                 format_args!("{} surface triangles: no room to split them, or their vertices must stay", self.astray),
+            );
+        }
+        if let [Crossing { triangles: [a, b], at }, ..] = self.crossings.first[..] {
+            let (count, at) = (self.crossings.count, place(at));
+            table.row(
+                "THE BOUNDARY CROSSES ITSELF",
+                format_args!("{count} pairs of triangles; the first: {} and {} at {at}", a + 1, b + 1),
             );
         }
         if self.overgrown {
