@@ -6,6 +6,8 @@ use crate::adapt::core::required::Required;
 use crate::adapt::core::store::Store;
 use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
+use crate::mesh::crossing::{self, Crossings};
+use crate::mesh::vector::Vec3;
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::Sym3;
 use crate::tasks::{GRAIN, Team};
@@ -31,6 +33,20 @@ pub struct Extracted {
     pub metrics: Vec<Sym3>,
     /// Boundary vertices that found no room on the model: their tetrahedra would be inverted at its closest point.
     pub off_model: Vec<u32>,
+    /// Where its boundary passes through itself.
+    pub crossings: Crossings,
+}
+
+/// Pairs of crossing triangles that are told.
+const TOLD: usize = 3;
+
+/// A surface triangle.
+#[derive(Clone, Copy)]
+struct Triangle {
+    nodes: [u32; 3],
+    face: u32,
+    /// Its nodes, so that the normal points outwards, if there is nothing beyond.
+    outward: Option<[u32; 3]>,
 }
 
 /// Takes the mesh out of the store, in the order of its ids, with what `input` required; `refs` gives each model
@@ -57,14 +73,15 @@ pub fn extract(
     let triangles = team.collect(GRAIN, store.tet_bound(), |range, found| {
         store.live_tets_in(range).for_each(|t| triangles_of(store, t, refs, &renumber, found));
     });
-    mesh.triangles.nodes = triangles.iter().map(|&(nodes, _)| nodes).collect();
-    mesh.triangles.refs = triangles.iter().map(|&(_, face)| refs.faces[face as usize]).collect();
+    mesh.triangles.nodes = triangles.iter().map(|triangle| triangle.nodes).collect();
+    mesh.triangles.refs = triangles.iter().map(|triangle| refs.faces[triangle.face as usize]).collect();
+    let crossings = crossings(team, &mesh.vertices, &triangles);
     let classification = Classification {
         entities: at(team, &vertices, |v| store.entity(v)),
         parameters: at(team, &vertices, |v| store.parameters(v)),
         projected: mesh.vertices.clone(),
         ridges: ridges(team, store, renumber),
-        faces: triangles.iter().map(|&(_, face)| face).collect(),
+        faces: triangles.iter().map(|triangle| triangle.face).collect(),
     };
     debug_assert!(classification.ridges.iter().all(|&(_, edge)| (edge as usize) < refs.edges.len()));
     for &(nodes, edge) in &classification.ridges {
@@ -73,7 +90,19 @@ pub fn extract(
     Required::list(input, &mut mesh, |v| renumber(context.ids[v.index()]));
     let mut off_model: Vec<u32> = unprojected.iter().filter(|v| store.is_vertex(**v)).map(|v| renumber(*v)).collect();
     off_model.sort_unstable();
-    Extracted { mesh, classification, metrics: at(team, &vertices, |v| store.metric(v)), off_model }
+    Extracted { mesh, classification, metrics: at(team, &vertices, |v| store.metric(v)), off_model, crossings }
+}
+
+/// Where the boundary passes through itself, by the numbers of the triangles.
+fn crossings(team: Team<'_>, vertices: &[Vec3], triangles: &[Triangle]) -> Crossings {
+    let boundary: Vec<u32> =
+        triangles.iter().zip(0..).filter(|(triangle, _)| triangle.outward.is_some()).map(|(_, i)| i).collect();
+    let nodes = |i: usize| triangles[boundary[i] as usize].outward.unwrap_or_default();
+    let mut found = crossing::crossings(team, boundary.len(), |i| nodes(i).map(|v| vertices[v as usize]), TOLD);
+    for told in &mut found.first {
+        told.triangles = told.triangles.map(|i| boundary[i] as usize);
+    }
+    found
 }
 
 /// Something of each vertex.
@@ -111,7 +140,7 @@ fn triangles_of(
     t: TetId,
     refs: &References,
     number: &impl Fn(VertexId) -> u32,
-    found: &mut Vec<([u32; 3], u32)>,
+    found: &mut Vec<Triangle>,
 ) {
     let tags = store.tags(t);
     if tags == [0; 4] {
@@ -122,7 +151,8 @@ fn triangles_of(
     for i in (0..4).filter(|&i| tags[i] != 0 && (!n[i].is_some() || region(t) < region(n[i]))) {
         let [a, b, c] = FACE[i].map(|k| number(v[k]));
         let face = tags[i] - 1;
-        found.push((if refs.inward[face as usize] { [a, b, c] } else { [a, c, b] }, face));
+        let nodes = if refs.inward[face as usize] { [a, b, c] } else { [a, c, b] };
+        found.push(Triangle { nodes, face, outward: (!n[i].is_some()).then_some([a, c, b]) });
     }
 }
 

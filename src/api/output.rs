@@ -6,6 +6,7 @@ use crate::geometry::classify::Classification;
 use crate::geometry::classify::associate;
 use crate::geometry::{Entity, Evaluate, Geometry, Model};
 use crate::mesh::TetMesh;
+use crate::mesh::crossing::Crossings;
 use crate::metric::Background;
 use crate::tasks::Team;
 use crate::transfer::Places;
@@ -27,6 +28,8 @@ pub struct AdaptedMesh {
     pub overgrown: bool,
     /// Surface triangles beyond the bounds of the surface that were set.
     pub deviating: usize,
+    /// Where the boundary passes through itself: triangles of `mesh`, with the first few.
+    pub crossings: Crossings,
 }
 
 /// For each new vertex a place in the old mesh.
@@ -68,7 +71,7 @@ impl AdaptedMesh {
 
     /// Of what the kernel gives; `old` is the mesh that went in.
     pub(super) fn of(team: Team<'_>, adapted: Adapted, model: &Model, old: &Background) -> Self {
-        let Extracted { mut mesh, mut classification, metrics, off_model } = adapted.extracted;
+        let Extracted { mut mesh, mut classification, metrics, off_model, crossings } = adapted.extracted;
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &classification),
             #[cfg(feature = "occt")]
@@ -86,6 +89,7 @@ impl AdaptedMesh {
             off_model,
             overgrown: adapted.overgrown,
             deviating: adapted.deviating,
+            crossings,
         }
     }
 }

@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Some(metrics) => Statistics::in_metric(team, &mesh, &metrics),
         None => Statistics::in_space(team, &mesh),
     };
-    let validity = validity::check(&mesh);
+    let validity = validity::check_on(team, &mesh);
     let cad = model.map(|model| on_model(team, &mesh, &model));
     let valid = validity.is_valid() && !matches!(cad, Some(Cad::Off { .. }));
     let worst_tet = worst(&mesh, &statistics);

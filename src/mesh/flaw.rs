@@ -32,6 +32,9 @@ pub enum FlawKind {
     PinchedVertex,
     /// A vertex of no tetrahedron.
     HangingVertex,
+    /// Two triangles of the boundary pass through each other, or touch beside their corners and edges: the mesh overlaps itself. Looked
+    /// for where all tetrahedra are positive.
+    CrossingTriangles,
 }
 
 impl FlawKind {
@@ -51,6 +54,7 @@ impl FlawKind {
             Self::LooseEdge => "tagged edges that are no edge of a tetrahedron",
             Self::PinchedVertex => "vertices where the mesh is pinched",
             Self::HangingVertex => "hanging vertices (of no tetrahedron)",
+            Self::CrossingTriangles => "pairs of boundary triangles that cross",
         }
     }
 }
@@ -60,9 +64,12 @@ impl FlawKind {
 pub struct Offender {
     /// Index of the element or vertex; of a face that is no element, of its tetrahedron; none for an edge of no element.
     pub index: Option<usize>,
-    /// Its nodes.
+    /// Index of the other one, of two that cross.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other: Option<usize>,
+    /// Its nodes; of two those of both.
     pub nodes: Vec<u32>,
-    /// Its middle, model units.
+    /// Its middle, or where the two meet; model units.
     pub at: Vec3,
 }
 
@@ -84,7 +91,9 @@ impl std::fmt::Display for Flaw {
         for (i, offender) in self.first.iter().enumerate() {
             f.write_str(if i == 0 { ": " } else { "; " })?;
             if let Some(index) = offender.index {
-                write!(f, "no. {}, ", index + 1)?;
+                write!(f, "no. {}", index + 1)?;
+                offender.other.map_or(Ok(()), |other| write!(f, " and {}", other + 1))?;
+                f.write_str(", ")?;
             }
             let [x, y, z] = offender.at;
             let nodes: Vec<u32> = offender.nodes.iter().map(|v| v + 1).collect();

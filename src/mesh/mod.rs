@@ -1,6 +1,7 @@
 //! Tetrahedral meshes as plain arrays: what goes in and what comes out.
 pub mod adjacency;
 pub mod box_tree;
+pub mod crossing;
 pub mod disjoint_sets;
 mod flaw;
 pub mod hilbert;
@@ -15,6 +16,7 @@ pub mod seen;
 pub mod split_nonmanifold;
 mod starts;
 mod tet_mesh;
+pub mod triangle_pair;
 pub mod validity;
 pub mod vector;
 pub mod vertex_neighbours;

@@ -1,10 +1,11 @@
 //! Whether a mesh is one: positive tetrahedra, a closed manifold boundary that its triangles tell, nothing twice, nothing loose.
-use super::adjacency::{FACES, FaceKey, sorted_faces, sorted3, unique_edges};
+use super::adjacency::{FACES, FaceKey, NONE, sorted_faces, sorted3, unique_edges};
 use super::disjoint_sets::DisjointSets;
 use super::flaw::{Flaw, FlawKind, Offender};
 use super::predicate::orientation;
-use super::vector::{add, scale};
-use super::{Elements, TetMesh};
+use super::vector::{Vec3, add, scale};
+use super::{Elements, TetMesh, crossing};
+use crate::tasks::Team;
 use serde::Serialize;
 
 /// Offenders that are named.
@@ -31,14 +32,20 @@ impl Validity {
 
 /// Checks a mesh whose indices are in range.
 pub fn check(mesh: &TetMesh) -> Validity {
+    check_on(Team::alone(), mesh)
+}
+
+/// As [`check`], with threads.
+pub fn check_on(team: Team<'_>, mesh: &TetMesh) -> Validity {
     let mut found = Findings { mesh, validity: Validity::default() };
     check_tets(&mut found);
     let faces = sorted_faces(&mesh.tets.nodes);
     let triangles = sorted_triangles(&mesh.triangles);
-    check_faces(&mut found, &faces, &triangles);
+    let boundary = check_faces(&mut found, &faces, &triangles);
     check_boundary_edges(&mut found, &faces);
     check_tagged_edges(&mut found);
     check_vertices(&mut found, &faces);
+    check_crossings(&mut found, team, boundary);
     found.validity
 }
 
@@ -50,16 +57,24 @@ struct Findings<'a> {
 impl Findings<'_> {
     /// Counts a flaw.
     fn add(&mut self, kind: FlawKind, index: Option<usize>, nodes: &[u32]) {
+        let mesh = self.mesh;
+        let flaw = self.flaw(kind);
+        flaw.count += 1;
+        if flaw.first.len() < NAMED {
+            let sum = nodes.iter().fold([0.0; 3], |sum, &v| add(sum, mesh.vertices[v as usize]));
+            let at: Vec3 = scale(sum, 1.0 / nodes.len() as f64);
+            flaw.first.push(Offender { index, other: None, nodes: nodes.to_vec(), at });
+        }
+    }
+
+    /// What was found of a kind.
+    fn flaw(&mut self, kind: FlawKind) -> &mut Flaw {
         let flaws = &mut self.validity.flaws;
         let at = flaws.iter().position(|flaw| flaw.kind == kind).unwrap_or_else(|| {
             flaws.push(Flaw { kind, count: 0, first: Vec::new() });
             flaws.len() - 1
         });
-        flaws[at].count += 1;
-        if flaws[at].first.len() < NAMED {
-            let sum = nodes.iter().fold([0.0; 3], |sum, &v| add(sum, self.mesh.vertices[v as usize]));
-            flaws[at].first.push(Offender { index, nodes: nodes.to_vec(), at: scale(sum, 1.0 / nodes.len() as f64) });
-        }
+        &mut flaws[at]
     }
 
     /// Counts all but the first of equal elements.
@@ -120,9 +135,18 @@ fn is_even(mesh: &TetMesh, side: u32) -> bool {
     inversions % 2 == 0
 }
 
-/// Faces of the tetrahedra against each other and against the triangles.
-fn check_faces(found: &mut Findings, faces: &[FaceKey], triangles: &[([u32; 3], u32)]) {
+/// A face of one tetrahedron.
+struct BoundaryFace {
+    /// Its first triangle, or [`NONE`].
+    triangle: u32,
+    /// Nodes, so that the normal points outwards.
+    nodes: [u32; 3],
+}
+
+/// Faces of the tetrahedra against each other and against the triangles. Returns those on the boundary.
+fn check_faces(found: &mut Findings, faces: &[FaceKey], triangles: &[([u32; 3], u32)]) -> Vec<BoundaryFace> {
     let mesh = found.mesh;
+    let mut boundary = Vec::new();
     let mut next = 0;
     for same in faces.chunk_by(|a, b| a.nodes == b.nodes) {
         let nodes = same[0].nodes;
@@ -135,6 +159,11 @@ fn check_faces(found: &mut Findings, faces: &[FaceKey], triangles: &[([u32; 3], 
             next += 1;
         }
         let tet = same[0].side as usize / 4;
+        if same.len() == 1 {
+            let triangle = triangles[begin..next].first().map_or(NONE, |triangle| triangle.1);
+            let nodes = FACES[same[0].side as usize % 4].map(|i| mesh.tets.nodes[tet][i]);
+            boundary.push(BoundaryFace { triangle, nodes });
+        }
         match same {
             [_] if begin == next => found.add(FlawKind::OpenBoundary, Some(tet), &nodes),
             [_] => {}
@@ -148,6 +177,30 @@ fn check_faces(found: &mut Findings, faces: &[FaceKey], triangles: &[([u32; 3], 
     }
     for (nodes, triangle) in &triangles[next..] {
         found.add(FlawKind::LooseTriangle, Some(*triangle as usize), nodes);
+    }
+    boundary
+}
+
+/// The boundary does not pass through itself. (Positive tetrahedra on both sides look after triangles inside. What the tetrahedra are
+/// inverted or flat at has no outside.)
+fn check_crossings(found: &mut Findings, team: Team<'_>, mut boundary: Vec<BoundaryFace>) {
+    let hinders = [FlawKind::RepeatedNodes, FlawKind::InvertedTet, FlawKind::FlatTet];
+    if hinders.into_iter().any(|kind| found.validity.count(kind) > 0) {
+        return;
+    }
+    boundary.sort_unstable_by_key(|face| (face.triangle, face.nodes));
+    let corners = |i: usize| boundary[i].nodes.map(|v| found.mesh.vertices[v as usize]);
+    let crossings = crossing::crossings(team, boundary.len(), corners, NAMED);
+    if crossings.count == 0 {
+        return;
+    }
+    let flaw = found.flaw(FlawKind::CrossingTriangles);
+    flaw.count = crossings.count;
+    for crossing in crossings.first {
+        let [a, b] = crossing.triangles.map(|i| &boundary[i]);
+        let index = |face: &BoundaryFace| (face.triangle != NONE).then_some(face.triangle as usize);
+        let nodes = [a.nodes, b.nodes].concat();
+        flaw.first.push(Offender { index: index(a), other: index(b), nodes, at: crossing.at });
     }
 }
 
@@ -319,6 +372,33 @@ mod tests {
         // Bodies may touch along a tagged edge.
         mesh.edges.push([1, 0], 1);
         assert_eq!(check(&mesh).count(FlawKind::NonManifoldEdge), 0);
+    }
+
+    /// Bodies that overlap, though each is well: the tip of one is in the other.
+    #[test]
+    fn bodies_that_cross() {
+        let beside = |x: f64| {
+            let cube = cube(1);
+            let mut vertices = cube.vertices.clone();
+            let tip = vertices.len() as u32;
+            vertices.extend([[x, 0.4, 0.5], [2.0, 0.3, 0.3], [2.0, 0.6, 0.3], [2.0, 0.4, 0.8]]);
+            let mut tets = cube.tets.nodes.clone();
+            tets.push([tip, tip + 1, tip + 2, tip + 3]);
+            with_boundary(vertices, tets)
+        };
+        assert_eq!(kinds(&beside(1.5)), []);
+        assert_eq!(kinds(&beside(0.9)), [FlawKind::CrossingTriangles]);
+        let found = check(&beside(0.9));
+        // The tip's three sides, and the two halves of the cube's.
+        let flaw = &found.flaws[0];
+        assert!((3..=6).contains(&flaw.count), "{flaw}");
+        for offender in &flaw.first {
+            assert!((offender.at[0] - 1.0).abs() < 1e-12, "{offender:?}");
+            let corner = beside(0.9).triangles.nodes[offender.other.unwrap()];
+            assert_eq!(sorted3(corner), sorted3([offender.nodes[3], offender.nodes[4], offender.nodes[5]]));
+        }
+        assert!(flaw.to_string().contains("pairs of boundary triangles that cross: no. "), "{flaw}");
+        assert_eq!(kinds(&beside(1.0)), [FlawKind::CrossingTriangles], "a tip on the side");
     }
 
     #[test]

@@ -7,11 +7,12 @@ use super::parts::{self, Local};
 use crate::adapt;
 use crate::cli::metric::fields::{Made, MultiscaleArguments};
 use crate::cli::metric::geometry::GeometryArguments;
+use crate::cli::table::place;
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
 use crate::geometry::{Discrete, Model, Names, names};
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::{TetMesh, io};
+use crate::mesh::{TetMesh, crossing, io};
 use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
 use crate::metric::{Background, Field, Limits, Source, Sym3, field, grade};
 use crate::sizing;
@@ -118,6 +119,17 @@ impl InputArguments {
         if added > 0 {
             notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
         }
+        let crossings = crossing::of_boundary(team, &mesh, &faces, 1);
+        if let [first] = &crossings.first[..] {
+            notices.push(format!(
+                "the boundary of {} crosses itself: {} pairs of triangles, the first at {}; `geo-adapt inspect` names them, and adapting \
+                 need not mend them",
+                self.mesh.display(),
+                crossings.count,
+                place(first.at)
+            ));
+        }
+        stage("boundary held against itself");
         let mesh = Arc::new(mesh);
         let (model, place) = self.place(team, &mesh, cad, notices)?;
         stage("classified");

@@ -8,6 +8,7 @@ use crate::geometry::classify::associate;
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
+use crate::mesh::crossing::{Crossing, Crossings};
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
 use crate::tasks::Team;
@@ -74,6 +75,8 @@ pub struct Report {
     overgrown: bool,
     /// Surface triangles beyond --normal-deviation or --hausdorff.
     deviating: usize,
+    /// Pairs of boundary triangles that cross, and the first of them; indices count from 0.
+    crossings: Crossings,
     operations: BTreeMap<&'static str, Operation>,
     /// Wall times.
     pub seconds: Seconds,
@@ -118,6 +121,7 @@ impl Report {
             off_model: extracted.off_model,
             overgrown: adapted.overgrown,
             deviating: adapted.deviating,
+            crossings: extracted.crossings,
             operations: operations(&adapted.work),
             seconds: Seconds { geometry: adapted.geometry.as_secs_f64(), ..Seconds::default() },
             mesh,
@@ -150,6 +154,13 @@ impl Report {
                     "{} surface triangles: no room to split them, or their vertices must stay",
                     self.deviating
                 ),
+            );
+        }
+        if let [Crossing { triangles: [a, b], at }, ..] = self.crossings.first[..] {
+            let (count, at) = (self.crossings.count, place(at));
+            table.row(
+                "THE BOUNDARY CROSSES ITSELF",
+                format_args!("{count} pairs of triangles; the first: {} and {} at {at}", a + 1, b + 1),
             );
         }
         if self.overgrown {

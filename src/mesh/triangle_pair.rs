@@ -1,0 +1,280 @@
+//! Whether two triangles meet where they should not: exact, by the coordinates of their corners alone.
+//!
+//! Corners with equal coordinates count as one. So triangles of a mesh that was taken apart at an edge or a vertex ([`super::pinch`]) may
+//! touch there, as neighbours do.
+use super::predicate::orientation;
+use super::vector::{Vec3, add, dot, lerp, norm, scale, sub, unit};
+use robust::Coord;
+
+/// A triangle, by its corners.
+pub type Corners = [Vec3; 3];
+
+/// A point where two triangles that look outward meet beside the corners and edges that they share; none where they do not. Equal
+/// triangles that face each other touch and do not meet; equal ones that look the same way do. Degenerate triangles meet nothing.
+pub fn meeting(a: &Corners, b: &Corners) -> Option<Vec3> {
+    if has_twice(a) || has_twice(b) || are_apart(a, b) {
+        return None;
+    }
+    common_beside_shared(a, b).filter(|_| Plane::of(a).is_some() && Plane::of(b).is_some())
+}
+
+/// See [`meeting`]; also of flat triangles.
+fn common_beside_shared(a: &Corners, b: &Corners) -> Option<Vec3> {
+    // Of each corner of a the equal one of b.
+    let equal = a.map(|p| b.iter().position(|q| *q == p));
+    match equal {
+        [Some(i), Some(j), Some(_)] => (j == (i + 1) % 3).then(|| middle(a)),
+        [Some(i), Some(j), None] => folded(a, 2, b, 3 - i - j),
+        [Some(i), None, Some(j)] => folded(a, 1, b, 3 - i - j),
+        [None, Some(i), Some(j)] => folded(a, 0, b, 3 - i - j),
+        [Some(j), None, None] => at_corner(a, 0, b, j),
+        [None, Some(j), None] => at_corner(a, 1, b, j),
+        [None, None, Some(j)] => at_corner(a, 2, b, j),
+        [None, None, None] => edges_through(a, b, 0b111).or_else(|| edges_through(b, a, 0b111)),
+    }
+}
+
+fn has_twice([p, q, r]: &Corners) -> bool {
+    p == q || q == r || r == p
+}
+
+fn middle(a: &Corners) -> Vec3 {
+    scale(add(add(a[0], a[1]), a[2]), 1.0 / 3.0)
+}
+
+/// A quick test: whether a plane that is guessed separates two triangles, up to the corner that they share. Says no in doubt.
+fn are_apart(a: &Corners, b: &Corners) -> bool {
+    let shared = a.iter().find(|p| b.contains(p));
+    let (from, direction) = match shared {
+        // The bisector of the directions in which they leave the shared corner.
+        Some(&at) => {
+            let away = |of: &Corners| {
+                let [u, v] = [0, 1].map(|k| sub(of.iter().filter(|p| **p != at).nth(k).copied().unwrap_or(at), at));
+                let sum = add(scale(u, 1.0 / norm(u)), scale(v, 1.0 / norm(v)));
+                scale(sum, 1.0 / norm(sum))
+            };
+            (at, sub(away(a), away(b)))
+        }
+        None => {
+            let (from, to) = (middle(b), middle(a));
+            (lerp(from, to, 0.5), sub(to, from))
+        }
+    };
+    // Far above the rounding of a product of differences.
+    let side = |p: Vec3| {
+        let d = sub(p, from);
+        (dot(d, direction), 1e-12 * norm(d) * norm(direction))
+    };
+    let is_on = |of: &Corners, sign: f64| {
+        of.iter().filter(|p| Some(*p) != shared).all(|p| {
+            let (side, doubt) = side(*p);
+            sign * side > doubt
+        })
+    };
+    // Without a shared corner `from` is rounded too: by so little of the coordinates.
+    let is_exact = shared.is_some();
+    is_on(a, 1.0) && is_on(b, -1.0) && (is_exact || is_clear(a, b, from, direction))
+}
+
+/// Whether the distances from the plane are far above the rounding of the coordinates.
+fn is_clear(a: &Corners, b: &Corners, from: Vec3, direction: Vec3) -> bool {
+    let size = from.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let doubt = 1e-12 * size * norm(direction);
+    a.iter().chain(b).all(|p| dot(sub(*p, from), direction).abs() > doubt)
+}
+
+/// Triangles that share an edge, by the corners that are not on it: they meet where they are folded onto each other.
+fn folded(a: &Corners, i: usize, b: &Corners, j: usize) -> Option<Vec3> {
+    let ([p, q, r], s) = ([a[(i + 1) % 3], a[(i + 2) % 3], a[i]], b[j]);
+    // Most lie on two sides of their edge, far above the rounding: most surfaces are smooth.
+    let along = unit(sub(q, p));
+    let [u, v] = [sub(r, p), sub(s, p)];
+    let across = |u: Vec3| sub(u, scale(along, dot(u, along)));
+    if dot(across(u), across(v)) < -1e-12 * norm(u) * norm(v) || orientation(p, q, r, s) != 0.0 {
+        return None;
+    }
+    let plane = Plane::of(&[p, q, r])?;
+    let [to_r, to_s] = [plane.turn(p, q, r), plane.turn(p, q, s)];
+    let is_folded = (to_r > 0.0 && to_s > 0.0) || (to_r < 0.0 && to_s < 0.0);
+    is_folded.then(|| lerp(lerp(p, q, 0.5), lerp(r, s, 0.5), 0.5))
+}
+
+/// Triangles that share corner i of a, j of b: what they have in common beside it reaches to one's opposite edge.
+fn at_corner(a: &Corners, i: usize, b: &Corners, j: usize) -> Option<Vec3> {
+    edges_through(a, b, 1 << i).or_else(|| edges_through(b, a, 1 << j))
+}
+
+/// A point where one of the edges of `a` in the mask (by the corner opposite) meets `b`.
+fn edges_through(a: &Corners, b: &Corners, mask: u8) -> Option<Vec3> {
+    let plane = Plane::of(b)?;
+    let sides = a.map(|p| orientation(b[0], b[1], b[2], p));
+    (0..3).filter(|i| mask >> i & 1 == 1).find_map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        segment_through([a[j], a[k]], [sides[j], sides[k]], b, plane)
+    })
+}
+
+/// A point where a segment meets a triangle, boundary included; `sides` are its ends' sides of the triangle's plane.
+fn segment_through([p, q]: [Vec3; 2], [at_p, at_q]: [f64; 2], b: &Corners, plane: Plane) -> Option<Vec3> {
+    if (at_p > 0.0 && at_q > 0.0) || (at_p < 0.0 && at_q < 0.0) {
+        return None;
+    }
+    if at_p == 0.0 && at_q == 0.0 {
+        return plane.common([p, q], b);
+    }
+    let turns = [0, 1, 2].map(|k| orientation(p, q, b[k], b[(k + 1) % 3]));
+    let is_through = turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0);
+    is_through.then(|| lerp(p, q, at_p / (at_p - at_q)))
+}
+
+/// Two of the three coordinates: the plane that a triangle is looked at in.
+#[derive(Clone, Copy)]
+struct Plane([usize; 2]);
+
+impl Plane {
+    /// A plane where the triangle is none of zero area; none for a degenerate one.
+    fn of(b: &Corners) -> Option<Self> {
+        let [u, v] = [sub(b[1], b[0]), sub(b[2], b[0])];
+        let area = |[i, j]: [usize; 2]| (u[i] * v[j] - u[j] * v[i]).abs();
+        let mut axes = [[0, 1], [1, 2], [2, 0]];
+        // The largest shadow first.
+        axes.sort_by(|x, y| area(*y).total_cmp(&area(*x)));
+        axes.into_iter().map(Plane).find(|plane| plane.turn(b[0], b[1], b[2]) != 0.0)
+    }
+
+    /// Twice the area of the shadow of a triangle; the sign is exact.
+    fn turn(self, p: Vec3, q: Vec3, r: Vec3) -> f64 {
+        let Self([i, j]) = self;
+        let [p, q, r] = [p, q, r].map(|p| Coord { x: p[i], y: p[j] });
+        robust::orient2d(p, q, r)
+    }
+
+    /// A point of a segment in a triangle's plane that is in the triangle, boundary included.
+    fn common(self, [p, q]: [Vec3; 2], b: &Corners) -> Option<Vec3> {
+        let is_in = |p: Vec3| {
+            let turns = [0, 1, 2].map(|k| self.turn(b[k], b[(k + 1) % 3], p));
+            turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0)
+        };
+        if let Some(inside) = [p, q].into_iter().find(|p| is_in(*p)) {
+            return Some(inside);
+        }
+        // With both ends outside it passes through two of the edges, or through a corner and so through the edges there.
+        (0..3).find_map(|k| {
+            let (c, d) = (b[k], b[(k + 1) % 3]);
+            let [at_p, at_q] = [self.turn(c, d, p), self.turn(c, d, q)];
+            let [at_c, at_d] = [self.turn(p, q, c), self.turn(p, q, d)];
+            let parts = |x: f64, y: f64| (x >= 0.0 && y <= 0.0) || (x <= 0.0 && y >= 0.0);
+            let is_met = parts(at_p, at_q) && parts(at_c, at_d) && at_p != at_q;
+            is_met.then(|| lerp(p, q, at_p / (at_p - at_q)))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FLAT: Corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+
+    /// Whether they meet, which does not depend on the order of the two, nor on the corner that comes first.
+    fn meet(a: Corners, b: Corners) -> bool {
+        let found = meeting(&a, &b).is_some();
+        for k in 0..9 {
+            let turned = |a: &Corners, k: usize| [a[k % 3], a[(k + 1) % 3], a[(k + 2) % 3]];
+            let (a, b) = (turned(&a, k / 3), turned(&b, k));
+            assert_eq!(meeting(&a, &b).is_some(), found, "{a:?} {b:?}");
+            assert_eq!(meeting(&b, &a).is_some(), found, "{b:?} {a:?}");
+        }
+        found
+    }
+
+    #[test]
+    fn triangles_without_a_common_corner() {
+        let upright = |x: f64, low: f64| [[x, 1.0, low], [x, 1.0, 3.0], [x, 2.0, 3.0]];
+        assert!(meet(FLAT, upright(1.0, -1.0)));
+        assert!(!meet(FLAT, upright(1.0, 0.1)));
+        assert!(!meet(FLAT, upright(3.5, -1.0)));
+        // A corner that just touches the inside, an edge, or is off by one unit in the last place.
+        assert!(meet(FLAT, upright(1.0, 0.0)));
+        assert!(meet(FLAT, upright(3.0, 0.0)));
+        assert!(!meet(FLAT, upright(1.0, f64::MIN_POSITIVE)));
+        assert!(!meet(FLAT, upright(3.0 + 4.0 * f64::EPSILON, -1.0)));
+        // An edge through an edge.
+        assert!(meet(FLAT, [[2.0, -1.0, -1.0], [2.0, 1.0, 1.0], [2.0, -1.0, 1.0]]));
+        assert!(!meet(FLAT, [[2.0, -1.1, -1.0], [2.0, 1.0, 1.0], [2.0, -1.0, 1.0]]));
+    }
+
+    #[test]
+    fn triangles_in_one_plane() {
+        let at = |x: f64, y: f64| [[x, y, 0.0], [x + 1.0, y, 0.0], [x, y + 1.0, 0.0]];
+        // Inside, across an edge, a star of two, beside.
+        assert!(meet(FLAT, at(0.5, 0.5)));
+        assert!(meet(FLAT, at(-0.5, 1.0)));
+        assert!(meet(FLAT, [[3.0, 3.0, 0.0], [-1.0, 3.0, 0.0], [3.0, -1.0, 0.0]]));
+        assert!(!meet(FLAT, at(2.0, 2.5)));
+        // A corner on an edge, edges on each other that are not the same.
+        assert!(meet(FLAT, at(2.0, 2.0)));
+        assert!(meet(FLAT, [[1.0, 0.0, 0.0], [2.0, -1.0, 0.0], [2.0, 0.0, 0.0]]));
+        // In a plane that floating-point numbers do not hold exactly they are as good as apart, or do meet; but never panic.
+        let askew = |c: Corners| c.map(|[x, y, _]| [0.1 * x + 0.7 * y, 0.3 * x - 0.2 * y, 0.9 * x + 0.1 * y]);
+        meet(askew(FLAT), askew(at(0.5, 0.5)));
+    }
+
+    #[test]
+    fn triangles_with_a_common_edge() {
+        let [a, b, c] = FLAT;
+        for (d, expected) in [
+            ([4.0, 4.0, 0.0], false),
+            ([1.0, 1.0, 0.0], true),
+            ([-9.0, -9.0, 0.0], true),
+            ([1.0, 1.0, 1e-300], false),
+            ([1.0, 1.0, -1.0], false),
+        ] {
+            assert_eq!(meet(FLAT, [c, b, d]), expected, "{d:?}");
+        }
+        assert!(meet(FLAT, [b, c, a]), "the same triangle twice");
+        assert!(!meet(FLAT, [b, a, c]), "two that face each other");
+    }
+
+    #[test]
+    fn triangles_with_a_common_corner() {
+        let at = |p: Vec3, q: Vec3| [FLAT[0], p, q];
+        // A neighbour in a fan, flat and bent; one that stands in it; one that lies in it; one that reaches through it.
+        assert!(!meet(FLAT, at([-1.0, 4.0, 0.0], [-4.0, 0.0, 0.0])));
+        assert!(!meet(FLAT, at([-1.0, 4.0, 1.0], [-4.0, 0.0, -1.0])));
+        assert!(!meet(FLAT, at([1.0, 1.0, 1.0], [1.0, 2.0, 1.0])));
+        assert!(meet(FLAT, at([1.0, 2.0, 0.0], [2.0, 1.0, 0.0])));
+        assert!(meet(FLAT, at([9.0, 2.0, 0.0], [2.0, 9.0, 0.0])));
+        assert!(meet(FLAT, at([-1.0, 4.0, 0.0], [1.0, 1.0, 0.0])));
+        assert!(meet(FLAT, at([1.0, 1.0, 1.0], [1.0, 1.0, -1.0])));
+        assert!(meet(FLAT, at([1.0, 1.0, 0.0], [1.0, 1.0, -1.0])));
+        assert!(!meet(FLAT, at([-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0])));
+    }
+
+    #[test]
+    fn degenerate_triangles_meet_nothing() {
+        let line = [[1.0, 1.0, -1.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]];
+        assert_eq!(meeting(&line, &line), None);
+        for point in [[0.0; 3], [1.0, 1.0, 0.0]] {
+            assert!(!meet([point; 3], FLAT));
+            assert!(!meet([point, point, [1.0, 1.0, 1.0]], FLAT));
+        }
+    }
+
+    /// Held against the plain definition in small whole numbers: some edge of one meets the other beside what is shared.
+    #[test]
+    fn as_by_points_of_a_grid() {
+        let mut seed = 1u64;
+        let mut next = |n: u64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) % n
+        };
+        let mut counts = [0; 2];
+        for _ in 0..20_000 {
+            let mut corners = || [0, 1, 2].map(|_| [0, 1, 2].map(|_| next(4) as f64));
+            let (a, b) = (corners(), corners());
+            counts[usize::from(meet(a, b))] += 1;
+        }
+        assert!(counts[0] > 2000 && counts[1] > 2000, "{counts:?}");
+    }
+}
