@@ -136,6 +136,7 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Moves a claimed vertex, with the metric that belongs to the point.
     pub fn set_point(&mut self, v: VertexId, point: Vec3, hint: u32) {
+        debug_assert!(!self.context.is_frozen(v), "{v:?} must not move");
         let mut hint = hint;
         let log = self.context.source.log_at(point, &mut hint);
         self.store.set_position(v, point);

@@ -15,9 +15,10 @@ impl<A: Access> Worker<'_, '_, A> {
     /// # Errors
     /// As a collapse; the mesh is as it was then.
     pub fn merge(&mut self, v: VertexId, w: VertexId, balls: [&Ball; 2]) -> Result<(), Refusal> {
-        if self.store.entity(v) != self.store.entity(w) || self.context.is_frozen(w) {
+        if self.store.entity(v) != self.store.entity(w) {
             return Err(Refusal::Geometry);
         }
+        self.context.required.check_move(w)?;
         self.check_entities(v, w)?;
         let mut both = std::mem::take(&mut self.state.union);
         both.clear();

@@ -83,6 +83,7 @@ pub fn adapt(
     observer: &dyn Observer,
 ) -> Result<Adapted, build::Error> {
     let required = Required::of(mesh, &options.freeze);
+    let place = &*required.held(mesh, place);
     let team = Team::new(pool, options.plan);
     let (Filled { store, waiting, ids }, crowded) = filled(team, mesh, place, source, &required)?;
     stage("store filled");

@@ -44,9 +44,10 @@ impl<A: Access> Worker<'_, '_, A> {
     pub fn smooth(&mut self, v: VertexId) -> Result<(), Refusal> {
         self.claim_live(v)?;
         let entity = self.store.entity(v);
-        if matches!(entity, Entity::Vertex(_)) || self.context.is_frozen(v) {
+        if matches!(entity, Entity::Vertex(_)) {
             return Err(Refusal::Geometry);
         }
+        self.context.required.check_move(v)?;
         let mut ball = std::mem::take(&mut self.state.ball);
         let result = self.gather_ball(v, &mut ball).and_then(|()| self.smooth_in(v, &ball));
         self.state.ball = ball;
@@ -194,6 +195,7 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Puts a vertex back where it was.
     pub fn put_back(&mut self, v: VertexId, held: &Held) {
+        debug_assert!(!self.context.is_frozen(v), "{v:?} must not move");
         self.store.set_position(v, held.placed.point);
         self.store.set_metric(v, &held.log, &held.metric);
         self.store.set_place(v, held.placed.entity, held.placed.parameters);

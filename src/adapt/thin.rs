@@ -107,6 +107,8 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Replaces an inner vertex by a neighbour. Where all tetrahedra that stay are positive the mesh is as good as it was: they fill
     /// the ball once.
     fn thin_onto(&mut self, v: VertexId, w: VertexId, ball: &Ball) -> Result<(), Refusal> {
+        // An edge between other vertices is one of a tetrahedron that stays, too.
+        self.context.required.check(self.store, &ball.tets, &[v], |x, y| x != v && y != v)?;
         self.check_new_lengths(v, w, &ball.link)?;
         let mut thinning = std::mem::take(&mut self.state.thinning);
         let result = self.sort_ball(v, w, ball, &mut thinning);

@@ -23,6 +23,8 @@ pub struct AdaptedMesh {
     pub place: Classification,
     /// Boundary vertices that found no room on the model.
     pub off_model: Vec<u32>,
+    /// Boundary vertices that had to stay, being required or frozen: they are as far from the model as they were.
+    pub held: Vec<u32>,
     /// Whether the mesh stopped growing, having far more vertices than the metric accounts for, or no memory for more.
     pub overgrown: bool,
     /// Surface triangles beyond the bounds of the surface that were set.
@@ -68,7 +70,7 @@ impl AdaptedMesh {
 
     /// Of what the kernel gives; `old` is the mesh that went in.
     pub(super) fn of(team: Team<'_>, adapted: Adapted, model: &Model, old: &Background) -> Self {
-        let Extracted { mut mesh, mut classification, metrics, off_model } = adapted.extracted;
+        let Extracted { mut mesh, mut classification, metrics, off_model, held } = adapted.extracted;
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &classification),
             #[cfg(feature = "occt")]
@@ -84,6 +86,7 @@ impl AdaptedMesh {
             place: classification,
             mesh,
             off_model,
+            held,
             overgrown: adapted.overgrown,
             astray: adapted.astray,
         }
