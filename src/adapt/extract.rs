@@ -33,6 +33,8 @@ pub struct Extracted {
     pub metrics: Vec<Sym3>,
     /// Boundary vertices that found no room on the model: their tetrahedra would be inverted at its closest point.
     pub off_model: Vec<u32>,
+    /// Boundary vertices that must not move: they are as far from the model as they were in the input.
+    pub held: Vec<u32>,
     /// Where its boundary passes through itself.
     pub crossings: Crossings,
 }
@@ -87,10 +89,15 @@ pub fn extract(
     for &(nodes, edge) in &classification.ridges {
         mesh.edges.push(nodes, refs.edges[edge as usize]);
     }
-    Required::list(input, &mut mesh, |v| renumber(context.ids[v.index()]));
+    let is_there = |v: VertexId| v.is_some() && store.is_vertex(v);
+    Required::list(input, &mut mesh, |v| Some(context.ids[v as usize]).filter(|&v| is_there(v)).map(renumber));
     let mut off_model: Vec<u32> = unprojected.iter().filter(|v| store.is_vertex(**v)).map(|v| renumber(*v)).collect();
     off_model.sort_unstable();
-    Extracted { mesh, classification, metrics: at(team, &vertices, |v| store.metric(v)), off_model, crossings }
+    let held = context.required.frozen().filter(|&v| store.dimension(v) < 3).map(renumber);
+    let mut held: Vec<u32> = held.collect();
+    held.sort_unstable();
+    let metrics = at(team, &vertices, |v| store.metric(v));
+    Extracted { mesh, classification, metrics, off_model, held, crossings }
 }
 
 /// Where the boundary passes through itself, by the numbers of the triangles.

@@ -83,6 +83,7 @@ pub fn adapt(
     observer: &dyn Observer,
 ) -> Result<Adapted, fill::Error> {
     let required = Required::of(mesh, &options.freeze);
+    let place = &*required.held(mesh, place);
     let team = Team::new(pool, options.plan);
     let (Filled { store, unprojected, ids }, crowded) = filled(team, mesh, place, source, &required)?;
     stage("store filled");

@@ -24,6 +24,8 @@ pub struct AdaptedMesh {
     pub place: Classification,
     /// Boundary vertices that found no room on the model.
     pub off_model: Vec<u32>,
+    /// Boundary vertices that had to stay, being required or frozen: they are as far from the model as they were.
+    pub held: Vec<u32>,
     /// Whether the mesh stopped growing, having far more vertices than the metric accounts for, or no memory for more.
     pub overgrown: bool,
     /// Surface triangles beyond the bounds of the surface that were set.
@@ -71,7 +73,7 @@ impl AdaptedMesh {
 
     /// Of what the kernel gives; `old` is the mesh that went in.
     pub(super) fn of(team: Team<'_>, adapted: Adapted, model: &Model, old: &Background) -> Self {
-        let Extracted { mut mesh, mut classification, metrics, off_model, crossings } = adapted.extracted;
+        let Extracted { mut mesh, mut classification, metrics, off_model, held, crossings } = adapted.extracted;
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &classification),
             #[cfg(feature = "occt")]
@@ -87,6 +89,7 @@ impl AdaptedMesh {
             place: classification,
             mesh,
             off_model,
+            held,
             overgrown: adapted.overgrown,
             deviating: adapted.deviating,
             crossings,

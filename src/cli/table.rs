@@ -76,8 +76,11 @@ impl Table {
     /// How true the mesh is to its model.
     pub fn fidelity(&mut self, fidelity: &Fidelity) {
         self.row("vertices on the model", fidelity.vertices);
-        let farthest =
-            [("farthest from the model", &fidelity.from_model), ("farthest from its entity", &fidelity.from_entity)];
+        let farthest = [
+            ("farthest from the model", &fidelity.from_model),
+            ("farthest from its entity", &fidelity.from_entity),
+            ("farthest that had to stay", &fidelity.held),
+        ];
         for (name, found) in farthest {
             if let Some(found) = found {
                 let (vertex, entity) = (found.vertex + 1, found.entity);

@@ -45,6 +45,9 @@ pub struct Fidelity {
     pub from_model: Option<Farthest>,
     /// The vertex farthest from its own entity.
     pub from_entity: Option<Farthest>,
+    /// Of the vertices that had to stay where the input has them the one farthest from its own entity: they count with neither of those.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held: Option<Farthest>,
     /// The triangle of the worst normal.
     pub worst_normal: Option<Deviation>,
     /// Mean of 1 − n·n_CAD over the triangles.
@@ -53,8 +56,19 @@ pub struct Fidelity {
 
 /// Measures a mesh that was classified on a model.
 pub fn measure(team: Team<'_>, mesh: &TetMesh, model: &Model, classification: &Classification) -> Fidelity {
+    measure_adapted(team, mesh, model, classification, &[])
+}
+
+/// As [`measure`], with the vertices, ascending, that had to stay where they were.
+pub fn measure_adapted(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    model: &Model,
+    classification: &Classification,
+    held: &[u32],
+) -> Fidelity {
     let mut fidelity = Fidelity::default();
-    measure_vertices(team, mesh, model, classification, &mut fidelity);
+    measure_vertices(team, mesh, model, classification, held, &mut fidelity);
     measure_normals(team, mesh, model, classification, &mut fidelity);
     fidelity
 }
@@ -64,6 +78,7 @@ fn measure_vertices(
     mesh: &TetMesh,
     model: &Model,
     classification: &Classification,
+    held: &[u32],
     fidelity: &mut Fidelity,
 ) {
     let topology = model.topology();
@@ -83,6 +98,11 @@ fn measure_vertices(
     });
     fidelity.vertices = found.len();
     team.sort_by(&mut found, |a, b| b.distance.total_cmp(&a.distance).then(a.vertex.cmp(&b.vertex)));
+    if !held.is_empty() {
+        let is_held = |found: &Farthest| held.binary_search(&found.vertex).is_ok();
+        fidelity.held = found.iter().find(|found| is_held(found)).copied();
+        found.retain(|found| !is_held(found));
+    }
     fidelity.from_entity = found.first().copied();
     // The model is no farther than the own entity: most vertices need no search.
     let mut evaluator = model.evaluator();

@@ -13,7 +13,8 @@ impl<A: Access> Worker<'_, '_, A> {
     pub fn take_out_tet(&mut self, t: TetId, behind: [(TetId, [VertexId; 3]); 2], tag: u32) -> Result<(), Refusal> {
         // Of its edges that between the two surface triangles goes, from the one of these faces to the other.
         let gone = behind.map(|(_, [x, ..])| x);
-        self.check_required(&[t], &[], |a, b| !(gone.contains(&a) && gone.contains(&b)))?;
+        let stays = |a, b| !(gone.contains(&a) && gone.contains(&b));
+        self.context.required.check(self.store, &[t], &[], stays)?;
         for (outside, face) in behind {
             let back = self.store.neighbours(outside).iter().position(|&m| m == t).expect("neighbours know each other");
             self.store.set_neighbour(outside, back, TetId::NONE);

@@ -87,8 +87,8 @@ impl<A: Access> Worker<'_, '_, A> {
     /// `Geometry` when something required would go, `Topology` when old and new have not the same boundary, `Full` when ids ran out; the mesh is unchanged then.
     pub fn commit(&mut self) -> Result<(), Refusal> {
         let Replacement { old, new, dead, .. } = &self.state.replacement;
-        let joins = |tet: &NewTet, a: VertexId, b: VertexId| tet.vertices.contains(&a) && tet.vertices.contains(&b);
-        self.check_required(old, dead, |a, b| new.iter().any(|tet| joins(tet, a, b)))?;
+        let stays = |a, b| new.iter().any(|tet| tet.vertices.contains(&a) && tet.vertices.contains(&b));
+        self.context.required.check(self.store, old, dead, stays)?;
         self.enter_old_faces()?;
         self.match_new_faces()?;
         self.number_new_tets()?;

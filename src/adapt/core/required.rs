@@ -1,12 +1,16 @@
 //! What must stay: the vertices, edges and triangles that the input says, the surfaces and regions that the user freezes.
 //!
 //! The ends of required edges and the corners of required triangles neither move nor go, so their ids last and an edge is known by
-//! them. A surface triangle stays as long as its three edges do. Nothing replaces a tetrahedron of a frozen region. All this is looked after in the functions of the core that write.
-use super::access::Access;
+//! them. A surface triangle stays as long as its three edges do. Nothing replaces a tetrahedron of a frozen region. The functions of the
+//! core that take tetrahedra out of the store ask [`Required::check`] first, those that move a vertex [`Required::check_move`].
+//!
+//! A vertex that must not move stays to the bit, also where it lies a little beside its model: another mesh may share it.
 use super::ids::{EDGE, TetId, VertexId};
 use super::refusal::Refusal;
-use super::worker::Worker;
+use super::store::Store;
+use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
+use std::borrow::Cow;
 use std::collections::HashSet;
 
 /// What must not change in a run, by reference.
@@ -29,7 +33,8 @@ pub struct Required {
 }
 
 impl Required {
-    /// What a mesh requires, and what is frozen of it; its vertices have their indices as ids.
+    /// What a mesh requires, and what is frozen of it; its vertices have their indices as ids. Vertices of no tetrahedron do not count:
+    /// they do not last.
     pub fn of(mesh: &TetMesh, freeze: &Freeze) -> Self {
         let regions = freeze.regions.iter().map(|&region| region as u32).collect();
         let mut required = Self { frozen: vec![false; mesh.vertices.len()], edges: HashSet::new(), regions };
@@ -46,10 +51,31 @@ impl Required {
         for (nodes, _) in mesh.tets.iter().filter(|(_, region)| freeze.regions.contains(region)) {
             nodes.iter().for_each(|&v| required.frozen[v as usize] = true);
         }
+        if required.frozen.contains(&true) {
+            required.forget_hanging(&mesh.tets.nodes);
+        }
         if !required.frozen.contains(&true) {
             required.frozen.clear();
         }
         required
+    }
+
+    /// Forgets the vertices of none of the tetrahedra, and their edges.
+    fn forget_hanging(&mut self, tets: &[[u32; 4]]) {
+        let mut hangs = self.frozen.clone();
+        tets.iter().flatten().for_each(|&v| hangs[v as usize] = false);
+        self.frozen.iter_mut().zip(&hangs).for_each(|(frozen, hangs)| *frozen &= !hangs);
+        self.edges.retain(|edge| !edge.iter().any(|v| hangs[v.index()]));
+    }
+
+    /// The place of a mesh whose vertices have their indices as ids, with the vertices that must not move where they are, be it beside
+    /// the model.
+    pub fn held<'p>(&self, mesh: &TetMesh, place: &'p Classification) -> Cow<'p, Classification> {
+        let mut place = Cow::Borrowed(place);
+        for v in self.frozen().map(VertexId::index) {
+            place.to_mut().projected[v] = mesh.vertices[v];
+        }
+        place
     }
 
     /// The same after the vertices got new ids.
@@ -79,68 +105,72 @@ impl Required {
         self.is_frozen(a) && self.is_frozen(b) && self.edges.contains(&key(a, b))
     }
 
-    /// Whether nothing in the region may change.
-    #[inline(always)]
-    pub fn holds_region(&self, region: u32) -> bool {
-        self.regions.contains(&region)
+    /// Refuses that these tetrahedra and vertices go, if one of the vertices must stay, a tetrahedron is of a frozen region, or a
+    /// required edge of theirs goes with them: `stays` tells of an edge whether it does.
+    #[inline]
+    pub fn check(
+        &self,
+        store: &Store,
+        tets: &[TetId],
+        vertices: &[VertexId],
+        stays: impl Fn(VertexId, VertexId) -> bool,
+    ) -> Result<(), Refusal> {
+        if self.frozen.is_empty() || self.allows(store, tets, vertices, stays) {
+            return Ok(());
+        }
+        Err(Refusal::Geometry)
     }
 
-    /// Lists in the adapted mesh what `input` required; `number` gives each vertex id its index there. Required edges are listed
-    /// as edges with their references, alone: the ridges are added when the mesh is put back on its model.
-    pub fn list(input: &TetMesh, mesh: &mut TetMesh, number: impl Fn(VertexId) -> u32) {
-        let renumber = |v: u32| number(VertexId(v));
-        mesh.required_vertices = input.required_vertices.iter().map(|&v| renumber(v)).collect();
+    fn allows(
+        &self,
+        store: &Store,
+        tets: &[TetId],
+        vertices: &[VertexId],
+        stays: impl Fn(VertexId, VertexId) -> bool,
+    ) -> bool {
+        let may_go = |&t: &TetId| {
+            let v = store.vertices(t);
+            !self.regions.contains(&store.region(t))
+                && EDGE.iter().all(|&[i, j]| !self.has_edge(v[i], v[j]) || stays(v[i], v[j]))
+        };
+        !vertices.iter().any(|&v| self.is_frozen(v)) && tets.iter().all(may_go)
+    }
+
+    /// Refuses that a vertex moves, if it must not.
+    #[inline(always)]
+    pub fn check_move(&self, v: VertexId) -> Result<(), Refusal> {
+        if self.is_frozen(v) { Err(Refusal::Geometry) } else { Ok(()) }
+    }
+
+    /// Lists in the adapted mesh what `input` required; `number` gives each vertex of it that is there its index. Required edges are
+    /// listed as edges with their references, alone: the ridges are added when the mesh is put back on its model.
+    pub fn list(input: &TetMesh, mesh: &mut TetMesh, number: impl Fn(u32) -> Option<u32>) {
+        mesh.required_vertices = input.required_vertices.iter().filter_map(|&v| number(v)).collect();
         for &edge in &input.required_edges {
             let edge = edge as usize;
-            mesh.required_edges.push(mesh.edges.len() as u32);
-            mesh.edges.push(input.edges.nodes[edge].map(renumber), input.edges.refs[edge]);
+            if let Some(nodes) = all(input.edges.nodes[edge].map(&number)) {
+                mesh.required_edges.push(mesh.edges.len() as u32);
+                mesh.edges.push(nodes, input.edges.refs[edge]);
+            }
         }
         let sorted = |mut nodes: [u32; 3]| {
             nodes.sort_unstable();
             nodes
         };
-        let wanted = input.required_triangles.iter().map(|&t| sorted(input.triangles.nodes[t as usize].map(renumber)));
-        let wanted: HashSet<[u32; 3]> = wanted.collect();
+        let wanted =
+            input.required_triangles.iter().filter_map(|&t| all(input.triangles.nodes[t as usize].map(&number)));
+        let wanted: HashSet<[u32; 3]> = wanted.map(sorted).collect();
         let triangles = mesh.triangles.nodes.iter().zip(0..);
         mesh.required_triangles =
             triangles.filter(|(nodes, _)| wanted.contains(&sorted(**nodes))).map(|(_, t)| t).collect();
     }
 }
 
-fn key(a: VertexId, b: VertexId) -> [VertexId; 2] {
-    [a.min(b), a.max(b)]
+/// All of the numbers, if none is missing.
+fn all<const N: usize>(numbers: [Option<u32>; N]) -> Option<[u32; N]> {
+    numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
 }
 
-impl<A: Access> Worker<'_, '_, A> {
-    /// Refuses to take out these tetrahedra and vertices where one is required, or in a frozen region, or the edge between two vertices is
-    /// required and does not stay. Every function of the core that writes topology asks.
-    ///
-    /// # Errors
-    /// `Geometry`.
-    pub fn check_required(
-        &self,
-        old: &[TetId],
-        dead: &[VertexId],
-        stays: impl Fn(VertexId, VertexId) -> bool,
-    ) -> Result<(), Refusal> {
-        let required = &self.context.required;
-        if required.frozen.is_empty() {
-            return Ok(());
-        }
-        if dead.iter().any(|&v| required.is_frozen(v)) {
-            return Err(Refusal::Geometry);
-        }
-        for &t in old {
-            if required.holds_region(self.store.region(t)) {
-                return Err(Refusal::Geometry);
-            }
-            let v = self.store.vertices(t);
-            for [a, b] in EDGE.map(|ends| ends.map(|i| v[i])) {
-                if required.has_edge(a, b) && !stays(a, b) {
-                    return Err(Refusal::Geometry);
-                }
-            }
-        }
-        Ok(())
-    }
+fn key(a: VertexId, b: VertexId) -> [VertexId; 2] {
+    [a.min(b), a.max(b)]
 }

@@ -97,9 +97,7 @@ impl<A: Access> Worker<'_, '_, A> {
         to: &VertexState,
         make_valid: impl FnOnce(&mut Self) -> Result<(), Refusal>,
     ) -> Result<(), Refusal> {
-        if self.context.is_frozen(v) {
-            return Err(Refusal::Geometry);
-        }
+        self.context.required.check_move(v)?;
         let before = self.vertex_state(v);
         self.write_vertex(v, to);
         make_valid(self).inspect_err(|_| self.write_vertex(v, &before))

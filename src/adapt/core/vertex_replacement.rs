@@ -25,12 +25,19 @@ pub struct BallSplit {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Writes w in the place of v, joins what lay on both sides of the tetrahedra that go. Everything in the ball is claimed, and what stays is positive.
+    /// Writes w in the place of v, whose ball has these tetrahedra, joins what lay on both sides of the tetrahedra that go. Everything in the ball is claimed, and what stays is positive.
     ///
     /// # Errors
     /// `Geometry` when something required would go.
-    pub fn replace_vertex(&mut self, v: VertexId, w: VertexId, ball: &BallSplit) -> Result<(), Refusal> {
-        self.check_ball_required(v, ball)?;
+    pub fn replace_vertex(
+        &mut self,
+        v: VertexId,
+        w: VertexId,
+        tets: &[TetId],
+        ball: &BallSplit,
+    ) -> Result<(), Refusal> {
+        // An edge between other vertices is one of a tetrahedron that stays, too.
+        self.context.required.check(self.store, tets, &[v], |x, y| x != v && y != v)?;
         let store = self.store;
         for &Kept { tet, local, quality } in &ball.kept {
             store.set_vertex(tet, local, w);
@@ -56,15 +63,5 @@ impl<A: Access> Worker<'_, '_, A> {
         store.set_tet_of(v, TetId::NONE);
         self.state.id_pool.free_vertex(v);
         Ok(())
-    }
-
-    /// All that is required at an inner vertex is required of itself, or in a frozen region.
-    fn check_ball_required(&self, v: VertexId, ball: &BallSplit) -> Result<(), Refusal> {
-        let tets = ball.kept.iter().map(|kept| kept.tet).chain(ball.gone.iter().map(|gone| gone.0));
-        let required = &self.context.required;
-        match required.is_frozen(v) || tets.into_iter().any(|t| required.holds_region(self.store.region(t))) {
-            true => Err(Refusal::Geometry),
-            false => Ok(()),
-        }
     }
 }

@@ -66,6 +66,7 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Refused as `Inverted` while it has not arrived: to be tried again after reconnection.
     pub fn project(&mut self, v: VertexId) -> Result<(), Refusal> {
         self.claim_live(v)?;
+        self.context.required.check_move(v)?;
         let mut ball = std::mem::take(&mut self.state.ball);
         let result = self.gather_ball(v, &mut ball).and_then(|()| self.project_ball(v, &ball.tets));
         self.state.ball = ball;
@@ -73,9 +74,6 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     fn project_ball(&mut self, v: VertexId, ball: &[TetId]) -> Result<(), Refusal> {
-        if self.context.is_frozen(v) {
-            return Err(Refusal::Geometry);
-        }
         let (start, hint) = (self.store.position(v), self.store.hint(v));
         let goal = self.place(self.store.entity(v), start, &[v]);
         if has_arrived(start, goal) {

@@ -109,7 +109,7 @@ impl Report {
             #[cfg(feature = "occt")]
             Model::Occt(_) => input.names.clone(),
         };
-        let fidelity = fidelity::measure(team, &mesh, model, &extracted.classification);
+        let fidelity = fidelity::measure_adapted(team, &mesh, model, &extracted.classification, &extracted.held);
         Self {
             version: env!("CARGO_PKG_VERSION"),
             asked: asked.clone(),

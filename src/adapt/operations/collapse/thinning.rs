@@ -120,7 +120,7 @@ impl<A: Access> Worker<'_, '_, A> {
     fn thin_onto(&mut self, split: &mut BallSplit, v: VertexId, w: VertexId, ball: &Ball) -> Result<(), Refusal> {
         self.check_new_lengths(v, w, &ball.link)?;
         self.split_ball(v, w, ball, split)?;
-        self.replace_vertex(v, w, split)
+        self.replace_vertex(v, w, &ball.tets, split)
     }
 
     /// Parts the ball of v into what goes with the edge v–w and what stays, with w in the place of v.

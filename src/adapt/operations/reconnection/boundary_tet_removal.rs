@@ -23,9 +23,10 @@ impl<A: Access> Worker<'_, '_, A> {
         if tag == 0 || !is_surface(c) || !is_surface(d) || tags[i] != 0 || tags[j] != 0 {
             return Err(Refusal::Topology);
         }
-        if self.store.ridge_curve(a, b).is_some() || self.context.required.has_edge(a, b) {
+        if self.store.ridge_curve(a, b).is_some() {
             return Err(Refusal::Geometry);
         }
+        self.context.required.check(self.store, &[t], &[], |x, y| ![x, y].contains(&a) || ![x, y].contains(&b))?;
         let ends = [v[c], v[d]];
         self.claim_tet(n[i])?;
         self.claim_tet(n[j])?;
