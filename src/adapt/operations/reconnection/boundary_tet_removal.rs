@@ -26,7 +26,6 @@ impl<A: Access> Worker<'_, '_, A> {
         if self.store.ridge_curve(a, b).is_some() {
             return Err(Refusal::Geometry);
         }
-        self.context.required.check(self.store, &[t], &[], |x, y| ![x, y].contains(&a) || ![x, y].contains(&b))?;
         let ends = [v[c], v[d]];
         self.claim_tet(n[i])?;
         self.claim_tet(n[j])?;

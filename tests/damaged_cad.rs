@@ -1,0 +1,119 @@
+//! Damaged CAD files through the built program: `model` and `bootstrap` end by themselves with a result or one clear error.
+//!
+//! A few by default. GEO_ADAPT_LONG=1 (tests/run --long) takes 10 000 of each format through `model`, and those that still are models
+//! through `bootstrap`.
+#![cfg(all(feature = "cli", feature = "occt", unix))]
+mod common;
+
+use common::program;
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Output, Stdio};
+
+/// Numbers that follow from a seed (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) % n as u64) as usize
+    }
+}
+
+/// Bytes that text files of models are made of.
+const TELLING: &[u8] = b"0123456789-+.,;#()'*$ eED\n\0\xff";
+
+/// The file with a few bytes changed, a line doubled, dropped or swapped with another, or its end cut off.
+fn damaged(valid: &[u8], random: &mut Random) -> Vec<u8> {
+    let mut bytes = valid.to_vec();
+    match random.below(6) {
+        0 => bytes.truncate(random.below(bytes.len())),
+        1 => {
+            let mut lines: Vec<&[u8]> = valid.split(|&b| b == b'\n').collect();
+            let (a, b) = (random.below(lines.len()), random.below(lines.len()));
+            match random.below(3) {
+                0 => lines.swap(a, b),
+                1 => lines.insert(a, lines[b]),
+                _ => drop(lines.remove(a)),
+            }
+            bytes = lines.join(&b'\n');
+        }
+        _ => {
+            for _ in 0..=random.below(4) {
+                let at = random.below(bytes.len());
+                bytes[at] = TELLING[random.below(TELLING.len())];
+            }
+        }
+    }
+    bytes
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    program().current_dir(folder).args(arguments).stdin(Stdio::null()).output().expect("the program is built")
+}
+
+/// Exit code 0, or 2 with one error that names the file.
+fn ends_well(output: &Output, what: &str) {
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.signal().is_none(), "{what}: ended by a signal, {:?}: {told}", output.status);
+    assert!(matches!(output.status.code(), Some(0 | 2)), "{what}: {:?}: {told}", output.status);
+    assert!(!told.contains("panicked"), "{what}: {told}");
+    assert!(output.status.success() || told.contains("damaged."), "{what}: no error that names the file: {told}");
+}
+
+fn is_long() -> bool {
+    std::env::var("GEO_ADAPT_LONG").is_ok_and(|long| long == "1")
+}
+
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+/// Damages the file again and again; each goes through `model`, and of those that are models some through `bootstrap`.
+fn survives(source: &str, extension: &str) {
+    let valid = fs::read(data(source)).expect("a file of the tests");
+    let (count, meshed) = if is_long() { (10_000, 10_000) } else { (24, 1) };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let name = format!("damaged.{extension}");
+    let (mut random, mut models, mut meshes) = (Random(20_261_122), 0, 0);
+    for number in 0..count {
+        fs::write(folder.path().join(&name), damaged(&valid, &mut random)).expect("the folder is ours");
+        let output = run(folder.path(), &["model", &name]);
+        let keep = |what: &str| format!("{what} of {source}, number {number}");
+        ends_well(&output, &keep("model"));
+        if output.status.success() {
+            models += 1;
+            if models <= meshed {
+                let output = run(folder.path(), &["bootstrap", &name, "-o", "out.meshb", "--time-limit", "5"]);
+                ends_well(&output, &keep("bootstrap"));
+                meshes += usize::from(output.status.success());
+            }
+        }
+    }
+    assert!(models < count, "no file was damaged enough to tell");
+    eprintln!("{source}: {count} damaged files, {models} still models, {meshes} meshed");
+}
+
+#[test]
+fn damaged_step_files_end_well() {
+    survives("capped-cylinder.step", "step");
+}
+
+#[test]
+fn damaged_iges_files_end_well() {
+    survives("block-inches.igs", "igs");
+}
+
+#[test]
+fn damaged_brep_files_end_well() {
+    survives("torus.brep", "brep");
+}
+
+#[test]
+fn damaged_egads_files_end_well() {
+    survives("torus.brep", "egads");
+}
