@@ -108,7 +108,7 @@ fn quality(c: &mut Criterion) {
         .collect();
     over(c, "mean_ratio, eight at once", &batches, |(batch, p, log)| batch.shapes(*p, log).mean_ratios());
     over(c, "mean_ratio, eight at once, cubed", &batches, |(batch, p, log)| batch.shapes(*p, log));
-    over(c, "bowl, eight at once", &batches, |(batch, p, log)| batch.bowl(*p, log, LANES));
+    over(c, "quadratic model, eight at once", &batches, |(batch, p, log)| batch.quadratic_model(*p, log, LANES));
     over(c, "batch prepared", &batches, |(batch, ..)| {
         let mut batch = batch.clone();
         batch.prepare();

@@ -1,7 +1,7 @@
 //! The kernel: the mesh store, its operations, and the passes that make a unit mesh.
 //!
 //! Imports go one way: `run → { passes → operations → { surface, schedule }, coarsen, extract } → core`.
-#[doc(hidden)]
+#[cfg(any(test, feature = "internals"))]
 pub mod bench_support;
 mod coarsen;
 mod core;

@@ -5,7 +5,6 @@ use super::files::Outputs;
 use super::metric::common::report;
 use crate::adapt::{self, Grains, Kind, Options, Scheduler, Silent};
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team};
-use clap::ValueEnum;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -69,7 +68,7 @@ impl Timing {
     }
 
     fn name(&self) -> String {
-        format!("{:<9}{}", self.backend.name(), named(self.strategy))
+        format!("{:<9}{}", self.backend.name(), self.strategy.name())
     }
 }
 
@@ -137,15 +136,11 @@ impl Bench<'_> {
         }
         if !self.arguments.quiet {
             let grain = grain.map(|grain| format!(", {grain} items a task")).unwrap_or_default();
-            let (scheduler, name, seconds) = (named(scheduler), best.name(), best.total());
+            let (scheduler, name, seconds) = (scheduler.name(), best.name(), best.total());
             super::tell(format_args!("geo-adapt: {scheduler} {name}{grain}: {seconds:.2} s"));
         }
         Ok(best)
     }
-}
-
-fn named(value: impl ValueEnum) -> String {
-    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
 
 /// The tables, and what follows from them.
@@ -173,7 +168,7 @@ fn text(bench: &Bench<'_>, reference: &Timing, speculative: &[Timing], determini
         let mark = if std::ptr::eq(timing, steady) { "*" } else { "" };
         let _ = writeln!(text, "{:<24}{:>9.3}{mark}", timing.name(), timing.total());
     }
-    let flags = |timing: &Timing| format!("--backend {} --strategy {}", timing.backend.name(), named(timing.strategy));
+    let flags = |timing: &Timing| format!("--backend {} --strategy {}", timing.backend.name(), timing.strategy.name());
     let _ = writeln!(text, "\nbest, the same mesh each time: --deterministic {}", flags(steady));
     let _ = writeln!(text, "best, another mesh each time:  --scheduler speculative {} --grain {grains}", flags(best));
     text

@@ -1,4 +1,5 @@
 //! The library's enumerations as words on the command line: their names are the library's, the help is ours.
+use crate::adapt::{Criterion, PointCreation, Scheduler};
 use crate::metric::recovery::Recovery;
 use crate::metric::{Analytic, Scalar};
 use crate::tasks::{Backend, Strategy};
@@ -24,6 +25,23 @@ macro_rules! value_enums {
 }
 
 value_enums! {
+    Criterion {
+        Delaunay: "No vertex of the cavity inside the circumsphere, measured in five metrics (anisotropic Delaunay)",
+        EdgeWeight: "Least greatest Laplacian edge weight (max-min)",
+        MeanRatio: "Least Σ (1/Q − 1) of the mean ratios Q: the worst tetrahedra count most, and the others count",
+    }
+    PointCreation {
+        Edge: "At the metric middle of long edges",
+        Centroid: "At centroids of tetrahedra and surface triangles with long edges; at middles of edges where these fail",
+        Eigenvector: "Inside at unit distance from vertices along the eigenvectors of their metrics; at middles of edges on the model, \
+            where they are much too long, and where these fail",
+    }
+    Scheduler {
+        Deterministic: "All threads, each in parts of the mesh that do not depend on them: the same mesh bit for bit for any number of \
+            threads",
+        Speculative: "All threads, each where no other is at the moment: another mesh, as good, each time",
+        Sequential: "One thread, one item after the other",
+    }
     Backend {
         Stealing: "Our own work-stealing threads: each takes its newest task, or another's oldest; the caller is one of them",
         Rayon: "The threads of rayon",

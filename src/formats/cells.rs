@@ -1,7 +1,7 @@
 //! Values of cells to the vertices, and back.
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
-use crate::tasks::{Buckets, GRAIN, Team};
+use crate::tasks::{GRAIN, Rows, Team};
 
 /// The centroid of a tetrahedron.
 fn centroid(vertices: &[Vec3], nodes: [u32; 4]) -> Vec3 {
@@ -21,7 +21,7 @@ const PASSES: usize = 2;
 /// cases/delta-wing-flow (`--short`) off by 3.6 % instead of 1.2 %.
 pub fn cells_to_vertices(team: Team<'_>, mesh: &TetMesh, values: &[f64], width: usize) -> Vec<f64> {
     let (vertices, tets) = (&mesh.vertices, &mesh.tets.nodes);
-    let at = Buckets::of::<4>(team, vertices.len(), tets.len(), |t| tets[t]);
+    let at = Rows::by_key::<4>(team, vertices.len(), tets.len(), |t| tets[t]);
     let cells = Cells { mesh, at: &at, values, width };
     let mut found = team.collect(GRAIN, vertices.len(), |range, found| {
         let mut sum = vec![0.0; width];
@@ -37,7 +37,7 @@ pub fn cells_to_vertices(team: Team<'_>, mesh: &TetMesh, values: &[f64], width: 
 /// Values of cells, those at a vertex in buckets.
 struct Cells<'a> {
     mesh: &'a TetMesh,
-    at: &'a Buckets,
+    at: &'a Rows,
     values: &'a [f64],
     width: usize,
 }
@@ -45,7 +45,7 @@ struct Cells<'a> {
 impl Cells<'_> {
     /// The cells at a vertex.
     fn around(&self, vertex: usize) -> impl Iterator<Item = usize> {
-        self.at.of_key(vertex).map(|entry| entry as usize / 4)
+        self.at.row(vertex).iter().map(|&entry| entry as usize / 4)
     }
 
     /// The weighted mean over the cells at a vertex of what `of` makes of (value, cell, component); zero without cells.

@@ -9,6 +9,7 @@ mod model;
 pub mod names;
 #[cfg(feature = "occt")]
 mod occt;
+mod principal;
 mod traits;
 
 pub use discrete::Discrete;
@@ -19,4 +20,5 @@ pub use model::{Evaluator, Model};
 pub use names::{Label, Names, called};
 #[cfg(feature = "occt")]
 pub use occt::{OcctEvaluator, OcctModel};
+pub(crate) use principal::principal;
 pub use traits::{CurveFrame, Evaluate, Geometry, OnCurve, OnSurface, SurfaceFrame};

@@ -1,5 +1,6 @@
 //! Where the voxels of an image lie in space.
-use crate::mesh::vector::{Vec3, add, cross, dot, norm, scale, sub};
+use crate::mesh::vector::{Vec3, norm};
+use nalgebra::{Matrix3, Vector3};
 
 /// The affine map between voxel indices and space. A voxel's centre is at whole indices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -8,22 +9,24 @@ pub struct Frame {
     pub origin: Vec3,
     /// The step from a voxel to the next along each axis of the image.
     pub axes: [Vec3; 3],
-    /// Rows of the inverse.
-    inverse: [Vec3; 3],
+    /// The axes as columns.
+    to_space: Matrix3<f64>,
+    /// Its inverse.
+    to_index: Matrix3<f64>,
 }
 
 impl Frame {
     /// A frame; none when the axes do not span space.
     pub fn new(origin: Vec3, axes: [Vec3; 3]) -> Option<Self> {
-        let volume = dot(axes[0], cross(axes[1], axes[2]));
+        let to_space = Matrix3::from_columns(&axes.map(Vector3::from));
+        let volume = to_space.determinant();
         let flat = 1e-9 * norm(axes[0]) * norm(axes[1]) * norm(axes[2]);
         let finite = axes.iter().flatten().chain(&origin).all(|x| x.is_finite()) && volume.is_finite();
         if !finite || volume.abs() <= flat {
             return None;
         }
-        let inverse: [Vec3; 3] =
-            std::array::from_fn(|i| scale(cross(axes[(i + 1) % 3], axes[(i + 2) % 3]), 1.0 / volume));
-        inverse.iter().flatten().all(|x| x.is_finite()).then_some(Self { origin, axes, inverse })
+        let to_index = to_space.try_inverse()?;
+        to_index.iter().all(|x| x.is_finite()).then_some(Self { origin, axes, to_space, to_index })
     }
 
     /// Voxels along the axes of space.
@@ -35,25 +38,23 @@ impl Frame {
     /// The point at an index, which need not be whole.
     #[inline]
     pub fn point(&self, index: Vec3) -> Vec3 {
-        let [a, b, c] = self.axes;
-        add(self.origin, add(scale(a, index[0]), add(scale(b, index[1]), scale(c, index[2]))))
+        (Vector3::from(self.origin) + self.to_space * Vector3::from(index)).into()
     }
 
     /// The index of a point.
     #[inline]
     pub fn index(&self, point: Vec3) -> Vec3 {
-        let from = sub(point, self.origin);
-        self.inverse.map(|row| dot(row, from))
+        (self.to_index * (Vector3::from(point) - Vector3::from(self.origin))).into()
     }
 
-    /// The gradient in space of each index, 1/length.
-    pub fn gradients(&self) -> [Vec3; 3] {
-        self.inverse
+    /// Second derivatives by the indices as those in space.
+    pub fn hessian(&self, of_index: &Matrix3<f64>) -> Matrix3<f64> {
+        self.to_index.tr_mul(of_index) * self.to_index
     }
 
     /// Volume of a voxel.
     pub fn volume(&self) -> f64 {
-        dot(self.axes[0], cross(self.axes[1], self.axes[2])).abs()
+        self.to_space.determinant().abs()
     }
 
     /// Distance between voxels along each axis.

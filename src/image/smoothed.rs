@@ -3,6 +3,7 @@ use super::frame::Frame;
 use super::nrrd::Image;
 use crate::mesh::vector::Vec3;
 use crate::tasks::Team;
+use nalgebra::Matrix3;
 
 /// The weights of the Gauss filter end at so many standard deviations.
 const REACH: f64 = 3.0;
@@ -78,10 +79,10 @@ impl Smoothed {
         let at = self.frame.index(point);
         let shifted = |shifts: [f64; 3]| self.value_at(std::array::from_fn(|i| at[i] + shifts[i]));
         let centre = shifted([0.0; 3]);
-        let mut of_index = [[0.0; 3]; 3];
+        let mut of_index = Matrix3::zeros();
         for i in 0..3 {
             let along = |s: f64| std::array::from_fn(|k| if k == i { s } else { 0.0 });
-            of_index[i][i] = shifted(along(1.0)) - 2.0 * centre + shifted(along(-1.0));
+            of_index[(i, i)] = shifted(along(1.0)) - 2.0 * centre + shifted(along(-1.0));
             for j in 0..i {
                 let to = |s: f64, t: f64| {
                     shifted(std::array::from_fn(|k| {
@@ -94,21 +95,12 @@ impl Smoothed {
                         }
                     }))
                 };
-                of_index[i][j] = 0.25 * (to(1.0, 1.0) - to(1.0, -1.0) - to(-1.0, 1.0) + to(-1.0, -1.0));
-                of_index[j][i] = of_index[i][j];
+                of_index[(i, j)] = 0.25 * (to(1.0, 1.0) - to(1.0, -1.0) - to(-1.0, 1.0) + to(-1.0, -1.0));
+                of_index[(j, i)] = of_index[(i, j)];
             }
         }
-        // Index i has the gradient g_i in space: H = Σ h_ij g_i g_jᵀ.
-        let gradients = self.frame.gradients();
-        let mut of_space = [0.0; 6];
-        for (term, (a, b)) in [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].into_iter().enumerate() {
-            for i in 0..3 {
-                for j in 0..3 {
-                    of_space[term] += of_index[i][j] * gradients[i][a] * gradients[j][b];
-                }
-            }
-        }
-        of_space
+        let h = self.frame.hessian(&of_index);
+        [h[(0, 0)], h[(0, 1)], h[(1, 1)], h[(0, 2)], h[(1, 2)], h[(2, 2)]]
     }
 }
 

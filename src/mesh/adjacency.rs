@@ -1,6 +1,6 @@
 //! Neighbours of tetrahedra, triangles among their faces, and unique edges of a plain mesh.
 pub use super::matched_faces::{Crowd, MatchedFaces};
-use crate::tasks::{Buckets, GRAIN, Team};
+use crate::tasks::{GRAIN, Rows, Team};
 use std::ops::Range;
 
 /// No neighbour: the face is on the boundary.
@@ -116,7 +116,7 @@ pub fn unique_edges(tets: &[[u32; 4]]) -> Vec<[u32; 2]> {
 pub struct Edges<'t> {
     tets: &'t [[u32; 4]],
     /// For each node the tetrahedra in which it is not the greatest: 12 bytes a tetrahedron.
-    at: Buckets,
+    at: Rows,
     nodes: usize,
 }
 
@@ -126,9 +126,9 @@ impl<'t> Edges<'t> {
         let greatest = |range: Range<usize>| tets[range].iter().flatten().max().copied();
         let greatest = team.chunks(GRAIN, tets.len(), greatest).into_iter().max().flatten();
         let nodes = greatest.map_or(0, |greatest| greatest as usize + 1);
-        let at = Buckets::of(team, nodes, tets.len(), |t| {
+        let at = Rows::by_key(team, nodes, tets.len(), |t| {
             let greatest = tets[t].into_iter().max().unwrap_or(0);
-            tets[t].map(|v| if v < greatest { v } else { Buckets::NOWHERE })
+            tets[t].map(|v| if v < greatest { v } else { Rows::NOWHERE })
         });
         Self { tets, at, nodes }
     }
@@ -142,7 +142,7 @@ impl<'t> Edges<'t> {
     pub fn for_each(&self, range: Range<usize>, mut f: impl FnMut([u32; 2])) {
         let mut upper = Vec::new();
         for low in range {
-            let tets = self.at.of_key(low).flat_map(|entry| self.tets[entry as usize / 4]);
+            let tets = self.at.row(low).iter().flat_map(|&entry| self.tets[entry as usize / 4]);
             upper.clear();
             upper.extend(tets.filter(|&v| v as usize > low));
             upper.sort_unstable();

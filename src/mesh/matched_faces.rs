@@ -1,6 +1,6 @@
 //! Which tetrahedra share a face.
 use super::adjacency::{FACES, NONE, sorted3};
-use crate::tasks::{Buckets, GRAIN, Team};
+use crate::tasks::{GRAIN, Rows, Team};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// A face of more than two tetrahedra.
@@ -29,7 +29,7 @@ impl MatchedFaces {
     pub fn of(team: Team<'_>, tets: &[[u32; 4]]) -> Self {
         let sides = sides_by_least_node(team, tets);
         let neighbours: Vec<_> = (0..tets.len()).map(|_| [NONE; 4].map(AtomicU32::new)).collect();
-        let crowds = team.chunks(GRAIN, sides.keys(), |range| {
+        let crowds = team.chunks(GRAIN, sides.len(), |range| {
             let mut table = Table::default();
             // All are matched, whether or not one is crowded.
             let crowds = range.filter_map(|v| table.match_at(v as u32, &sides, tets, &neighbours));
@@ -41,11 +41,11 @@ impl MatchedFaces {
 }
 
 /// The sides 4·tet + face at the least node of the face.
-fn sides_by_least_node(team: Team<'_>, tets: &[[u32; 4]]) -> Buckets {
+fn sides_by_least_node(team: Team<'_>, tets: &[[u32; 4]]) -> Rows {
     let greatest = team.chunks(GRAIN, tets.len(), |range| tets[range].iter().flatten().max().copied());
     let nodes = greatest.into_iter().max().flatten().map_or(0, |greatest| greatest as usize + 1);
     // Three faces have the least node of the tetrahedron, and the one opposite to it has the second least.
-    Buckets::of::<4>(team, nodes, tets.len(), |t| {
+    Rows::by_key::<4>(team, nodes, tets.len(), |t| {
         let nodes = tets[t];
         let at = (1..4).fold(0, |least, i| if nodes[i] < nodes[least] { i } else { least });
         let second = (0..4).filter(|&i| i != at).map(|i| nodes[i]).min().unwrap_or(nodes[at]);
@@ -95,11 +95,11 @@ impl Table {
     }
 
     /// Matches the faces whose least node is v; returns the first one of more than two tetrahedra.
-    fn match_at(&mut self, v: u32, sides: &Buckets, tets: &[[u32; 4]], neighbours: &[[AtomicU32; 4]]) -> Option<Crowd> {
-        let sides = sides.of_key(v as usize);
+    fn match_at(&mut self, v: u32, sides: &Rows, tets: &[[u32; 4]], neighbours: &[[AtomicU32; 4]]) -> Option<Crowd> {
+        let sides = sides.row(v as usize);
         self.clear(sides.len());
         let mut crowded: Option<Crowd> = None;
-        for side in sides {
+        for &side in sides {
             let (tet, face) = (side as usize / 4, side as usize % 4);
             let nodes = tets[tet];
             let [_, b, c] = sorted3(FACES[face].map(|i| nodes[i]));

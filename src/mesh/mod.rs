@@ -12,8 +12,8 @@ pub mod predicate;
 pub mod quadrature;
 #[doc(hidden)]
 pub mod samples;
-pub mod seen;
 pub mod split_nonmanifold;
+pub mod stamped_set;
 mod starts;
 mod tet_mesh;
 pub mod triangle_pair;

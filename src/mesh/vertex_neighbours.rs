@@ -1,14 +1,10 @@
 //! The vertices at the other ends of the edges of each vertex.
 use super::TetMesh;
-use super::seen::Seen;
-use crate::tasks::{Buckets, GRAIN, Team};
+use super::stamped_set::StampedSet;
+use crate::tasks::{GRAIN, Rows, Team};
 
 /// For each vertex those it has an edge with, ascending; 60 bytes a vertex.
-pub struct VertexNeighbours {
-    /// Where the row of each vertex begins, and the end of the last: shape (n + 1,).
-    starts: Vec<u32>,
-    neighbours: Vec<u32>,
-}
+pub struct VertexNeighbours(Rows);
 
 impl VertexNeighbours {
     /// By the edges of a mesh's tetrahedra, or of its triangles where it has no tetrahedron.
@@ -23,47 +19,40 @@ impl VertexNeighbours {
 
     /// In a mesh of so many vertices, with elements that have fewer than 2³² corners in all.
     pub fn of<const N: usize>(team: Team<'_>, elements: &[[u32; N]], vertices: usize) -> Self {
-        Self::at_corners(team, elements, &Buckets::of(team, vertices, elements.len(), |e| elements[e]))
+        Self::at_corners(team, elements, &Rows::by_key(team, vertices, elements.len(), |e| elements[e]))
     }
 
     /// As [`VertexNeighbours::of`], with the corners at each vertex, N·element + corner.
-    pub fn at_corners<const N: usize>(team: Team<'_>, elements: &[[u32; N]], corners: &Buckets) -> Self {
-        let vertices = corners.keys();
+    pub fn at_corners<const N: usize>(team: Team<'_>, elements: &[[u32; N]], corners: &Rows) -> Self {
+        let vertices = corners.len();
         let parts = team.chunks(GRAIN, vertices, |range| {
-            let (mut seen, mut ends) = (Seen::default(), Vec::with_capacity(range.len()));
+            let (mut seen, mut ends) = (StampedSet::default(), Vec::with_capacity(range.len()));
             // Half as many and two for a vertex inside a mesh of tetrahedra, by Euler's formula; a few more where it is not.
-            let at: usize = range.clone().map(|vertex| corners.of_key(vertex).len()).sum();
+            let at: usize = range.clone().map(|vertex| corners.row(vertex).len()).sum();
             let mut found: Vec<u32> = Vec::with_capacity(at / 2 + 3 * range.len());
             for vertex in range {
                 let start = found.len();
-                seen.forget();
+                seen.clear();
                 seen.insert(vertex as u32);
-                let nodes = corners.of_key(vertex).flat_map(|corner| elements[corner as usize / N]);
+                let nodes = corners.row(vertex).iter().flat_map(|&corner| elements[corner as usize / N]);
                 found.extend(nodes.filter(|&node| seen.insert(node)));
                 found[start..].sort_unstable();
                 ends.push(found.len() as u32);
             }
             (ends, found)
         });
-        let mut starts = Vec::with_capacity(vertices + 1);
-        starts.push(0);
-        for (ends, _) in &parts {
-            let before = *starts.last().unwrap_or(&0);
-            starts.extend(ends.iter().map(|end| before + end));
-        }
-        Self { starts, neighbours: team.join_slices(parts.iter().map(|(_, found)| found.as_slice())) }
+        Self(Rows::of_parts(team, &parts))
     }
 
     /// The neighbours of a vertex.
     #[inline]
     pub fn of_vertex(&self, vertex: u32) -> &[u32] {
-        let [start, end] = [0, 1].map(|i| self.starts[vertex as usize + i] as usize);
-        &self.neighbours[start..end]
+        self.0.row(vertex as usize)
     }
 
     /// Number of vertices.
     pub fn len(&self) -> usize {
-        self.starts.len() - 1
+        self.0.len()
     }
 
     /// Whether there is no vertex.

@@ -1,6 +1,7 @@
 //! The smallest ellipsoid about a centre that holds given points.
 use super::Sym3;
 use crate::mesh::vector::Vec3;
+use nalgebra::{Matrix3, Vector3};
 
 /// The volume is at most (1 + this)^(3/2) times the least.
 const TOLERANCE: f64 = 1e-4;
@@ -17,10 +18,12 @@ pub fn smallest_about_origin(points: &[Vec3], weights: &mut Vec<f64>) -> Option<
     const D: f64 = 3.0;
     weights.clear();
     weights.resize(points.len(), 1.0 / points.len() as f64);
-    let mut sum = points.iter().fold(Sym3::ZERO, |sum, &x| sum.plus(Sym3::outer(x, 1.0 / points.len() as f64)));
+    let dyad = |x: Vec3| Vector3::from(x) * Vector3::from(x).transpose();
+    let mut sum: Matrix3<f64> = points.iter().map(|&x| dyad(x)).sum::<Matrix3<f64>>() / points.len() as f64;
     let mut greatest = 0.0;
     for _ in 0..STEPS {
-        let form = |x: Vec3| crate::mesh::vector::dot(x, sum.solve(x));
+        let lower = sum.cholesky()?.unpack();
+        let form = |x: Vec3| lower.solve_lower_triangular_unchecked(&Vector3::from(x)).norm_squared();
         let (mut farthest, mut nearest) = ((0, f64::NEG_INFINITY), (0, f64::INFINITY));
         for (i, &x) in points.iter().enumerate() {
             let value = form(x);
@@ -48,9 +51,9 @@ pub fn smallest_about_origin(points: &[Vec3], weights: &mut Vec<f64>) -> Option<
         if weights[at] < 1e-15 {
             weights[at] = 0.0;
         }
-        sum = sum.times(1.0 - step).plus(Sym3::outer(points[at], step));
+        sum = sum * (1.0 - step) + dyad(points[at]) * step;
     }
-    let m = sum.inverse().times(1.0 / greatest);
+    let m = Sym3::from(sum).inverse().times(1.0 / greatest);
     m.is_spd().then_some(m)
 }
 

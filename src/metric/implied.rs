@@ -2,7 +2,7 @@
 use super::Sym3;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, cross, dot, scale, sub, volume6};
-use crate::tasks::{Buckets, GRAIN, Team};
+use crate::tasks::{GRAIN, Rows, Team};
 
 /// The metric in which all six edges of a tetrahedron have length one; none for a flat or inverted one.
 ///
@@ -46,7 +46,7 @@ pub fn implied(team: Team<'_>, mesh: &TetMesh) -> Option<Implied> {
     });
     let flat: usize =
         team.chunks(GRAIN, tets.len(), |range| range.filter(|&t| volumes[t] == 0.0).count()).into_iter().sum();
-    let rows = Buckets::of(team, mesh.vertices.len(), tets.len(), |t| tets[t]);
+    let rows = Rows::by_key(team, mesh.vertices.len(), tets.len(), |t| tets[t]);
     let mean = |tets: &mut dyn Iterator<Item = usize>| {
         let weighted =
             |(sum, volume): (Sym3, f64), t: usize| (sum.plus(logs[t].times(volumes[t])), volume + volumes[t]);
@@ -63,7 +63,7 @@ pub fn implied(team: Team<'_>, mesh: &TetMesh) -> Option<Implied> {
         return None;
     }
     let whole = sum.times(1.0 / volume);
-    let means = team.map(GRAIN, rows.keys(), |v| mean(&mut rows.of_key(v).map(|entry| entry as usize / 4)));
+    let means = team.map(GRAIN, rows.len(), |v| mean(&mut rows.row(v).iter().map(|&entry| entry as usize / 4)));
     let bare = means.iter().filter(|mean| mean.is_none()).count();
     Some(Implied { logs: team.map(GRAIN, means.len(), |v| means[v].unwrap_or(whole)), flat, bare })
 }

@@ -8,7 +8,7 @@ use super::field::{Asked, Sizing};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry};
 use crate::mesh::vector::{Vec3, add, distance, lerp, scale};
 use crate::metric::Sym3;
-use crate::tasks::{Buckets, Team};
+use crate::tasks::{Rows, Team};
 
 /// Distance of samples, as a share of the greatest size.
 const SPACING: f64 = 0.5;
@@ -46,10 +46,10 @@ pub fn add_between(team: Team<'_>, sizing: &Sizing, metrics: &mut [Sym3]) -> (us
     let samples = parts.iter().map(|part| part.samples).sum();
     let nearest = parts.iter().filter_map(|part| part.gap).min_by(|a, b| a.distance.total_cmp(&b.distance));
     let sent: Vec<Sent> = team.join_slices(parts.iter().map(|part| part.sent.as_slice()));
-    let at = Buckets::of(team, metrics.len(), sent.len(), |i| [sent[i].vertex]);
+    let at = Rows::by_key(team, metrics.len(), sent.len(), |i| [sent[i].vertex]);
     team.fill(TASK, metrics, |start, metrics| {
         for (vertex, metric) in (start..).zip(metrics) {
-            combine(metric, at.of_key(vertex).map(|entry| sent[entry as usize].metric));
+            combine(metric, at.row(vertex).iter().map(|&entry| sent[entry as usize].metric));
         }
     });
     (samples, nearest)

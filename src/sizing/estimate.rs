@@ -1,11 +1,12 @@
 //! Curvature at the vertices of a mesh that is its own model: estimated, as honestly as triangles allow.
 use super::curvature::{Curvature, Local};
 use crate::geometry::classify::Classification;
-use crate::geometry::{Evaluate, Geometry, Model, SurfaceFrame};
+use crate::geometry::{Evaluate, Geometry, Model, SurfaceFrame, principal};
 use crate::mesh::TetMesh;
-use crate::mesh::vector::{Vec3, add, area2, cross, dot, norm, scale, unit};
+use crate::mesh::vector::{Vec3, add, area2, dot, norm, scale, unit};
 use crate::metric::{Sym3, plane_basis};
-use crate::tasks::{Buckets, Team};
+use crate::tasks::{Rows, Team};
+use nalgebra::Matrix2;
 
 /// Triangles a task.
 const TRIANGLES: usize = 1 << 10;
@@ -15,7 +16,7 @@ const TRIANGLES: usize = 1 << 10;
 pub struct Estimate<'a> {
     faces: &'a [u32],
     /// 3·triangle + corner at each vertex.
-    at: Buckets,
+    at: Rows,
     /// Of each triangle area·Σ κ_i d_i d_iᵀ and area·normal.
     shapes: Vec<(Sym3, Vec3)>,
 }
@@ -24,7 +25,7 @@ impl<'a> Estimate<'a> {
     /// Of a mesh on its own surface.
     pub fn new(team: Team<'_>, mesh: &TetMesh, place: &'a Classification, model: &Model) -> Self {
         let triangles = &mesh.triangles.nodes;
-        let at = Buckets::of(team, mesh.vertices.len(), triangles.len(), |t| triangles[t]);
+        let at = Rows::by_key(team, mesh.vertices.len(), triangles.len(), |t| triangles[t]);
         let shapes = team.collect(TRIANGLES, triangles.len(), |range, shapes| {
             let mut evaluator = model.evaluator();
             shapes.extend(range.map(|t| {
@@ -41,7 +42,7 @@ impl<'a> Estimate<'a> {
 
     /// Adds the faces at a vertex to what is asked of it.
     pub fn add_faces(&self, curvature: &Curvature, vertex: usize, local: &mut Local) {
-        let triangles = || self.at.of_key(vertex).map(|entry| entry as usize / 3);
+        let triangles = || self.at.row(vertex).iter().map(|&entry| entry as usize / 3);
         let mut last = None;
         // The faces in increasing order: few vertices have more than one.
         while let Some(face) = triangles().map(|t| self.faces[t]).filter(|&f| last.is_none_or(|last| f > last)).min() {
@@ -59,17 +60,9 @@ impl<'a> Estimate<'a> {
 /// The principal curvatures of a shape operator, in the plane across the normal.
 fn frame(shape: Sym3, normal: Vec3) -> SurfaceFrame {
     let (u, w) = plane_basis(normal);
-    let (a, b, c) = (shape.quadratic(u), dot(u, shape.apply(w)), shape.quadratic(w));
-    let (sin, cos) = (0.5 * (2.0 * b).atan2(a - c)).sin_cos();
-    let greater = add(scale(u, cos), scale(w, sin));
-    let (mean, root) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
+    let off = dot(u, shape.apply(w));
+    let in_plane = Matrix2::new(shape.quadratic(u), off, off, shape.quadratic(w));
+    let (curvatures, directions) = principal(in_plane, [u, w]);
     let zero = [0.0; 3];
-    SurfaceFrame {
-        point: zero,
-        du: zero,
-        dv: zero,
-        normal,
-        curvatures: [mean + root, mean - root],
-        directions: [greater, cross(normal, greater)],
-    }
+    SurfaceFrame { point: zero, du: zero, dv: zero, normal, curvatures, directions }
 }

@@ -19,7 +19,6 @@
 //! - **One thread** makes no task: all runs in place, in order.
 //! - In a task of the rayon back-end, rayon's own parallel calls must not be used: rayon would run other tasks while they wait.
 mod backends;
-mod buckets;
 pub mod claims;
 mod core;
 mod each;
@@ -32,6 +31,7 @@ mod nested;
 mod place;
 mod plan;
 mod pool;
+mod rows;
 mod scope;
 mod seats;
 mod sort;
@@ -39,9 +39,9 @@ mod stage;
 mod strategy;
 mod team;
 
-pub use buckets::Buckets;
 pub use plan::{Backend, Plan, Strategy};
 pub use pool::{Error, Pool};
+pub use rows::Rows;
 pub use scope::{Scope, Task};
 pub use stage::stage;
 pub use team::{GRAIN, Team};

@@ -3,72 +3,16 @@
 use super::clip::{Piece, Planes};
 use crate::mesh::adjacency::NONE;
 use crate::mesh::locate::Locator;
+use crate::mesh::stamped_set::StampedSet;
 use crate::mesh::vector::{Vec3, add, scale};
 
 /// Less than this share of a tetrahedron uncovered is rounding: no other parts are looked for.
 const COVERED: f64 = 1e-10;
 
-/// Tetrahedra that were visited, with open addressing; what an earlier front left is told by its number.
-struct Visited {
-    slots: Vec<(u32, u32)>,
-    front: u32,
-    count: usize,
-}
-
-impl Visited {
-    fn new() -> Self {
-        Self { slots: vec![(0, 0); 256], front: 0, count: 0 }
-    }
-
-    fn clear(&mut self) {
-        self.count = 0;
-        self.front = self.front.wrapping_add(1);
-        if self.front == 0 {
-            self.slots.fill((0, 0));
-            self.front = 1;
-        }
-    }
-
-    /// Whether it was not there.
-    #[inline]
-    fn insert(&mut self, tet: u32) -> bool {
-        if 2 * self.count >= self.slots.len() {
-            self.grow();
-        }
-        let is_new = self.put(tet);
-        self.count += usize::from(is_new);
-        is_new
-    }
-
-    #[inline]
-    fn put(&mut self, tet: u32) -> bool {
-        let mask = self.slots.len() - 1;
-        let mut at = (u64::from(tet).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as usize & mask;
-        while self.slots[at].0 == self.front {
-            if self.slots[at].1 == tet {
-                return false;
-            }
-            at = (at + 1) & mask;
-        }
-        self.slots[at] = (self.front, tet);
-        true
-    }
-
-    fn grow(&mut self) {
-        let twice = vec![(0, 0); 2 * self.slots.len()];
-        let old = std::mem::replace(&mut self.slots, twice);
-        for (front, tet) in old {
-            if front == self.front {
-                self.put(tet);
-            }
-        }
-    }
-}
-
 /// One for each thread or chunk: it keeps its memory, and where it was last.
 pub struct Front<'l> {
     locator: &'l Locator,
-    visited: Visited,
+    visited: StampedSet,
     open: Vec<u32>,
     hint: u32,
 }
@@ -76,7 +20,7 @@ pub struct Front<'l> {
 impl<'l> Front<'l> {
     /// Over a mesh.
     pub fn new(locator: &'l Locator) -> Self {
-        Self { locator, visited: Visited::new(), open: Vec::new(), hint: 0 }
+        Self { locator, visited: StampedSet::default(), open: Vec::new(), hint: 0 }
     }
 
     /// Calls `take` with each tetrahedron of the mesh that `x` meets, its planes and the piece of `x` in it. Returns the share of
@@ -184,18 +128,5 @@ mod tests {
             let (covered, found) = by_front(&mut front, &nodes.map(|v| mesh.vertices[v as usize]));
             assert!((covered - 1.0).abs() < 1e-14 && found.len() == 1 && found[0].0 == tet, "{found:?}");
         }
-    }
-
-    #[test]
-    fn many_are_remembered() {
-        let mut visited = Visited::new();
-        for _ in 0..3 {
-            visited.clear();
-            assert!((0..1000).all(|tet| visited.insert(tet * 64)));
-            assert!((0..1000).all(|tet| !visited.insert(tet * 64)));
-        }
-        visited.front = u32::MAX;
-        visited.clear();
-        assert!(visited.insert(64));
     }
 }

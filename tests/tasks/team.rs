@@ -1,6 +1,6 @@
 //! What a team makes of many items does not depend on its threads.
 use crate::each_plan;
-use geo_adapt::tasks::{Buckets, Pool, Team};
+use geo_adapt::tasks::{Pool, Rows, Team};
 
 /// Numbers in no order, some of them more than once.
 fn scattered(count: u32, below: u32) -> impl Fn(usize) -> u32 {
@@ -64,17 +64,17 @@ fn buckets_hold_the_entries_of_their_keys() {
     let kept = |entry: usize| !entry.is_multiple_of(3) && key(entry) < KEYS as u32;
     for items in [0, 5, 20_000] {
         each_team(1, |team| {
-            let buckets = Buckets::of::<2>(team, KEYS, items, |item| {
-                [2 * item, 2 * item + 1].map(|entry| if kept(entry) { key(entry) } else { Buckets::NOWHERE })
+            let rows = Rows::by_key::<2>(team, KEYS, items, |item| {
+                [2 * item, 2 * item + 1].map(|entry| if kept(entry) { key(entry) } else { Rows::NOWHERE })
             });
-            assert_eq!(buckets.keys(), KEYS);
+            assert_eq!(rows.len(), KEYS);
             let of_key = |of: usize| {
                 (0..2 * items).filter(|&e| kept(e) && key(e) as usize == of).map(|e| e as u32).collect::<Vec<_>>()
             };
             for of in 0..KEYS {
-                assert!(buckets.of_key(of).eq(of_key(of)), "key {of}");
+                assert!(rows.row(of) == of_key(of), "key {of}");
             }
-            assert!(buckets.into_entries().into_iter().eq((0..KEYS).flat_map(of_key)));
+            assert!(rows.into_entries().into_iter().eq((0..KEYS).flat_map(of_key)));
         });
     }
 }

@@ -9,6 +9,7 @@ use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, sub};
 use crate::metric::Sym3;
+use crate::tasks::{Rows, Team};
 use std::borrow::Cow;
 
 /// Of a vertex inside.
@@ -42,41 +43,23 @@ pub struct Level<'m> {
 }
 
 /// The tetrahedra at each vertex.
-pub struct Balls {
-    starts: Vec<u32>,
-    tets: Vec<u32>,
-}
+pub struct Balls(Rows);
 
 impl Balls {
     /// Of so many vertices.
     pub fn of<const N: usize>(elements: &[[u32; N]], vertices: usize) -> Self {
-        // Counted two places on: while the elements are dealt out, each start moves to the next one's place.
-        let mut starts = vec![0u32; vertices + 2];
-        elements.iter().flatten().for_each(|&v| starts[v as usize + 2] += 1);
-        for v in 2..starts.len() {
-            starts[v] += starts[v - 1];
-        }
-        let mut tets = vec![0u32; N * elements.len()];
-        for (nodes, t) in elements.iter().zip(0..) {
-            for &v in nodes {
-                let start = &mut starts[v as usize + 1];
-                tets[*start as usize] = t;
-                *start += 1;
-            }
-        }
-        starts.pop();
-        Self { starts, tets }
+        Self(Rows::at_nodes(Team::alone(), elements, vertices))
     }
 
     /// The tetrahedra at a vertex.
     #[inline(always)]
     pub fn at(&self, v: u32) -> &[u32] {
-        &self.tets[self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize]
+        self.0.row(v as usize)
     }
 
     /// One of the tetrahedra at each vertex, 0 where there is none.
     pub fn firsts(&self) -> Vec<u32> {
-        (0..self.starts.len() as u32 - 1).map(|v| self.at(v).first().copied().unwrap_or(0)).collect()
+        (0..self.0.len()).map(|v| self.0.row(v).first().copied().unwrap_or(0)).collect()
     }
 }
 

@@ -2,7 +2,7 @@
 use super::ids::{TetId, VertexId};
 use crate::mesh::hilbert;
 use crate::mesh::vector::Vec3;
-use crate::tasks::{Buckets, GRAIN, Team};
+use crate::tasks::{GRAIN, Rows, Team};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// New numbers along the Hilbert curve.
@@ -31,7 +31,7 @@ impl Numbering {
 
 /// Tetrahedra in the order of their first vertex; those without one (`u32::MAX`) are left out.
 pub fn by_first(team: Team<'_>, tets: usize, vertices: usize, first: impl Fn(usize) -> u32 + Sync) -> Vec<u32> {
-    Buckets::of(team, vertices, tets, |t| [first(t)]).into_entries()
+    Rows::by_key(team, vertices, tets, |t| [first(t)]).into_entries()
 }
 
 /// For each old number below `bound` its place in an order, as an id; none for what is not in the order.

@@ -1,84 +1,8 @@
-//! Small sets and maps that an operation needs while it looks at its cavity: cleared by a new stamp, allocated once.
-
-/// A set of 32-bit ids with open addressing.
-pub struct StampedSet {
-    /// The stamp of the last clearing above the id: one comparison tells whether a slot holds an id now.
-    slots: Vec<u64>,
-    stamp: u64,
-    len: usize,
-}
+//! A small map that an operation needs while it looks at its cavity: cleared by a new stamp, allocated once, as [`crate::mesh::stamped_set`] is.
 
 #[inline(always)]
 fn hash(key: u64) -> usize {
     (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32) as usize
-}
-
-impl Default for StampedSet {
-    fn default() -> Self {
-        Self { slots: vec![0; 256], stamp: 1 << 32, len: 0 }
-    }
-}
-
-impl StampedSet {
-    /// Empties the set.
-    #[inline]
-    pub fn clear(&mut self) {
-        self.len = 0;
-        self.stamp = self.stamp.wrapping_add(1 << 32);
-        if self.stamp == 0 {
-            self.slots.fill(0);
-            self.stamp = 1 << 32;
-        }
-    }
-
-    /// Adds an id; whether it was new.
-    #[inline]
-    pub fn insert(&mut self, id: u32) -> bool {
-        if self.len * 2 >= self.slots.len() {
-            self.grow();
-        }
-        let wanted = self.stamp | u64::from(id);
-        let mask = self.slots.len() - 1;
-        let mut at = hash(u64::from(id)) & mask;
-        loop {
-            let slot = self.slots[at];
-            if slot < self.stamp {
-                self.slots[at] = wanted;
-                self.len += 1;
-                return true;
-            }
-            if slot == wanted {
-                return false;
-            }
-            at = (at + 1) & mask;
-        }
-    }
-
-    /// Whether the id is in the set.
-    #[inline]
-    pub fn contains(&self, id: u32) -> bool {
-        let wanted = self.stamp | u64::from(id);
-        let mask = self.slots.len() - 1;
-        let mut at = hash(u64::from(id)) & mask;
-        loop {
-            let slot = self.slots[at];
-            if slot < self.stamp || slot == wanted {
-                return slot == wanted;
-            }
-            at = (at + 1) & mask;
-        }
-    }
-
-    #[cold]
-    fn grow(&mut self) {
-        let larger = vec![0; self.slots.len() * 2];
-        let old = std::mem::replace(&mut self.slots, larger);
-        self.len = 0;
-        let stamp = self.stamp;
-        for slot in old.into_iter().filter(|&slot| slot >= stamp) {
-            self.insert(slot as u32);
-        }
-    }
 }
 
 /// A map from triangles (three vertex ids in any order) to a value.
@@ -161,19 +85,6 @@ impl<T: Copy + Default> FaceMap<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_set_keeps_what_it_is_given_beyond_its_first_size_and_forgets_it_when_cleared() {
-        let mut set = StampedSet::default();
-        for id in (0..3000).map(|i| i * 64) {
-            assert!(set.insert(id));
-            assert!(!set.insert(id));
-        }
-        assert!((0..3000).all(|i| set.contains(i * 64)));
-        assert!(!set.contains(1));
-        set.clear();
-        assert!(!(0..3000).any(|i| set.contains(i * 64)));
-    }
 
     #[test]
     fn a_face_is_found_in_any_order_of_its_vertices() {

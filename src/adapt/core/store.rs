@@ -233,6 +233,7 @@ impl Store {
     }
 
     /// Ids of live vertices. Between sweeps only.
+    #[cfg(any(test, feature = "internals"))]
     pub fn live_vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
         (0..self.vertex_bound() as u32).map(VertexId).filter(|&v| self.is_vertex(v))
     }
@@ -248,6 +249,7 @@ impl Store {
     }
 
     /// Ids of live tetrahedra. Between sweeps only.
+    #[cfg(any(test, feature = "internals"))]
     pub fn live_tets(&self) -> impl Iterator<Item = TetId> + '_ {
         (0..self.tet_bound() as u32).map(TetId).filter(|&t| self.is_tet(t))
     }

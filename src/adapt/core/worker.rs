@@ -6,11 +6,12 @@ use super::context::Context;
 use super::id_pool::IdPool;
 use super::ids::{TetId, VertexId};
 use super::refusal::Refusal;
-use super::stamped::{FaceMap, StampedSet};
+use super::stamped::FaceMap;
 use super::star::Star;
 use super::store::Store;
 use super::timed_evaluator::TimedEvaluator;
 use crate::geometry::Geometry;
+use crate::mesh::stamped_set::StampedSet;
 
 /// What a thread keeps from sweep to sweep.
 pub struct State<'m> {

@@ -15,13 +15,12 @@ use crate::adapt::core::store::Store;
 use crate::adapt::core::worker::{State, Worker};
 use crate::adapt::schedule::work::Kind;
 use crate::tasks::{Plan, Pool};
-use clap::ValueEnum;
 use serde::Serialize;
 
 pub use grains::Grains;
 
 /// Who does what, when.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scheduler {
     /// All threads, each in parts of the mesh that do not depend on them: the same mesh bit for bit for any number of threads.
@@ -31,6 +30,20 @@ pub enum Scheduler {
     Speculative,
     /// One thread, one item after the other.
     Sequential,
+}
+
+impl Scheduler {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Deterministic, Self::Speculative, Self::Sequential];
+
+    /// As the command line spells it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Deterministic => "deterministic",
+            Self::Speculative => "speculative",
+            Self::Sequential => "sequential",
+        }
+    }
 }
 
 /// The threads and how they share the work.

@@ -1,5 +1,5 @@
 //! The edges of a set of triangles, each once, with the triangles around it.
-use crate::tasks::Team;
+use crate::tasks::{Rows, Team};
 
 /// Edges of triangles. Side s = 3·t + k is the edge from corner k to corner k + 1 of triangle t.
 pub(crate) struct EdgeTable {
@@ -7,8 +7,8 @@ pub(crate) struct EdgeTable {
     pub nodes: Vec<[u32; 2]>,
     /// Edge of each side, shape (3·triangles,).
     pub of_side: Vec<u32>,
-    starts: Vec<u32>,
-    sides: Vec<u32>,
+    /// The sides of each edge.
+    sides: Rows,
 }
 
 impl EdgeTable {
@@ -22,22 +22,15 @@ impl EdgeTable {
             }
         }
         team.sort(&mut keys);
-        let mut table = Self {
-            nodes: Vec::with_capacity(keys.len() / 2),
-            of_side: vec![0; keys.len()],
-            starts: Vec::with_capacity(keys.len() / 2 + 1),
-            sides: Vec::with_capacity(keys.len()),
-        };
+        let (mut nodes, mut of_side) = (Vec::with_capacity(keys.len() / 2), vec![0; keys.len()]);
         for (a, b, side) in keys {
-            if table.nodes.last() != Some(&[a, b]) {
-                table.nodes.push([a, b]);
-                table.starts.push(table.sides.len() as u32);
+            if nodes.last() != Some(&[a, b]) {
+                nodes.push([a, b]);
             }
-            table.of_side[side as usize] = (table.nodes.len() - 1) as u32;
-            table.sides.push(side);
+            of_side[side as usize] = (nodes.len() - 1) as u32;
         }
-        table.starts.push(table.sides.len() as u32);
-        table
+        let sides = Rows::by_key(team, nodes.len(), of_side.len(), |side| [of_side[side]]);
+        Self { nodes, of_side, sides }
     }
 
     /// Number of edges.
@@ -47,7 +40,7 @@ impl EdgeTable {
 
     /// Sides of an edge: two inside a manifold surface, one at its border, more where sheets meet.
     pub fn sides(&self, edge: usize) -> &[u32] {
-        &self.sides[self.starts[edge] as usize..self.starts[edge + 1] as usize]
+        self.sides.row(edge)
     }
 
     /// Triangles around an edge.

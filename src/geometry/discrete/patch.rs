@@ -1,8 +1,9 @@
 //! The shape of a discrete face: a patch of triangles, exact where it is plane.
 use super::polyline::closest_on_triangle;
 use super::tree::{Box3, BoxTree, box_of, join};
-use crate::geometry::{OnSurface, SurfaceFrame};
+use crate::geometry::{OnSurface, SurfaceFrame, principal};
 use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale, sub, unit};
+use nalgebra::{Matrix2, Matrix6x3, RowVector3, Vector3, Vector6};
 use std::collections::HashMap;
 
 /// A plane with its axes: e1 × e2 = normal.
@@ -149,32 +150,32 @@ impl Patch {
         let corners = self.triangles[k];
         let e1 = unit(sub(corners[1], corners[0]));
         let e2 = cross(self.normals[k], e1);
-        let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+        let (mut rows, mut turns) = (Matrix6x3::zeros(), Vector6::zeros());
         for i in 0..3 {
             let j = (i + 1) % 3;
             let (along, turn) =
                 (sub(corners[j], corners[i]), sub(self.corner_normals[k][j], self.corner_normals[k][i]));
             let (x, y) = (dot(along, e1), dot(along, e2));
-            for (row, value) in [([x, y, 0.0], -dot(turn, e1)), ([0.0, x, y], -dot(turn, e2))] {
-                for r in 0..3 {
-                    right[r] += row[r] * value;
-                    for c in 0..3 {
-                        matrix[r][c] += row[r] * row[c];
-                    }
-                }
-            }
+            rows.set_row(2 * i, &RowVector3::new(x, y, 0.0));
+            rows.set_row(2 * i + 1, &RowVector3::new(0.0, x, y));
+            turns[2 * i] = -dot(turn, e1);
+            turns[2 * i + 1] = -dot(turn, e2);
         }
-        let Some([s11, s12, s22]) = solve(matrix, right) else { return ([0.0; 2], [e1, e2]) };
-        let (mean, half) = (0.5 * (s11 + s22), (0.25 * (s11 - s22).powi(2) + s12 * s12).sqrt());
-        let angle = 0.5 * (2.0 * s12).atan2(s11 - s22);
-        let greater = add(scale(e1, angle.cos()), scale(e2, angle.sin()));
-        let lesser = cross(self.normals[k], greater);
-        if mean >= 0.0 {
-            ([mean + half, mean - half], [greater, lesser])
-        } else {
-            ([mean - half, mean + half], [lesser, greater])
+        match least_squares(rows, turns) {
+            Some(s) => principal(Matrix2::new(s[0], s[1], s[1], s[2]), [e1, e2]),
+            None => ([0.0; 2], [e1, e2]),
         }
     }
+}
+
+/// A share of a column that is left beside the others and is no more than this one is rounding: the triangle is a line.
+const SINGULAR: f64 = 1e-7;
+
+/// The x with the least |A x − b|; none where the columns of A depend on each other.
+fn least_squares(a: Matrix6x3<f64>, b: Vector6<f64>) -> Option<Vector3<f64>> {
+    let (q, r) = a.qr().unpack();
+    let is_told = (0..3).all(|k| r[(k, k)].abs() > SINGULAR * a.column(k).norm());
+    is_told.then(|| r.solve_upper_triangular(&q.tr_mul(&b))).flatten()
 }
 
 impl Plane {
@@ -228,18 +229,4 @@ fn corner_normals(nodes: &[[u32; 3]], triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]>
         }
     }
     nodes.iter().map(|nodes| nodes.map(|v| unit(sums[&v]))).collect()
-}
-
-/// Solves a 3×3 system by Cramer's rule; none if it is singular.
-fn solve(m: [[f64; 3]; 3], r: [f64; 3]) -> Option<[f64; 3]> {
-    let columns: [Vec3; 3] = std::array::from_fn(|j| [m[0][j], m[1][j], m[2][j]]);
-    let determinant = dot(columns[0], cross(columns[1], columns[2]));
-    let size = norm(columns[0]) * norm(columns[1]) * norm(columns[2]);
-    (determinant.abs() > 1e-14 * size).then(|| {
-        [
-            dot(r, cross(columns[1], columns[2])) / determinant,
-            dot(columns[0], cross(r, columns[2])) / determinant,
-            dot(columns[0], cross(columns[1], r)) / determinant,
-        ]
-    })
 }

@@ -4,7 +4,7 @@ use super::quadratic::{Fitted, Quadratic};
 use super::rings::Rings;
 use super::{extrapolate, l2};
 use crate::mesh::TetMesh;
-use crate::mesh::seen::Seen;
+use crate::mesh::stamped_set::StampedSet;
 use crate::mesh::vector::sub;
 use crate::metric::Sym3;
 use crate::tasks::{GRAIN, Team};
@@ -38,7 +38,7 @@ pub fn hessians(
         rings,
         values,
         limiter,
-        seen: Seen::default(),
+        seen: StampedSet::default(),
         stencil: Vec::new(),
         fit: Quadratic::telling(limiter.is_some()),
         span: [0.0; 2],
@@ -70,7 +70,7 @@ struct Around<'a> {
     rings: &'a Rings,
     values: &'a [f64],
     limiter: Option<Limiter>,
-    seen: Seen,
+    seen: StampedSet,
     /// The vertices around the one in hand, ring by ring.
     stencil: Vec<u32>,
     fit: Quadratic,
@@ -81,7 +81,7 @@ struct Around<'a> {
 impl Around<'_> {
     /// The Hessian, and whether it is one at a jump.
     fn hessian(&mut self, vertex: u32) -> (Option<Sym3>, bool) {
-        self.seen.forget();
+        self.seen.clear();
         self.seen.insert(vertex);
         self.stencil.clear();
         self.fit.start();

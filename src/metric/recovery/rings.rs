@@ -1,20 +1,20 @@
 //! The neighbours of every vertex over an edge, and the tetrahedra at it.
 use crate::mesh::TetMesh;
 use crate::mesh::vertex_neighbours::VertexNeighbours;
-use crate::tasks::{Buckets, Team};
+use crate::tasks::{Rows, Team};
 
 /// Which vertices and tetrahedra are at each vertex.
 pub struct Rings {
     neighbours: VertexNeighbours,
     /// 4·tet + corner of the tetrahedra at each vertex.
-    corners: Buckets,
+    corners: Rows,
 }
 
 impl Rings {
     /// Of a mesh of fewer than 2³⁰ tetrahedra.
     pub fn of(team: Team<'_>, mesh: &TetMesh) -> Self {
         let tets = &mesh.tets.nodes;
-        let corners = Buckets::of(team, mesh.vertices.len(), tets.len(), |t| tets[t]);
+        let corners = Rows::by_key(team, mesh.vertices.len(), tets.len(), |t| tets[t]);
         Self { neighbours: VertexNeighbours::at_corners(team, tets, &corners), corners }
     }
 
@@ -32,14 +32,14 @@ impl Rings {
     /// The tetrahedra at a vertex.
     #[inline]
     pub fn tets(&self, vertex: u32) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.corners.of_key(vertex as usize).map(|corner| corner as usize / 4)
+        self.corners.row(vertex as usize).iter().map(|&corner| corner as usize / 4)
     }
 
     /// Whether tetrahedra lie all around a vertex. Their faces opposite to it are its link, a sphere just then: of F triangles it has F + 4
     /// halves of vertices by Euler's formula, and more where it has a border or is in several pieces.
     #[inline]
     pub fn is_inside(&self, vertex: u32) -> bool {
-        2 * self.neighbours(vertex).len() == self.corners.of_key(vertex as usize).len() + 4
+        2 * self.neighbours(vertex).len() == self.corners.row(vertex as usize).len() + 4
     }
 }
 

@@ -6,7 +6,7 @@ use crate::adapt::core::ids::{TetId, VertexId};
 use crate::adapt::core::numbering::{by_first, inverse};
 use crate::geometry::Entity;
 use crate::mesh::hilbert;
-use crate::tasks::{Buckets, GRAIN, Team};
+use crate::tasks::{GRAIN, Rows, Team};
 use bytemuck::allocation::zeroed_vec;
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
@@ -54,8 +54,8 @@ impl Store {
     fn tets_by_first(&self, team: Team<'_>, number: &[VertexId], vertices: usize) -> Vec<u32> {
         by_first(team, self.tet_bound(), vertices, |t| {
             let numbers =
-                self.peek(TetId(t as u32)).map(|v| if v.is_some() { number[v.index()].0 } else { Buckets::NOWHERE });
-            numbers.into_iter().min().unwrap_or(Buckets::NOWHERE)
+                self.peek(TetId(t as u32)).map(|v| if v.is_some() { number[v.index()].0 } else { Rows::NOWHERE });
+            numbers.into_iter().min().unwrap_or(Rows::NOWHERE)
         })
     }
 

@@ -4,11 +4,11 @@ use crate::adapt::core::ball::Ball;
 use crate::adapt::core::edge_list::EdgeItem;
 use crate::adapt::core::ids::{FACE, TetId, VertexId};
 use crate::adapt::core::refusal::Refusal;
-use crate::adapt::core::stamped::StampedSet;
 use crate::adapt::core::star::{Bounds, Seed};
 use crate::adapt::core::worker::Worker;
 use crate::adapt::schedule::Operation;
 use crate::geometry::Entity;
+use crate::mesh::stamped_set::StampedSet;
 
 /// What a collapse needs at hand. Allocated once.
 #[derive(Default)]

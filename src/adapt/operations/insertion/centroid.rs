@@ -20,21 +20,34 @@ use crate::mesh::vector::{Vec3, add, dot, scale, sub};
 use crate::metric::Sym3;
 use crate::metric::quality::edge_length;
 use crate::tasks::{GRAIN, Team};
-use clap::ValueEnum;
 use serde::Serialize;
 
 /// Where refinement puts new vertices.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PointCreation {
-    /// At the metric middle of long edges
+    /// At the metric middle of long edges.
     #[default]
     Edge,
-    /// At centroids of tetrahedra and surface triangles with long edges; at middles of edges where these fail
+    /// At centroids of tetrahedra and surface triangles with long edges; at middles of edges where these fail.
     Centroid,
     /// Inside at unit distance from vertices along the eigenvectors of their metrics; at middles of edges on the model, where they are
-    /// much too long, and where these fail
+    /// much too long, and where these fail.
     Eigenvector,
+}
+
+impl PointCreation {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Edge, Self::Centroid, Self::Eigenvector];
+
+    /// As the command line spells it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Edge => "edge",
+            Self::Centroid => "centroid",
+            Self::Eigenvector => "eigenvector",
+        }
+    }
 }
 
 /// A point that may become a vertex.

@@ -5,11 +5,10 @@ use crate::adapt::core::worker::Worker;
 use crate::mesh::predicate::is_positive;
 use crate::mesh::vector::{Vec3, add, cross, dot, scale, sub, volume6};
 use crate::metric::Sym3;
-use clap::ValueEnum;
 use serde::Serialize;
 
 /// A criterion of reconnection.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Criterion {
     /// No vertex of the cavity inside the circumsphere, measured in five metrics (anisotropic Delaunay).
@@ -21,6 +20,18 @@ pub enum Criterion {
 }
 
 impl Criterion {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Delaunay, Self::EdgeWeight, Self::MeanRatio];
+
+    /// As the command line spells it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Delaunay => "delaunay",
+            Self::EdgeWeight => "edge-weight",
+            Self::MeanRatio => "mean-ratio",
+        }
+    }
+
     /// The score of a triangulation of two parts, each with its own.
     #[inline(always)]
     pub fn join(self, x: f64, y: f64) -> f64 {
