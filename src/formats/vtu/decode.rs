@@ -9,7 +9,7 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use flate2::read::ZlibDecoder;
 use std::borrow::Cow;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::io::Read;
 use std::path::Path;
@@ -21,6 +21,9 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_padding_mode(DecodePaddingMode::Indifferent)
         .with_decode_allow_trailing_bits(true),
 );
+
+/// Is asked whether there may be so many values.
+type Check<'c> = &'c dyn Fn(usize) -> Result<(), Error>;
 
 /// Decodes the arrays of a document, each once: so no more is made than deflate can hold in the file (1032 bytes a byte).
 pub(super) struct Decoder<'d, 'a> {
@@ -52,17 +55,30 @@ impl<'d, 'a> Decoder<'d, 'a> {
 
     /// Whole numbers; as many as `items` of the array's width.
     pub fn ints(&self, array: &Array<'a>, items: usize) -> Result<Vec<i64>, Error> {
-        let values = self.all_ints(array)?;
-        self.counted(array, items, values)
+        let values = self.ints_of(array, &|count| self.counted(array, items, count))?;
+        self.counted(array, items, values.len()).map(|()| values)
     }
 
-    /// Whole numbers, as many as there are.
-    pub fn all_ints(&self, array: &Array<'a>) -> Result<Vec<i64>, Error> {
+    /// Whole numbers, as many as there are; none where there are more than `most`.
+    pub fn few_ints(&self, array: &Array<'a>, most: usize) -> Result<Option<Vec<i64>>, Error> {
+        let is_long = Cell::new(false);
+        let check = |count: usize| {
+            is_long.set(count > most);
+            if count > most { Err(self.fail(array, "there are too many values")) } else { Ok(()) }
+        };
+        match self.ints_of(array, &check) {
+            Err(_) if is_long.get() => Ok(None),
+            values => values.map(Some),
+        }
+    }
+
+    /// Whole numbers; `check` is asked how many there may be before they are unpacked.
+    fn ints_of(&self, array: &Array<'a>, check: Check<'_>) -> Result<Vec<i64>, Error> {
         Ok(match (array.place, array.kind) {
             (_, Kind::Real(_) | Kind::Other) => return Err(self.fail(array, "whole numbers are expected")),
             (Place::Text(text), _) => self.words(array, text, number::parse_int)?,
             (_, kind) => {
-                let bytes = self.bytes(array)?;
+                let bytes = self.bytes(array, check)?;
                 match kind {
                     Kind::Int(1) => bytes.iter().map(|&byte| (byte as i8).into()).collect(),
                     Kind::Int(2) => self.numbers(&bytes, |b| i16::from_ne_bytes(b).into()),
@@ -82,7 +98,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
         let values = match (array.place, array.kind) {
             (Place::Text(text), Kind::Real(_)) => self.words(array, text, real_or_nan)?,
             (_, Kind::Real(size)) => {
-                let bytes = self.bytes(array)?;
+                let bytes = self.bytes(array, &|count| self.counted(array, items, count))?;
                 match size {
                     4 => self.numbers(&bytes, |b| f32::from_ne_bytes(b).into()),
                     _ => self.numbers(&bytes, f64::from_ne_bytes),
@@ -90,14 +106,14 @@ impl<'d, 'a> Decoder<'d, 'a> {
             }
             _ => self.ints(array, items)?.into_iter().map(|value| value as f64).collect(),
         };
-        self.counted(array, items, values)
+        self.counted(array, items, values.len()).map(|()| values)
     }
 
-    fn counted<T>(&self, array: &Array, items: usize, values: Vec<T>) -> Result<Vec<T>, Error> {
-        if Some(values.len()) == items.checked_mul(array.width) {
-            return Ok(values);
+    fn counted(&self, array: &Array, items: usize, values: usize) -> Result<(), Error> {
+        if Some(values) == items.checked_mul(array.width) {
+            return Ok(());
         }
-        Err(self.fail(array, format!("{} values; {} at each of {items} are expected", values.len(), array.width)))
+        Err(self.fail(array, format!("{values} values; {} at each of {items} are expected", array.width)))
     }
 
     fn words<T>(&self, array: &Array, text: &str, parse: impl Fn(&[u8]) -> Result<T, String>) -> Result<Vec<T>, Error> {
@@ -118,14 +134,14 @@ impl<'d, 'a> Decoder<'d, 'a> {
     }
 
     /// The bytes of an array's values.
-    fn bytes(&self, array: &Array<'a>) -> Result<Cow<'a, [u8]>, Error> {
+    fn bytes(&self, array: &Array<'a>, check: Check<'_>) -> Result<Cow<'a, [u8]>, Error> {
         let stored = match array.place {
             Place::Base64(text) => Cow::Owned(self.base64(array, text.as_bytes())?),
             Place::Appended(offset) => self.appended(array, offset)?,
             Place::Text(_) => unreachable!("words are no bytes"),
         };
         if self.document.is_compressed {
-            return self.inflated(array, &stored).map(Cow::Owned);
+            return self.inflated(array, &stored, check).map(Cow::Owned);
         }
         if stored.is_empty() {
             return Ok(stored); // an array without values may have no header either
@@ -193,7 +209,7 @@ impl<'d, 'a> Decoder<'d, 'a> {
         usize::try_from(value).map_err(|_| cut())
     }
 
-    fn inflated(&self, array: &Array, stored: &[u8]) -> Result<Vec<u8>, Error> {
+    fn inflated(&self, array: &Array, stored: &[u8], check: Check<'_>) -> Result<Vec<u8>, Error> {
         if stored.is_empty() {
             return Ok(Vec::new());
         }
@@ -206,6 +222,8 @@ impl<'d, 'a> Decoder<'d, 'a> {
             return Ok(Vec::new());
         }
         let (size, last) = (self.header(array, stored, 1)?, self.header(array, stored, 2)?);
+        let all_but_last = size.saturating_mul(blocks - 1);
+        check(all_but_last.saturating_add(if last > 0 { last } else { size }) / array.kind.size())?;
         let mut all = Vec::new();
         for block in 0..blocks {
             let wanted = if block + 1 == blocks && last > 0 { last } else { size };

@@ -25,6 +25,9 @@ const REFERENCES: [&str; 6] =
 /// Most values an item of an array that become fields, one each.
 const MOST: usize = 16;
 
+/// Most numbers of an array of FieldData that is looked at for names.
+const MOST_NAMED: usize = 1 << 16;
+
 /// VTK's places of our components of a symmetric tensor: it has XX YY ZZ XY YZ XZ, we 11 12 22 13 23 33.
 const SYMMETRIC: [usize; 6] = [0, 3, 1, 5, 4, 2];
 
@@ -103,6 +106,7 @@ impl<'a> Reader<'_, 'a> {
 
     fn point_array(&mut self, array: &Array<'a>, base: usize, points: usize) -> Result<(), Error> {
         match array.kind {
+            Kind::Real(_) if array.width > MOST => self.skip_wide(array),
             Kind::Real(_) => {
                 let values = self.decoder.reals(array, points)?;
                 self.join(array, values, true);
@@ -120,8 +124,19 @@ impl<'a> Reader<'_, 'a> {
 
     /// Tells once that an array is not read.
     fn skip(&mut self, array: &Array) {
-        let notice = format!("the array {} is not of real numbers and is left out", error::short(&array.name));
-        if !array.name.starts_with("vtk") && !self.notices.contains(&notice) && self.notices.len() < MOST {
+        if !array.name.starts_with("vtk") {
+            self.leave_out(array, "is not of real numbers");
+        }
+    }
+
+    /// An array that would be no field is not unpacked: it may hold thousands of times what the file does.
+    fn skip_wide(&mut self, array: &Array) {
+        self.leave_out(array, &format!("has {} values an item", array.width));
+    }
+
+    fn leave_out(&mut self, array: &Array, why: &str) {
+        let notice = format!("the array {} {why} and is left out", error::short(&array.name));
+        if !self.notices.contains(&notice) && self.notices.len() < MOST {
             self.notices.push(notice);
         }
     }
@@ -203,6 +218,7 @@ impl<'a> Reader<'_, 'a> {
     fn cell_arrays(&mut self, piece: &Piece<'a>, types: &[i64]) -> Result<(), Error> {
         for array in &piece.cell_data {
             match array.kind {
+                Kind::Real(_) if array.width > MOST => self.skip_wide(array),
                 Kind::Real(_) => {
                     let values = self.decoder.reals(array, piece.cells)?;
                     let rows = values.chunks_exact(array.width).zip(types).filter(|(_, kind)| **kind == TETRAHEDRON);
@@ -220,7 +236,7 @@ impl<'a> Reader<'_, 'a> {
     fn names(&mut self, arrays: &[Array<'a>]) -> Result<Names, Error> {
         let mut names = Names::default();
         for array in arrays.iter().filter(|array| matches!(array.kind, Kind::Int(_)) && !array.name.is_empty()) {
-            let pairs = self.decoder.all_ints(array)?;
+            let Some(pairs) = self.decoder.few_ints(array, MOST_NAMED)? else { continue };
             if pairs.len() % 2 != 0 || (array.width != 2 && pairs.len() != 2) {
                 continue;
             }
@@ -263,28 +279,24 @@ impl<'a> Reader<'_, 'a> {
                 self.notices
                     .push(format!("{} was given at cells: their mean about each vertex is taken", error::short(&name)));
             }
-            split(name, width, values, &mut fields, &mut self.notices);
+            split(name, width, values, &mut fields);
         }
         fields
     }
 }
 
 /// Fields of an array, by its values an item.
-fn split(name: String, width: usize, values: Vec<f64>, fields: &mut Vec<NamedField>, notices: &mut Vec<String>) {
+fn split(name: String, width: usize, values: Vec<f64>, fields: &mut Vec<NamedField>) {
     let kind = match width {
         1 => FieldKind::Scalar,
         2 | 3 => FieldKind::Vector,
         6 => FieldKind::SymmetricTensor,
         9 => FieldKind::Tensor,
-        _ if width <= MOST => {
+        _ => {
             for component in 0..width {
                 let values = values.iter().skip(component).step_by(width).copied().collect();
                 fields.push(NamedField { name: format!("{name} {}", component + 1), kind: FieldKind::Scalar, values });
             }
-            return;
-        }
-        _ => {
-            notices.push(format!("the array {} has {width} values an item and is left out", error::short(&name)));
             return;
         }
     };

@@ -15,6 +15,16 @@ pub(super) enum Kind {
     Other,
 }
 
+impl Kind {
+    /// Bytes of a value.
+    pub fn size(self) -> usize {
+        match self {
+            Self::Int(size) | Self::Unsigned(size) | Self::Real(size) => size,
+            Self::Other => 1,
+        }
+    }
+}
+
 /// Where the data of an array is.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Place<'a> {
