@@ -5,7 +5,7 @@
 use super::circumsphere;
 use super::domain::Domain;
 use super::edge_table::EdgeTable;
-use super::store::{Access, NONE, Refusal, Role, Store, Supply};
+use super::store::{Access, IdPool, NONE, Refusal, Role, Store};
 use crate::mesh::adjacency::FACES;
 use crate::mesh::predicate::{is_positive, orientation};
 use crate::mesh::vector::{Vec3, distance};
@@ -23,7 +23,7 @@ struct RimFace {
 /// What a thread has in hand.
 #[derive(Default)]
 pub struct Scratch {
-    supply: Supply,
+    supply: IdPool,
     /// Tetrahedra that go.
     pub cavity: Vec<u32>,
     /// Tetrahedra at the rim that stay.

@@ -60,7 +60,7 @@ impl Extracted {
     /// The mesh of a refined store.
     pub fn new(store: &Store, domain: &Domain, limits: &Limits) -> Self {
         let mut tets = collect(store);
-        let left_out = manifold::mend(&mut tets);
+        let left_out = manifold::repair(&mut tets);
         let radius_edge = radius_edge(&tets, store, limits);
         let mut mesh = TetMesh::default();
         let mut numbers = vec![NONE; tets.points.len()];

@@ -4,7 +4,7 @@ use crate::mesh::adjacency::FACES;
 use crate::mesh::vector::volume6;
 
 /// Puts tetrahedra outside until those that stay hang together by faces at every vertex and every edge. How many went.
-pub fn mend(tets: &mut Tets) -> usize {
+pub fn repair(tets: &mut Tets) -> usize {
     let before = tets.regions.iter().filter(|&&region| region != 0).count();
     loop {
         let mut going = loose_at_edges(tets);

@@ -110,13 +110,13 @@ pub struct Store {
 
 /// Ids that a thread may use.
 #[derive(Default)]
-pub struct Supply {
+pub struct IdPool {
     points: Range<u32>,
     fresh: Range<u32>,
     free: Vec<u32>,
 }
 
-impl Supply {
+impl IdPool {
     /// Makes sure that a vertex and so many tetrahedra are at hand.
     pub fn provide(&mut self, store: &Store, tets: usize) -> Result<(), Refusal> {
         if self.points.is_empty() {
@@ -129,12 +129,12 @@ impl Supply {
         Ok(())
     }
 
-    /// A vertex, after [`Supply::provide`].
+    /// A vertex, after [`IdPool::provide`].
     pub fn point(&mut self) -> u32 {
         self.points.next().expect("was provided")
     }
 
-    /// A tetrahedron, after [`Supply::provide`].
+    /// A tetrahedron, after [`IdPool::provide`].
     pub fn tet(&mut self) -> u32 {
         self.free.pop().or_else(|| self.fresh.next()).expect("was provided")
     }

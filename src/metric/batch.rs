@@ -390,15 +390,15 @@ mod tests {
             let exact: f64 = q[..2].iter().map(|q| 1.0 / q.powi(3)).sum();
             prop_assert!((model.energy / exact - 1.0).abs() < 1e-9);
             // A step that changes the energy by about 1e-10 of it: small to the third derivative, large to the rounding.
-            let bend = model.hessian.quadratic(d);
-            let step = 1e-5 * (model.energy / bend).sqrt();
+            let curvature = model.hessian.quadratic(d);
+            let step = 1e-5 * (model.energy / curvature).sqrt();
             let (Some(ahead), Some(behind)) = (at(step), at(-step)) else { return Ok(()) };
             let slope = |model: &QuadraticModel| crate::mesh::vector::dot(model.gradient, d);
             let found = (ahead.energy - behind.energy) / (2.0 * step);
-            let size = (model.energy * bend).sqrt();
+            let size = (model.energy * curvature).sqrt();
             prop_assert!((slope(&model) - found).abs() < 1e-4 * size, "{} {found}", slope(&model));
             let found = (slope(&ahead) - slope(&behind)) / (2.0 * step);
-            prop_assert!((bend - found).abs() < 1e-3 * bend, "{bend} {found}");
+            prop_assert!((curvature - found).abs() < 1e-3 * curvature, "{curvature} {found}");
         }
 
         /// Lengths as one by one.

@@ -26,7 +26,7 @@ pub struct Local {
     /// Whether the point is a pole, an apex or an end at which a curve stands still: its metric is a limit.
     pub is_limit: bool,
     /// Greatest curvature of the faces and edges, 1/length; of a pole or an apex nothing is counted.
-    pub bend: f64,
+    pub greatest_curvature: f64,
     /// Faces that were asked at a vertex, and where.
     asked: Vec<(u32, [f64; 2])>,
 }
@@ -38,7 +38,7 @@ impl Local {
         self.tangents.clear();
         self.asked.clear();
         self.is_limit = false;
-        self.bend = 0.0;
+        self.greatest_curvature = 0.0;
     }
 
     /// M ∩ the metric of another face.
@@ -138,7 +138,7 @@ impl<'a> Curvature<'a> {
         if speed > 0.0 && speed.is_finite() && curvature.is_finite() {
             let tangent = scale(frame.d1, 1.0 / speed);
             local.tangents.push(tangent);
-            local.bend = local.bend.max(curvature);
+            local.greatest_curvature = local.greatest_curvature.max(curvature);
             local.metric = Some(cut(self.metric_of(local), tangent, self.options.size(curvature)));
         }
     }
@@ -174,7 +174,8 @@ impl<'a> Curvature<'a> {
     /// A face by its frame.
     pub(super) fn add_frame(&self, frame: &SurfaceFrame, local: &mut Local) {
         local.normals.push(frame.normal);
-        local.bend = frame.curvatures.iter().fold(local.bend, |most, curvature| curvature.abs().max(most));
+        local.greatest_curvature =
+            frame.curvatures.iter().fold(local.greatest_curvature, |most, curvature| curvature.abs().max(most));
         local.intersect(self.tensor(frame));
     }
 

@@ -168,7 +168,7 @@ impl<'a> Near<'a> {
                 nearest = nearest.or(Some(Gap { distance: length, at: at.point, from: at.entity, to }));
             }
         }
-        (unbent(metric, thinnest, local.bend), nearest)
+        (chord_limited(metric, thinnest, local.greatest_curvature), nearest)
     }
 
     /// The entities within reach that may limit the metric, and their pieces in the entities' order.
@@ -260,10 +260,10 @@ impl<'a> Near<'a> {
     }
 }
 
-/// No size such that what bends leaves a cell as thin as `across`: the middle of an edge of this size is that far from its arc. Cells
+/// No size such that the curvature leaves a cell as thin as `across`: the middle of an edge of this size is that far from its arc. Cells
 /// along a sliver of a face on a curved wall would stand out of it else, and no mesh follows them.
-fn unbent(metric: Sym3, across: f64, bend: f64) -> Sym3 {
-    let along = (8.0 * across / bend).sqrt();
+fn chord_limited(metric: Sym3, across: f64, curvature: f64) -> Sym3 {
+    let along = (8.0 * across / curvature).sqrt();
     let reaches = along.is_finite() && metric.eigen().values[0] * along * along < 1.0;
     if reaches { metric.intersect(&Sym3::IDENTITY.times(along.max(across).powi(-2))) } else { metric }
 }
