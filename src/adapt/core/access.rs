@@ -4,7 +4,8 @@
 //! tetrahedron at that vertex hold still, because whoever replaces a tetrahedron must hold all four of its vertices.
 //! With [`Exclusive`] a claim is nothing and the compiler removes it; with [`Speculative`] it takes the vertex's lock word,
 //! and a word held by another thread ends the operation with a conflict: everything is released, the item is tried again later.
-//! With [`Owned`] whose each vertex is has been written before the round: a part of the mesh belongs to whoever works on it, and a claim only looks.
+//! With [`Owned`] the owner of each vertex was written before the round: each thread works on a part of the mesh that is its own, and a claim only
+//! reads the owner.
 use super::ids::VertexId;
 use super::lock_checker;
 use super::refusal::Refusal;
@@ -15,7 +16,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 /// How vertices are claimed.
 pub trait Access: Send {
-    /// Whether a claim that is refused now will be refused as long as the round lasts, so that it is best asked for first of all.
+    /// Whether a claim that is refused now is refused until the round ends. Then it is best to claim early what will be needed.
     const IS_LASTING: bool = false;
 
     /// Claims a vertex for the operation at hand; claiming twice is harmless.
@@ -84,7 +85,7 @@ impl Drop for Speculative {
     }
 }
 
-/// A part of the mesh that is one thread's for a whole round: the lock words say whose each vertex is, and do not change.
+/// A part of the mesh that belongs to one thread for a whole round. The owners of the vertices do not change in the round.
 pub struct Owned {
     /// Not 0.
     owner: u8,
@@ -98,7 +99,7 @@ impl Owned {
         Self { owner }
     }
 
-    /// What a vertex of that part says; 0 stands for nobody's.
+    /// The owner that is written to the vertices of a part. 0 stands for no part.
     #[inline(always)]
     pub fn word(part: usize) -> u8 {
         part as u8 + 1

@@ -1,17 +1,17 @@
-//! A tetrahedron between the boundary and two others goes, and its inner faces are the boundary.
+//! Removes a tetrahedron with two faces on the boundary; its two inner faces become the boundary.
 use super::access::Access;
 use super::ids::{TetId, VertexId};
 use super::refusal::Refusal;
 use super::worker::Worker;
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Takes a claimed tetrahedron out; its neighbours behind these faces, claimed too, get surface triangles with the tag;
-    /// the first vertices of both faces are the ends of the edge that goes.
+    /// Removes a claimed tetrahedron. `behind` are its two neighbours, claimed too, with the faces that become surface triangles with
+    /// this tag. The first vertices of these faces are the ends of the edge that goes.
     ///
     /// # Errors
     /// `Geometry` when something required would go.
     pub fn take_out_tet(&mut self, t: TetId, behind: [(TetId, [VertexId; 3]); 2], tag: u32) -> Result<(), Refusal> {
-        // Of its edges that between the two surface triangles goes, from the one of these faces to the other.
+        // One edge goes: that between the two old surface triangles, whose ends are the first vertices of the two faces.
         let gone = behind.map(|(_, [x, ..])| x);
         let stays = |a, b| !(gone.contains(&a) && gone.contains(&b));
         self.context.required.check(self.store, &[t], &[], stays)?;

@@ -1,4 +1,4 @@
-//! The whole store held against everything that the operations promise; for tests.
+//! Checks the whole store against everything that the operations promise; for tests.
 use super::context::Context;
 use super::ids::{EDGE, FACE, TetId, VertexId};
 use super::store::Store;
@@ -105,7 +105,7 @@ fn balls(store: &Store) -> BTreeMap<VertexId, Vec<TetId>> {
     balls
 }
 
-/// The vertex is free, knows a tetrahedron of its own, and from there all others are found.
+/// The vertex is not locked, knows one of its tetrahedra, and from there all others are found.
 fn check_vertex(store: &Store, v: VertexId, ball: &[TetId]) -> Result<(), String> {
     ensure!(store.lock(v).load(Relaxed) == 0, "{v:?} is still locked");
     ensure!(store.owner(v).load(Relaxed) == 0, "{v:?} is still a part's");
@@ -157,7 +157,7 @@ fn check_ridges(store: &Store) -> Result<(), String> {
     Ok(())
 }
 
-/// The triangles at a surface edge fit to the model: two of one face, or a ridge; their vertices lie on no more than that.
+/// The triangles at a surface edge fit to the model: there are two on one face, or the edge is a ridge. Their vertices lie on entities of these.
 fn check_surface(context: &Context<'_>) -> Result<(), String> {
     let store = &context.store;
     let mut tags: BTreeMap<[VertexId; 2], Vec<u32>> = BTreeMap::new();

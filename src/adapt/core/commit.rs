@@ -29,7 +29,7 @@ pub struct Replacement {
     pub faces: Vec<([VertexId; 3], u32)>,
     /// Vertices that go.
     pub dead: Vec<VertexId>,
-    /// Declared faces may be boundary triangles that were there before: the vertex in their middle only moves.
+    /// Whether declared faces may be boundary triangles that were there before, since a vertex of theirs only moves.
     pub keeps_surface: bool,
     links: Vec<[Link; 4]>,
     ids: Vec<TetId>,
@@ -84,7 +84,8 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Carries out `state.replacement`. All vertices of the old and new tetrahedra must be claimed.
     ///
     /// # Errors
-    /// `Geometry` when something required would go, `Topology` when old and new have not the same boundary, `Full` when ids ran out; the mesh is unchanged then.
+    /// `Geometry` when something required would go, `Topology` when old and new tetrahedra have different
+    /// boundaries, `Full` when there are no more ids. The mesh is unchanged then.
     pub fn commit(&mut self) -> Result<(), Refusal> {
         let Replacement { old, new, dead, .. } = &self.state.replacement;
         let stays = |a, b| new.iter().any(|tet| tet.vertices.contains(&a) && tet.vertices.contains(&b));

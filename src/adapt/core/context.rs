@@ -25,29 +25,28 @@ pub struct Limits {
     pub longest_new: f64,
     /// An insertion may lower the worst mean ratio of its cavity to this, but no further unless it was worse already.
     pub insert_floor: f64,
-    /// Whether a much too long edge is worth a bad tetrahedron or a short edge: what comes after finds better places for those.
+    /// Whether a much too long edge may be split at the price of a bad tetrahedron or a short edge, which later operations repair.
     pub long_first: bool,
-    /// Part of the worst mean ratio that must be left where it is below the floor already.
+    /// Where the worst mean ratio is below the floor already, the share of it that must be left.
     pub insert_loss: f64,
-    /// As the floor of insertion, for a collapse; nothing may be lost below it.
+    /// As the floor of insertion, for a collapse. Where the worst mean ratio is below it already, nothing may be lost.
     pub collapse_floor: f64,
     /// Smoothing and repair look at tetrahedra below this mean ratio.
     pub improve_below: f64,
     /// Reconnection looks at tetrahedra below this mean ratio.
     pub flip_below: f64,
-    /// And at edges whose tetrahedra have on average at least this 1/Q − 1.
+    /// Of these it tries edges whose tetrahedra have a mean of 1/Q − 1 of at least this.
     pub flip_cost: f64,
-    /// Tetrahedra below this mean ratio try to remove several faces at once: up to 0.82 a third more are looked at, and little is gained.
+    /// Tetrahedra below this mean ratio try multi-face removal. With 0.82 a third more would try, and little is gained.
     pub several_below: f64,
     /// Reconnection looks at tetrahedra that changed at or after this time.
     pub since: u32,
-    /// Least cosine between a surface triangle's normal and the model's, unless it is less already: long thin triangles across a curved
-    /// face cannot but deviate.
+    /// Least cosine between a surface triangle's normal and the model's, unless it is less already. It is low, since long thin triangles
+    /// across a curved face always deviate.
     pub cos_deviation: f64,
-    /// As above, for half the angle between the model's normals at the vertices: at 0.94 a circle keeps nine
-    /// edges.
+    /// As above, for half the greatest angle between the model's normals at the triangle's vertices. With 0.94 a circle keeps nine edges.
     pub cos_variation: f64,
-    /// And lie as far from the model, at their centroids and the middles of their edges.
+    /// Greatest distance of a surface triangle from the model, at its centroid and the middles of its edges.
     pub chord: f64,
     /// Most tetrahedra in an enlarged cavity.
     pub cavity: usize,
@@ -89,7 +88,7 @@ pub struct Context<'m> {
     pub planes: Vec<Option<Vec3>>,
     /// What must stay as it is.
     pub required: Required,
-    /// For each vertex of the input its id; of those that are gone it says nothing.
+    /// For each vertex of the input its id. For vertices that are gone the value means nothing.
     pub ids: Vec<VertexId>,
     /// Limits of the present pass.
     pub limits: Limits,

@@ -28,7 +28,7 @@ pub struct Classed {
 /// Number of classes of lengths.
 pub const CLASSES: u32 = 1 << 11;
 
-/// Class of an edge whose fourth power of the length is given: lengths in one class differ by less than a fifth.
+/// The class of an edge, by the fourth power of its length. Lengths in one class differ by less than a fifth.
 #[inline(always)]
 fn class(fourth_power: f64) -> u16 {
     (fourth_power.max(0.0).to_bits() >> 52) as u16
@@ -37,8 +37,8 @@ fn class(fourth_power: f64) -> u16 {
 /// Ranks that [`in_order`] tells apart.
 pub const RANKS: usize = 4 * CLASSES as usize;
 
-/// The edges in the order of their ranks, which are less than [`RANKS`]; those of one rank, whose lengths hardly differ, stay in the
-/// order of the mesh, so that what is done next is near in memory. A counting sort of a part of the edges on each thread.
+/// The edges in the order of their ranks, which are less than [`RANKS`]. Edges of one rank, whose lengths hardly differ, stay in the
+/// order of the mesh, so that consecutive items are near in memory. Each thread sorts a part of the edges by counting.
 pub fn in_order(team: Team<'_>, edges: &[Classed], rank: impl Fn(&Classed) -> u32 + Sync) -> Vec<EdgeItem> {
     let share = edges.len().div_ceil(team.threads()).max(1);
     let parts = team.chunks(share, edges.len(), |range| sorted_by_rank(&edges[range], &rank));
@@ -69,15 +69,15 @@ fn sorted_by_rank(edges: &[Classed], rank: impl Fn(&Classed) -> u32) -> (Vec<usi
     (starts, items)
 }
 
-/// Tetrahedra of a part, at least: with each of its tetrahedra an edge comes again, and what is near in memory is near in space, so that
-/// most doubles are found in one part.
+/// Least number of tetrahedra in a part. An edge is met once for each of its tetrahedra, and these are near each other in memory, so
+/// most duplicates are in the same part.
 const PART: usize = 1 << 14;
 
-/// Parts of the tetrahedra at most, and ranges of the vertices.
+/// Most parts of the tetrahedra, and most ranges of the vertices.
 const PARTS: usize = 256;
 
-/// The edges of tetrahedra that changed at or after a time, as far as they pass the test of their squared lengths in the metrics of both
-/// ends, in the order of their vertices. Between sweeps only.
+/// The edges of tetrahedra that changed at or after a time and that are `wanted`, by their squared lengths in the metrics of both ends.
+/// They come in the order of their vertices. Between sweeps only.
 pub fn listed(team: Team<'_>, store: &Store, since: u32, wanted: impl Fn(f64, f64) -> bool + Sync) -> Vec<Classed> {
     let [tets, vertices] = [store.tet_bound(), store.vertex_bound()];
     let mut parts = team.chunks(PART.max(tets.div_ceil(PARTS)), tets, |range| listed_in(store, range, since, &wanted));
@@ -90,7 +90,7 @@ pub fn listed(team: Team<'_>, store: &Store, since: u32, wanted: impl Fn(f64, f6
     team.join(merged)
 }
 
-/// Those of some tetrahedra, in the order of their vertices.
+/// The wanted edges of some tetrahedra, in the order of their vertices.
 fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
     let mut found: Vec<Classed> = Vec::new();
     for t in store.live_tets_in(tets).filter(|&t| store.stamp(t) >= since) {
@@ -111,7 +111,7 @@ fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: impl Fn(f64,
     found
 }
 
-/// Those of the parts whose lesser vertex is in a range.
+/// The edges of all parts whose lesser vertex is in a range.
 fn merged(parts: &[Vec<Classed>], vertices: Range<usize>) -> Vec<Classed> {
     let of_part = |part: &'_ Vec<Classed>| {
         let [start, end] = [vertices.start, vertices.end].map(|v| part.partition_point(|edge| edge.item.a.index() < v));

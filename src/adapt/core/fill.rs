@@ -67,8 +67,8 @@ pub fn fill(team: Team<'_>, mesh: &TetMesh, place: &Classification, source: &Sou
     fill_known(team, mesh, place, source, source.logs_on(mesh), None)
 }
 
-/// As [`fill`], with what is known of the vertices of a mesh that was made from another: ln M, and for each the background tetrahedron
-/// where the search for its metric begins.
+/// As [`fill`], for a mesh that was made from another, so that ln M at its vertices is known, and the background tetrahedron in which
+/// the search for each vertex' metric begins.
 ///
 /// # Errors
 /// As [`fill`].
@@ -107,7 +107,7 @@ pub fn fill_known(
     let Filling { mut store, order, .. } = filling;
     store.note_order();
     if measure(team, &store) {
-        // Their mean ratio is 0, also where it is only too small for a number.
+        // A mean ratio of 0 may also be one that is too small for a number: the exact test decides.
         check_positive(mesh)?;
     }
     Ok(Filled { store, unprojected, ids: order.vertex_ids })
@@ -220,7 +220,7 @@ impl Filling<'_> {
         }
     }
 
-    /// Where projected points invert a tetrahedron, its vertices go back to where they were, and are returned.
+    /// Where projected points invert a tetrahedron, its vertices go back to where they were. Returns these vertices.
     fn leave_inverting(&self) -> Vec<VertexId> {
         let before = |v: VertexId| -> Vec3 { self.mesh.vertices[self.order.vertices[v.index()] as usize] };
         let is_moved = |v: VertexId| self.store.position(v) != before(v);
@@ -236,7 +236,7 @@ impl Filling<'_> {
                 bad.extend(vertices.filter(|of| of.iter().any(|v| moved[v.index()]) && is_bad(*of)));
             });
             let many = unprojected.len();
-            // Another one's vertices may have gone back by now.
+            // Vertices that went back for another tetrahedron may have set this one right.
             for vertices in bad.into_iter().filter(|&of| is_bad(of)) {
                 for v in vertices.into_iter().filter(|&v| is_moved(v)) {
                     self.store.set_position(v, before(v));
@@ -249,7 +249,7 @@ impl Filling<'_> {
         }
     }
 
-    /// Gives every vertex its metric: at its own place the one that is known, elsewhere the source's.
+    /// Gives every vertex its metric: the known one where the vertex is at its place in the mesh, else the source's.
     fn set_metrics(&self, source: &Source, logs: Option<&[Sym3]>, hints: Option<&[u32]>) {
         self.each_vertex(|v, old| {
             // A vertex of no tetrahedron.
@@ -271,7 +271,7 @@ impl Filling<'_> {
     }
 }
 
-/// Gives every tetrahedron its mean ratio; whether one is 0, as that of an inverted or flat one is.
+/// Gives every tetrahedron its mean ratio. Returns whether one of them is 0, as for an inverted or flat tetrahedron.
 pub fn measure(team: Team<'_>, store: &Store) -> bool {
     let corners = |t: TetId| {
         let vertices = store.vertices(t);

@@ -15,7 +15,7 @@ pub struct IdPool {
     stripes: Option<[Stripe; 2]>,
 }
 
-/// Every so many blocks of fresh ids one belongs to this pool: who takes how many when makes no difference to the others.
+/// Of the blocks of fresh ids every n-th belongs to this pool. So the other pools get the same ids, whatever this one takes.
 #[derive(Clone, Copy)]
 struct Stripe {
     next: usize,
@@ -85,8 +85,8 @@ impl IdPool {
         self.tets.push(t);
     }
 
-    /// Shares all ids out among so many pools, evenly; each takes fresh ones from stripes of its own, which no other can see. So the ids
-    /// that a part uses do not depend on when the others use theirs.
+    /// Splits all free ids evenly among so many pools. Each takes fresh ids from a stripe of its own, so the ids that a part uses do not
+    /// depend on when the other parts use theirs.
     pub fn split(&mut self, store: &Store, parts: usize) -> Vec<Self> {
         let bounds = [store.vertex_bound(), store.tet_bound()];
         let mut share = |part: usize| Self {
@@ -97,7 +97,7 @@ impl IdPool {
         (0..parts).map(&mut share).collect()
     }
 
-    /// Takes back what was split off, with the fresh ids between those that were used.
+    /// Joins the pools that were split off, and adds the fresh ids that were passed over.
     pub fn merge(&mut self, store: &Store, parts: Vec<Self>) {
         let farthest = |kind: usize| {
             let ends = parts.iter().enumerate().filter_map(|(part, pool)| {

@@ -1,9 +1,9 @@
-//! In the unit tests every access to the store is held against the rule of the locks, whether or not another thread is near:
+//! In unit tests every access to the store is checked against the rule of the locks, whether or not another thread is near:
 //! - a vertex is read and written by who holds it;
 //! - a tetrahedron is read by who holds one of its vertices, a neighbour or tag written by who holds that face,
 //!   all else by who holds all four, before and after.
 //!
-//! Then whatever two threads do to the same record is ordered by a lock word, so a race would be a breach of the rule, and a breach
+//! By this rule a lock word orders whatever two threads do to one record. A race would break the rule, and a broken rule
 //! is found on every run, not only when two threads meet. Outside the tests nothing of this is compiled.
 //! The exception is [`Store::peek`].
 use super::ids::{TetId, VertexId};
@@ -12,12 +12,12 @@ use super::store::Store;
 #[cfg(test)]
 pub use watch::{pause, work_as};
 
-/// Outside the tests nobody watches.
+/// Outside the tests nothing is checked.
 #[cfg(not(test))]
 #[inline(always)]
 pub fn work_as(_owner: u32) {}
 
-/// Outside the tests nobody is held up.
+/// Outside the tests no thread is delayed.
 #[cfg(not(test))]
 #[inline(always)]
 pub fn pause() {}
@@ -47,7 +47,7 @@ impl Store {
         );
     }
 
-    /// A tetrahedron is written; a dead one is its thread's.
+    /// A tetrahedron is written; a dead one may be written by the thread that has its id.
     #[track_caller]
     pub(super) fn must_own_tet(&self, t: TetId) {
         let alive = self.peek(t).into_iter().filter(|v| v.is_some());

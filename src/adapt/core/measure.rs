@@ -36,8 +36,8 @@ impl<A: Access> Worker<'_, '_, A> {
         edge_length(v, &self.store.metric(a), &self.store.metric(b))
     }
 
-    /// Whether the edge is longer than the limit: the length lies between those in the metrics of both ends, so that most
-    /// edges need neither root nor logarithm.
+    /// Whether the edge is longer than the limit. Its length lies between those in the metrics of its ends, so most edges need neither
+    /// a root nor a logarithm.
     #[inline]
     pub fn is_longer(&self, a: VertexId, b: VertexId, limit: f64) -> bool {
         let v = sub(self.store.position(b), self.store.position(a));

@@ -1,8 +1,8 @@
 //! The one door: the store, how its vertices are claimed, and the few functions that write to it.
 //!
-//! The writing methods of [`store::Store`] end at this room. Whoever changes a mesh calls [`commit`] (a cavity is replaced),
-//! [`vertex_moves`] (a vertex moves), [`vertex_replacement`] (a vertex goes onto another where the records are), [`boundary_tets`]
-//! (a tetrahedron at the boundary goes) or [`ridges`]; these hold to what is required and frozen, so nothing goes round it.
+//! The writing methods of [`store::Store`] are visible in this module alone. Whoever changes a mesh calls [`commit`] (a cavity is replaced),
+//! [`vertex_moves`] (a vertex moves), [`vertex_replacement`] (a vertex goes onto another, in the records that are there),
+//! [`boundary_tets`] (a tetrahedron at the boundary goes) or [`ridges`]. All of these check what is required or frozen.
 pub mod access;
 pub mod ball;
 pub mod boundary_tets;

@@ -34,7 +34,7 @@ pub fn by_first(team: Team<'_>, tets: usize, vertices: usize, first: impl Fn(usi
     Rows::by_key(team, vertices, tets, |t| [first(t)]).into_entries()
 }
 
-/// For each old number below `bound` its place in an order, as an id; none for what is not in the order.
+/// For each old number below `bound` its place in an order, as an id; `NONE` for numbers that are not in the order.
 pub fn inverse<I>(team: Team<'_>, order: &[u32], bound: usize, id: impl Fn(u32) -> I) -> Vec<I> {
     let places: Vec<_> = (0..bound).map(|_| AtomicU32::new(u32::MAX)).collect();
     team.for_each(GRAIN, order.len(), |range| {

@@ -1,10 +1,10 @@
-//! What must stay: the vertices, edges and triangles that the input says, the surfaces and regions that the user freezes.
+//! What must stay: the vertices, edges and triangles that the input requires, the surfaces and regions that the user freezes.
 //!
-//! The ends of required edges and the corners of required triangles neither move nor go, so their ids last and an edge is known by
-//! them. A surface triangle stays as long as its three edges do. Nothing replaces a tetrahedron of a frozen region. The functions of the
+//! The ends of required edges and the corners of required triangles neither move nor go, so their ids last, and an edge is known by
+//! these ids. A surface triangle stays as long as its three edges do. Nothing replaces a tetrahedron of a frozen region. The functions of the
 //! core that take tetrahedra out of the store ask [`Required::check`] first, those that move a vertex [`Required::check_move`].
 //!
-//! A vertex that must not move stays to the bit, also where it lies a little beside its model: another mesh may share it.
+//! A vertex that must not move keeps its coordinates to the bit, even where it lies a little off the model: another mesh may share it.
 use super::ids::{EDGE, TetId, VertexId};
 use super::refusal::Refusal;
 use super::store::Store;
@@ -25,7 +25,7 @@ pub struct Freeze {
 /// Vertices, edges and regions that stay.
 #[derive(Default)]
 pub struct Required {
-    /// By vertex id; ids beyond were given out later.
+    /// By vertex id. Ids beyond the end are those of new vertices.
     frozen: Vec<bool>,
     edges: HashSet<[VertexId; 2]>,
     /// By the store's numbers.
@@ -60,7 +60,7 @@ impl Required {
         required
     }
 
-    /// Forgets the vertices of none of the tetrahedra, and their edges.
+    /// Forgets vertices that no tetrahedron has, and their edges.
     fn forget_hanging(&mut self, tets: &[[u32; 4]]) {
         let mut hangs = self.frozen.clone();
         tets.iter().flatten().for_each(|&v| hangs[v as usize] = false);
@@ -68,8 +68,8 @@ impl Required {
         self.edges.retain(|edge| !edge.iter().any(|v| hangs[v.index()]));
     }
 
-    /// The place of a mesh whose vertices have their indices as ids, with the vertices that must not move where they are, be it beside
-    /// the model.
+    /// The classification of a mesh whose vertices have their indices as ids, changed so that the projected place of a vertex that must not
+    /// move is where it is, even off the model.
     pub fn held<'p>(&self, mesh: &TetMesh, place: &'p Classification) -> Cow<'p, Classification> {
         let mut place = Cow::Borrowed(place);
         for v in self.frozen().map(VertexId::index) {
@@ -105,8 +105,8 @@ impl Required {
         self.is_frozen(a) && self.is_frozen(b) && self.edges.contains(&key(a, b))
     }
 
-    /// Refuses that these tetrahedra and vertices go, if one of the vertices must stay, a tetrahedron is of a frozen region, or a
-    /// required edge of theirs goes with them: `stays` tells of an edge whether it does.
+    /// Refuses to remove these tetrahedra and vertices if one of the vertices must stay, a tetrahedron is in a frozen region, or a
+    /// required edge would go with them. `stays` tells whether an edge is still there afterwards.
     #[inline]
     pub fn check(
         &self,
@@ -136,14 +136,14 @@ impl Required {
         !vertices.iter().any(|&v| self.is_frozen(v)) && tets.iter().all(may_go)
     }
 
-    /// Refuses that a vertex moves, if it must not.
+    /// Refuses to move a vertex that must not move.
     #[inline(always)]
     pub fn check_move(&self, v: VertexId) -> Result<(), Refusal> {
         if self.is_frozen(v) { Err(Refusal::Geometry) } else { Ok(()) }
     }
 
-    /// Lists in the adapted mesh what `input` required; `number` gives each vertex of it that is there its index. Required edges are
-    /// listed as edges with their references, alone: the ridges are added when the mesh is put back on its model.
+    /// Lists in the adapted mesh what `input` required. `number` gives the index of a vertex of the input that is still there. Of the edges
+    /// only the required ones are listed, with their references: ridges are added when the mesh is put back on its model.
     pub fn list(input: &TetMesh, mesh: &mut TetMesh, number: impl Fn(u32) -> Option<u32>) {
         mesh.required_vertices = input.required_vertices.iter().filter_map(|&v| number(v)).collect();
         for &edge in &input.required_edges {

@@ -4,7 +4,7 @@ use super::ids::{ACROSS, TetId, VertexId};
 use super::refusal::Refusal;
 use super::worker::Worker;
 
-/// More tetrahedra than this about one edge: not looked at.
+/// An edge with more tetrahedra than this is left alone.
 const MOST: usize = 256;
 
 /// The tetrahedra about the edge a–b in turn: `tets[i]` is (a, b, `ring[i]`, `ring[i + 1]`) in positive order.
@@ -52,7 +52,7 @@ impl<A: Access> Worker<'_, '_, A> {
         self.gather_shell_while(a, b, start, MOST, |_, _| true)
     }
 
-    /// As [`Worker::gather_shell`], given up as stale at the first tetrahedron that is not wanted, and as `Topology` when there are
+    /// As [`Worker::gather_shell`], but it ends as `Stale` at the first tetrahedron that is not wanted, and as `Topology` when there are
     /// more than `most`.
     pub fn gather_shell_while(
         &mut self,

@@ -14,7 +14,7 @@ use crate::mesh::vector::Vec3;
 use crate::metric::Sym3;
 use crate::metric::lanes::LANES;
 
-/// What the star replaces; decides which surface triangles are consumed.
+/// What the star is built about. It decides which surface triangles go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Seed {
     /// An edge is split: the surface triangles at it go.
@@ -59,9 +59,9 @@ impl Seed {
 /// Mean ratios of a star's tetrahedra.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bounds {
-    /// Where it is below this the cavity grows, if it can; it always does where a tetrahedron would be inverted.
+    /// Below this the cavity grows, if it can. Where a tetrahedron would be inverted it always grows.
     pub wanted: f64,
-    /// Where it stays below this the star is given up.
+    /// Below this, after growing, the star is given up.
     pub floor: f64,
 }
 
@@ -112,7 +112,8 @@ impl<A: Access> Worker<'_, '_, A> {
     /// tetrahedron is below `floor`, it is given up.
     ///
     /// # Errors
-    /// `Shape` at a tetrahedron below `floor`, `Inverted` when a face stays hidden, `Topology` when a tagged face or a boundary vertex would be swallowed.
+    /// `Shape` at a tetrahedron below `floor`, `Inverted` when the apex cannot see a face, `Topology` when the cavity would have to grow over a
+    /// tagged face or a boundary vertex.
     pub fn build_star(&mut self, seed: Seed, apex: VertexId, seeds: &[TetId], bounds: Bounds) -> Result<f64, Refusal> {
         let mut star = std::mem::take(&mut self.state.star);
         let result = self.grow_star(&mut star, seed, apex, seeds, bounds);
@@ -153,7 +154,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Sorts a face of the cavity in: consumed, inside, or wanted as base of a tetrahedron.
+    /// Decides what a face of the cavity is: a surface triangle that goes, a face inside, or the base of a new tetrahedron.
     fn look_at_face(
         &mut self,
         star: &mut Star,
@@ -165,7 +166,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let face = FACE[i].map(|k| v[k]);
         let interior = behind.is_some() && star.inside.contains(behind.0);
         if tag != 0 && seed.consumes(face) {
-            // An interface triangle is met from both sides: it is kept once.
+            // An interface triangle is met from both sides, and listed once.
             if !interior || t < behind {
                 star.surface.push(([face[0], face[2], face[1]], tag));
             }
@@ -183,7 +184,7 @@ impl<A: Access> Worker<'_, '_, A> {
         Ok(())
     }
 
-    /// Finds the mean ratios over several wanted faces: each is seen, or the cavity grows over it.
+    /// Measures the tetrahedra on several faces. A face is good enough, or the cavity grows over it.
     fn judge_faces(&mut self, star: &mut Star, apex: &Apex, bounds: Bounds) -> Result<(), Refusal> {
         let count = star.wanted.len();
         let (store, batch) = (self.store, &mut self.state.batch);
@@ -225,7 +226,7 @@ impl<A: Access> Worker<'_, '_, A> {
         Ok(())
     }
 
-    /// Turns the seen faces into tetrahedra and the consumed triangles into new ones; finds the vertices that go.
+    /// Makes tetrahedra of the faces that the apex sees, and new triangles of those that go. Finds the vertices that go.
     fn finish_star(&mut self, star: &mut Star, seed: Seed, apex: VertexId) -> Result<f64, Refusal> {
         let Star { inside, linked, seen, link, surface, .. } = star;
         link.clear();
@@ -241,7 +242,7 @@ impl<A: Access> Worker<'_, '_, A> {
                 }
             }
             link.extend(face.tet.vertices.iter().copied().filter(|v| linked.insert(v.0)));
-            // Faces that hold the apex bound the cavity, but no tetrahedron stands on them.
+            // Faces at the apex bound the cavity too, but carry no tetrahedron.
             if face.tet.region != u32::MAX {
                 worst = worst.min(face.tet.quality);
                 replacement.new.push(face.tet);

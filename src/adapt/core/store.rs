@@ -14,7 +14,7 @@ use crate::tasks::Team;
 use bytemuck::Zeroable;
 use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
-/// Vertices that there is room for beside those of a small mesh; tetrahedra six times as many. Room that is not used costs no
+/// Room for this many vertices beside those of a small mesh, and for six times as many tetrahedra. Room that is not used costs no
 /// memory.
 pub const ROOM: usize = 1 << 16;
 
@@ -63,7 +63,7 @@ pub struct CornerRidge {
 /// The mesh store.
 pub struct Store {
     vertices: Vec<VertexRecord>,
-    /// Whose each vertex is in a round of the deterministic scheduler: bytes, close together, since a claim asks for nothing else.
+    /// The owner of each vertex in a round of the deterministic scheduler. Bytes in an array of their own, since a claim reads nothing else.
     owners: Vec<AtomicU8>,
     places: Vec<PlaceRecord>,
     tets: Vec<TetRecord>,
@@ -302,7 +302,7 @@ impl Store {
         save(&self.vertices[v.index()].metric, metric.0);
     }
 
-    /// Whose the vertex is in this round, 0 when it is nobody's.
+    /// The owner of the vertex in this round, 0 for none.
     #[inline(always)]
     pub fn owner(&self, v: VertexId) -> &AtomicU8 {
         &self.owners[v.index()]
@@ -328,7 +328,7 @@ impl Store {
         self.vertices[v.index()].tet.store(t.0, Relaxed);
     }
 
-    /// Tells the vertex of a tetrahedron: it keeps the first of all that it is told of.
+    /// Offers the vertex one of its tetrahedra. It keeps the one with the least id of all that are offered.
     #[inline]
     pub(super) fn lower_tet_of(&self, v: VertexId, t: TetId) {
         let first = &self.vertices[v.index()].tet;
@@ -404,7 +404,7 @@ impl Store {
         std::array::from_fn(|i| VertexId(self.places[v.index()].ridge[i].load(Relaxed)))
     }
 
-    /// Gives a corner its ridges. At the building of the store only.
+    /// Gives a corner its ridges. Only while the store is being filled.
     pub(super) fn set_corner(&mut self, v: VertexId, ridges: Vec<(VertexId, u32)>) {
         let list = ridges.into_iter().map(|(other, curve)| CornerRidge { other: AtomicU32::new(other.0), curve });
         self.places[v.index()].ridge[0].store(self.corners.len() as u32, Relaxed);
@@ -453,9 +453,9 @@ impl Store {
         self.peek(t)
     }
 
-    /// What is written as the vertices of a tetrahedron of which no vertex need be held: it may be dead, or half another one.
-    /// Only a vertex that the reader holds is certain: while it is held, it is in the record exactly if the tetrahedron
-    /// is alive and has it (whoever writes or clears the record holds what it had and what it gets).
+    /// Reads the vertices of a tetrahedron without holding one. It may be dead, or be half overwritten by another one.
+    /// Only for a vertex that the reader holds the answer is certain: then the record has it exactly when the tetrahedron is alive and
+    /// has it, since whoever writes or clears the record holds both its old and its new vertices.
     #[inline(always)]
     pub fn peek(&self, t: TetId) -> [VertexId; 4] {
         let record = &self.tets[t.index()].vertices;
@@ -527,7 +527,7 @@ impl Store {
         self.tets[t.index()].stamp.load(Relaxed)
     }
 
-    /// When the tetrahedron last changed, or one of its vertices moved, be it ever so little.
+    /// When the tetrahedron last changed, or one of its vertices moved, even by a little.
     #[inline(always)]
     pub fn moved(&self, t: TetId) -> u32 {
         self.must_hold_one_of(t);
@@ -579,7 +579,7 @@ impl Store {
         self.clear_tet(t);
     }
 
-    /// Forgets all four vertices: who holds one of them and comes with an old id must not find it here any more.
+    /// Clears all four vertices, so that a thread that holds one of them and has an old id does not find it here.
     #[inline]
     fn clear_tet(&self, t: TetId) {
         for slot in &self.tets[t.index()].vertices {
@@ -619,7 +619,7 @@ fn take_at(
     Some(ids)
 }
 
-/// What tests write past the operations, to have something to repair.
+/// Writes for tests alone, past the operations, to have something to repair.
 #[cfg(test)]
 impl Store {
     /// Moves a vertex, whatever that inverts.

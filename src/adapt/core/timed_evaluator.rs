@@ -1,10 +1,10 @@
-//! An evaluator of the model that knows how long it was asked.
+//! An evaluator of the model that measures the time of its calls.
 use crate::geometry::{CurveFrame, Evaluate, Evaluator, OnCurve, OnSurface, SurfaceFrame};
 use crate::mesh::vector::Vec3;
 use std::time::{Duration, Instant};
 
-/// The evaluator of one thread, with the wall time of its calls. Reading the clock twice takes some 50 ns a call, of the 0.1 to 2 µs that
-/// a closest point takes.
+/// The evaluator of one thread, with the wall time of its calls. To read the clock twice takes some 50 ns a call; a closest point takes
+/// 0.1 to 2 µs.
 pub struct TimedEvaluator<'m> {
     inner: Evaluator<'m>,
     /// Time in the model so far.

@@ -1,6 +1,6 @@
 //! The only places where a vertex gets a position: a new one, a tentative move that a commit completes, a move within its ball.
 //!
-//! What is required or frozen does not move, whoever asks.
+//! A required or frozen vertex does not move, whoever asks.
 use super::access::Access;
 use super::ids::{TetId, VertexId};
 use super::refusal::Refusal;
@@ -34,7 +34,7 @@ pub struct VertexState {
     pub hint: u32,
 }
 
-/// A move that is longer in the metric may change what flips and collapses gain.
+/// After a move longer than this, in the metric, flips and collapses look at the tetrahedra again.
 const FAR: f64 = 0.05;
 
 impl<A: Access> Worker<'_, '_, A> {
@@ -65,7 +65,7 @@ impl<A: Access> Worker<'_, '_, A> {
         self.store.set_hint(v, state.hint);
     }
 
-    /// Makes a vertex, claimed, and does with it what joins it to the mesh; where that is refused, the id is given back.
+    /// Makes a vertex, claims it, and calls `join`, which connects it to the mesh. Where that is refused, the id is given back.
     ///
     /// # Errors
     /// `Full` when there is no id left, else the refusal of `join`.
@@ -86,8 +86,8 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Moves a claimed vertex and does what makes the mesh valid with it there; where that is refused, the vertex goes back.
-    /// Meanwhile its tetrahedra may be inverted: `make_valid` has to replace all of them in one commit.
+    /// Moves a claimed vertex, then calls `make_valid`. Where that is refused, the vertex goes back.
+    /// Until then its tetrahedra may be inverted, so `make_valid` has to replace all of them in one commit.
     ///
     /// # Errors
     /// `Geometry` when the vertex must not move, else the refusal of `make_valid`.
@@ -103,8 +103,8 @@ impl<A: Access> Worker<'_, '_, A> {
         make_valid(self).inspect_err(|_| self.write_vertex(v, &before))
     }
 
-    /// Moves a vertex whose ball is claimed to a place where all its tetrahedra, of these mean ratios, are positive; `is_fair` looks at
-    /// the mesh with the vertex there, and where it says no the vertex goes back.
+    /// Moves a vertex whose ball is claimed to a place where all its tetrahedra are positive; `ratios` are their mean ratios there. `is_fair`
+    /// judges the mesh with the vertex there; where it says no, the vertex goes back.
     ///
     /// # Errors
     /// `Geometry` when the vertex must not move, `Normal` when it was not fair.
@@ -122,13 +122,13 @@ impl<A: Access> Worker<'_, '_, A> {
         let far = before.metric.quadratic(way) > FAR * FAR;
         for (&t, ratio) in ball.iter().zip(ratios) {
             self.store.set_quality(t, ratio);
-            // After a small move only smoothing looks here again.
+            // After a small move only smoothing looks at the tetrahedron again.
             if far { self.store.touch(t) } else { self.store.touch_moved(t) }
         }
         Ok(())
     }
 
-    /// Measures tetrahedra anew whose vertices have moved, so that all operations look at them again.
+    /// Measures tetrahedra again after their vertices have moved, and stamps them so that all operations look at them.
     pub fn remeasure(&mut self, tets: &[TetId]) {
         for &t in tets {
             self.store.set_quality(t, self.shape(self.store.vertices(t)));

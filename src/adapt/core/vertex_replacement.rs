@@ -1,4 +1,4 @@
-//! A vertex inside goes onto a neighbour, and its records are changed where they are: for sweeps that remove most of a crowded mesh.
+//! A vertex inside goes onto a neighbour, by changes to the records that are there. For sweeps that remove most of a crowded mesh.
 use super::access::Access;
 use super::ids::{TetId, VertexId};
 use super::refusal::Refusal;
@@ -25,7 +25,8 @@ pub struct BallSplit {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Writes w in the place of v, whose ball has these tetrahedra, joins what lay on both sides of the tetrahedra that go. Everything in the ball is claimed, and what stays is positive.
+    /// Writes w in place of v in the tetrahedra of its ball that stay, and makes neighbours of what lies on both sides of those that go. The
+    /// whole ball is claimed, and what stays is positive.
     ///
     /// # Errors
     /// `Geometry` when something required would go.
@@ -36,7 +37,7 @@ impl<A: Access> Worker<'_, '_, A> {
         tets: &[TetId],
         ball: &BallSplit,
     ) -> Result<(), Refusal> {
-        // An edge between other vertices is one of a tetrahedron that stays, too.
+        // An edge without v and w also belongs to a tetrahedron that stays.
         self.context.required.check(self.store, tets, &[v], |x, y| x != v && y != v)?;
         let store = self.store;
         for &Kept { tet, local, quality } in &ball.kept {

@@ -37,7 +37,7 @@ pub struct State<'m> {
     pub shell: super::shell::Shell,
     /// Boundary vertices that are not yet on the model.
     pub unprojected: Vec<VertexId>,
-    /// Four tetrahedra to be measured.
+    /// Tetrahedra to be measured together.
     pub batch: crate::metric::batch::Batch,
 }
 
@@ -85,7 +85,7 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
         self.access.claim(self.store, v)
     }
 
-    /// Claims the vertices of a tetrahedron that is known to hold still.
+    /// Claims the vertices of a tetrahedron that cannot change, since one of its vertices is held.
     #[inline(always)]
     pub fn claim_tet(&mut self, t: TetId) -> Result<[VertexId; 4], Refusal> {
         let vertices = self.store.vertices(t);
@@ -117,7 +117,7 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
     /// A tetrahedron that holds both claimed vertices; stale when they are not joined by an edge.
     pub fn tet_with_edge(&mut self, a: VertexId, b: VertexId, guess: TetId) -> Result<TetId, Refusal> {
         let holds = |t: TetId| {
-            // The guess may be dead or another one by now; a and b are held, so if both are in it, it is theirs.
+            // The guess may be dead or reused by now. Since a and b are held, it is right if both are in it.
             let vertices = self.store.peek(t);
             vertices.contains(&a) && vertices.contains(&b)
         };

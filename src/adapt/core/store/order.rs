@@ -1,6 +1,6 @@
 //! Renumbering along a space-filling curve: what is near in space comes near in memory, and dead records go.
 //!
-//! Tetrahedra, which are most of the memory, go through a list half as large: a half of each record at a time.
+//! Tetrahedra are most of the memory. They are moved by halves of their records, through a list half as large as they are.
 use super::{PlaceRecord, ROOM, Store, TetRecord, VertexRecord, rehouse};
 use crate::adapt::core::ids::{TetId, VertexId};
 use crate::adapt::core::numbering::{by_first, inverse};
@@ -10,7 +10,7 @@ use crate::tasks::{GRAIN, Rows, Team};
 use bytemuck::allocation::zeroed_vec;
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
-/// Part of the records that must be dead for their memory to be given back.
+/// Memory is given back when at least one in so many records is dead.
 const DEAD: usize = 8;
 
 impl Store {
