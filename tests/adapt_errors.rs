@@ -206,6 +206,22 @@ fn an_error_is_all_that_quiet_lets_through() {
     assert_eq!(stderr(&run).lines().count(), 1);
 }
 
+/// They came out as a metric file of zeros, or as an error about the output.
+#[test]
+fn sizes_that_cannot_be_computed_with_are_refused_with_the_vertex() {
+    let (work, mesh) = (Workplace::new(), cube(2, |_| 1));
+    let input = work.mesh(&mesh);
+    for eigenvalue in [1e-308, 1e308, 1e-250, 1e250] {
+        let metric = work.metric(&mesh, |p| Sym3::IDENTITY.times(if p == [1.0; 3] { eigenvalue } else { 1.0 }));
+        for more in [&[][..], &["--complexity", "100"]] {
+            let message = work.refusal(&input, &[&["--metric", &metric], more].concat());
+            assert_says(&message, &["in.meshb", "vertex 27", "sizes", "1e-100", "--hmin"]);
+        }
+        work.adapt(&input, &["--metric", &metric, "--hmin", "0.5", "--hmax", "2"]);
+        ["out.meshb", "out.solb"].iter().for_each(|name| std::fs::remove_file(work.path(name)).unwrap());
+    }
+}
+
 #[test]
 fn what_cannot_be_frozen_is_refused() {
     let (work, _, input, metric) = prepared();

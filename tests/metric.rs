@@ -2,7 +2,7 @@
 #![cfg(feature = "cli")]
 mod common;
 
-use common::adapting::{Workplace, complaint, cube, isotropic, stderr, text};
+use common::adapting::{Workplace, complaint, cube, isotropic, stderr, text, write_tensors};
 use common::program;
 use geo_adapt::image::{Encoding, Frame, Image, Kind};
 use geo_adapt::mesh::vector::Vec3;
@@ -33,8 +33,7 @@ impl Bench {
 
     fn metric(&self, name: &str, at: impl Fn(Vec3) -> Sym3) -> String {
         let path = self.path(name);
-        let metrics = self.mesh.vertices.iter().map(|&p| at(p)).collect();
-        Field { metrics }.write(Path::new(&path)).unwrap();
+        write_tensors(Path::new(&path), self.mesh.vertices.iter().map(|&p| at(p)));
         path
     }
 
@@ -129,6 +128,57 @@ fn scale_reaches_its_complexity() {
     let path = bench.path("mirrored.meshb");
     io::write_mesh(Path::new(&path), &mirrored).unwrap();
     says(&bench.refusal(&["scale", &path, &a, "--complexity", "10"]), &["mirrored.meshb", "complexity"]);
+}
+
+/// It wrote zeros on the diagonal and exited 0: the terms were too small for a double.
+#[test]
+fn a_metric_that_doubles_do_not_hold_is_not_written() {
+    let bench = Bench::new(1);
+    let scaled = |metric: &str| bench.refusal(&["scale", &bench.input, metric, "--complexity", "1e-120"]);
+    let small = bench.metric("small.solb", |p| Sym3::IDENTITY.times(if p == [1.0; 3] { 1e-190 } else { 1.0 }));
+    says(&scaled(&small), &["refused.solb", "vertex 8 cannot be written", "sizes would be", "metric limit", "--hmax"]);
+    // Along no axis, the least of these eigenvalues is less than the rounding of the others.
+    let tensor = Sym3::from_sizes([[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]], [1e6, 1.0, 1e-3]);
+    let slanting = bench.metric("slanting.solb", |_| tensor);
+    let straight = bench.metric("straight.solb", |_| Sym3::diagonal(1e-12, 1.0, 1e6));
+    assert!(bench.make(&["scale", &bench.input, &straight, "--complexity", "10"]).iter().all(Sym3::is_spd));
+    let message = metric(&["scale", &bench.input, &slanting, "--complexity", "10", "-o", &bench.path("some.solb")]);
+    match message.status.code() {
+        Some(0) => assert!(Field::read(Path::new(&bench.path("some.solb")), 8).is_ok()),
+        _ => says(&complaint(&message), &["cannot be written"]),
+    }
+}
+
+/// Sizes from 1e-160 to 1e160: what is written can be read, else there is an error that names the vertex, and the remedy helps.
+#[test]
+fn sizes_at_the_ends_of_what_doubles_hold() {
+    let bench = Bench::new(1);
+    for exponent in [-153, -101, -99, -50, 0, 50, 99, 101, 153] {
+        let size = 10f64.powi(exponent);
+        let eigenvalue = 1.0 / (size * size);
+        let a = bench.metric("a.solb", |_| Sym3::IDENTITY.times(eigenvalue));
+        let held = (-100..=100).contains(&exponent);
+        let commands: [&[&str]; 4] = [
+            &["grade", &bench.input, &a],
+            &["scale", &bench.input, &a, "--complexity", "100"],
+            &["intersect", &a, &a],
+            &["limit", &a, "--aspect-ratio", "100"],
+        ];
+        for command in commands {
+            if held {
+                assert!(bench.make(command).iter().all(Sym3::is_spd), "{command:?} {size}");
+            } else {
+                says(&bench.refusal(command), &["vertex 1", "sizes", "metric limit", "--hm"]);
+            }
+        }
+        let within = bench.make(&["limit", &a, "--hmin", "1e-3", "--hmax", "1e3"]);
+        assert!(within.iter().all(|m| m.is_spd() && m.sizes().iter().all(|h| (0.9e-3..1.1e3).contains(h))), "{size}");
+    }
+    // A subnormal eigenvalue is none that can be computed with, and a zero none at all.
+    let subnormal = bench.metric("subnormal.solb", |_| Sym3::diagonal(1.0, 1.0, 1e-310));
+    says(&bench.refusal(&["grade", &bench.input, &subnormal]), &["vertex 1", "sizes"]);
+    let zero = bench.metric("zero.solb", |_| Sym3::diagonal(1.0, 1.0, 0.0));
+    says(&bench.refusal(&["grade", &bench.input, &zero]), &["vertex 1", "not positive definite"]);
 }
 
 #[test]

@@ -62,6 +62,8 @@ pub struct Adapted {
     /// Whether the mesh stopped growing, since it had far more vertices than the metric's complexity accounts for, or since
     /// there was no memory for more.
     pub overgrown: bool,
+    /// Bad tetrahedra that repair left untried, since there were too many of them.
+    pub unrepaired: usize,
     /// Surface triangles that deviate from the model by more than the bounds that were given.
     pub deviating: usize,
     /// Time in the model's evaluators during the passes, of all threads together.
@@ -72,7 +74,7 @@ pub struct Adapted {
 /// ([`crate::geometry::Discrete`]'s `complete_boundary` adds missing ones).
 ///
 /// # Errors
-/// When the mesh is no valid tetrahedral mesh.
+/// When the mesh is no valid tetrahedral mesh, or its metric asks for sizes that cannot be computed with.
 pub fn adapt(
     mesh: &TetMesh,
     place: &Classification,
@@ -85,6 +87,7 @@ pub fn adapt(
     let required = Required::of(mesh, &options.freeze);
     let place = &*required.held(mesh, place);
     let team = Team::new(pool, options.plan);
+    source.check(team, mesh)?;
     let (Filled { store, unprojected, ids }, crowded) = filled(team, mesh, place, source, &required)?;
     stage("store filled");
     let mut context = Context::new(store, source, model);
@@ -103,6 +106,7 @@ pub fn adapt(
     pipeline.surface = options.surface;
     pipeline.run();
     let (work, unprojected, overgrown) = (pipeline.work, std::mem::take(&mut pipeline.unprojected), pipeline.overgrown);
+    let unrepaired = pipeline.unrepaired;
     let geometry = pipeline.states.iter().map(|state| state.evaluator.spent).sum();
     let deviating = pipeline.deviating();
     drop(pipeline);
@@ -115,7 +119,7 @@ pub fn adapt(
     };
     let extracted = extract::extract(team, &context, mesh, &refs, &unprojected);
     stage("extracted");
-    Ok(Adapted { extracted, work, overgrown, deviating, geometry })
+    Ok(Adapted { extracted, work, overgrown, unrepaired, deviating, geometry })
 }
 
 /// The mesh in a store, made coarse on the way where it is crowded, and whether that was so.

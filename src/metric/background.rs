@@ -11,6 +11,9 @@ use std::sync::Arc;
 pub struct Background {
     locator: Locator,
     logs: Vec<Sym3>,
+    /// Whether what lies between vertices may have to be cut to be held.
+    is_wide: bool,
+    cut: usize,
 }
 
 impl Background {
@@ -20,7 +23,7 @@ impl Background {
     /// When the lengths of `vertices` and `logs` differ, an index is out of range, or there is no tetrahedron.
     pub fn new(vertices: Vec<Vec3>, tets: Vec<[u32; 4]>, logs: Vec<Sym3>) -> Self {
         assert_eq!(vertices.len(), logs.len(), "one ln M a vertex");
-        Self { locator: Locator::new(vertices, tets), logs }
+        Self::with(Team::alone(), Locator::new(vertices, tets), logs)
     }
 
     /// On a mesh that others use too, with its [`MatchedFaces`] and ln M at its vertices.
@@ -29,7 +32,26 @@ impl Background {
     /// As [`Background::new`].
     pub fn on(team: Team<'_>, mesh: Arc<TetMesh>, faces: MatchedFaces, logs: Vec<Sym3>) -> Self {
         assert_eq!(mesh.vertices.len(), logs.len(), "one ln M a vertex");
-        Self { locator: Locator::on(team, mesh, faces), logs }
+        Self::with(team, Locator::on(team, mesh, faces), logs)
+    }
+
+    /// Sizes that doubles do not hold beside the others at a vertex are cut ([`super::held`]).
+    fn with(team: Team<'_>, locator: Locator, mut logs: Vec<Sym3>) -> Self {
+        // The difference of the greatest and the least eigenvalue is convex: between vertices it is no more than at them.
+        let is_wide =
+            team.chunks(GRAIN, logs.len(), |range| !logs[range].iter().all(Sym3::is_narrow_log)).contains(&true);
+        let mut cut = 0;
+        for log in logs.iter_mut().filter(|_| is_wide) {
+            let held = log.held_log();
+            cut += usize::from(held != *log);
+            *log = held;
+        }
+        Self { locator, logs, is_wide, cut }
+    }
+
+    /// At how many vertices sizes were cut.
+    pub fn cut(&self) -> usize {
+        self.cut
     }
 
     /// ln M at p, log-Euclidean in the tetrahedron that contains p, or in the nearest one at the point nearest to p.
@@ -42,7 +64,7 @@ impl Background {
         for (node, weight) in nodes.into_iter().zip(found.weights) {
             log = log.plus(self.logs[node as usize].times(weight));
         }
-        log
+        if self.is_wide { log.held_log() } else { log }
     }
 
     /// Adds `log_factor` to the diagonal of every ln M: M is scaled by e^log_factor.

@@ -1,4 +1,5 @@
 //! Errors of metric fields.
+use super::held::{GREATEST_RATIO, SIZES};
 use std::path::PathBuf;
 
 /// What was wrong with a metric: what, where, and the remedy.
@@ -44,6 +45,33 @@ pub enum Error {
         vertex: usize,
         /// Its eigenvalues.
         eigenvalues: [f64; 3],
+    },
+    /// A tensor that a file cannot hold.
+    #[error(
+        "{}: the metric of vertex {vertex} cannot be written: its sizes would be {:.3e}, {:.3e} and {:.3e}, and a tensor of doubles holds sizes \
+         from {:.0e} to {:.0e}, in slanting directions no more than {:.0e} times the least; bound them by `geo-adapt metric limit` \
+         (--hmin, --hmax, --aspect-ratio), or give another complexity",
+        path.display(), sizes[0], sizes[1], sizes[2], SIZES.start(), SIZES.end(), GREATEST_RATIO
+    )]
+    NotHeld {
+        /// The metric file.
+        path: PathBuf,
+        /// Vertex, from 1.
+        vertex: usize,
+        /// Its sizes.
+        sizes: [f64; 3],
+    },
+    /// A metric beyond what can be computed with.
+    #[error(
+        "the metric of vertex {vertex} asks for sizes of {:.3e}, {:.3e} and {:.3e}: they must lie between {:.0e} and {:.0e}; are mesh and \
+         metric in the same units? --hmin and --hmax bound them, here or in `geo-adapt metric limit`",
+        sizes[0], sizes[1], sizes[2], SIZES.start(), SIZES.end()
+    )]
+    Sizes {
+        /// Vertex, from 1.
+        vertex: usize,
+        /// Its sizes.
+        sizes: [f64; 3],
     },
     /// No analytic field of that name.
     #[error("no analytic field is called '{0}': choose linear, polar-1 or polar-2")]

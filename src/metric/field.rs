@@ -4,6 +4,7 @@ use crate::mesh::io::{self, Batch, FieldKind, Read, Solution, SolutionField};
 use crate::mesh::{TetMesh, vector::volume6};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// A metric at every vertex of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,13 +41,23 @@ impl Field {
     }
 
     /// Writes .sol or .solb by the extension.
+    ///
+    /// # Errors
+    /// When the file cannot be written, and [`Error::NotHeld`] when a tensor is not positive definite in doubles.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
-        Self::write_each(Team::alone(), path, self.metrics.len(), |v| self.metrics[v])
+        let mut batch = Batch::new();
+        self.add(&mut batch, path)?;
+        Ok(batch.commit()?)
     }
 
     /// Writes M = exp of these logarithms, shape (n,), as [`Field::write`] does.
+    ///
+    /// # Errors
+    /// As there.
     pub fn write_logs(team: Team<'_>, path: &Path, logs: &[Sym3]) -> Result<(), Error> {
-        Self::write_each(team, path, logs.len(), |v| logs[v].exp())
+        let mut batch = Batch::new();
+        Self::add_logs(&mut batch, team, path, logs)?;
+        Ok(batch.commit()?)
     }
 
     /// Adds M = exp of these logarithms, as [`Field::write_logs`] writes it, to files that belong together.
@@ -54,7 +65,7 @@ impl Field {
     /// # Errors
     /// As there.
     pub fn add_logs(batch: &mut Batch, team: Team<'_>, path: &Path, logs: &[Sym3]) -> Result<(), Error> {
-        Self::add_each(batch, team, path, logs.len(), |v| logs[v].exp())
+        Self::add_each(batch, team, path, logs.len(), |v| logs[v].held_exp().ok_or_else(|| logs[v].sizes_of_log()))
     }
 
     /// Adds .sol or .solb, as [`Field::write`] writes it, to files that belong together.
@@ -62,33 +73,32 @@ impl Field {
     /// # Errors
     /// As there.
     pub fn add(&self, batch: &mut Batch, path: &Path) -> Result<(), Error> {
-        Self::add_each(batch, Team::alone(), path, self.metrics.len(), |v| self.metrics[v])
+        let held = |m: Sym3| if m.is_held() { Ok(m) } else { Err(m.sizes()) };
+        Self::add_each(batch, Team::alone(), path, self.metrics.len(), |v| held(self.metrics[v]))
     }
 
-    fn write_each(
-        team: Team<'_>,
-        path: &Path,
-        count: usize,
-        metric: impl Fn(usize) -> Sym3 + Sync,
-    ) -> Result<(), Error> {
-        let mut batch = Batch::new();
-        Self::add_each(&mut batch, team, path, count, metric)?;
-        Ok(batch.commit()?)
-    }
-
+    /// Adds what `metric` gives for each vertex, or else its sizes, if it cannot be written.
     fn add_each(
         batch: &mut Batch,
         team: Team<'_>,
         path: &Path,
         count: usize,
-        metric: impl Fn(usize) -> Sym3 + Sync,
+        metric: impl Fn(usize) -> Result<Sym3, [f64; 3]> + Sync,
     ) -> Result<(), Error> {
         let kind = FieldKind::SymmetricTensor;
         let mut values = vec![0.0; kind.values() * count];
+        let first = AtomicUsize::new(usize::MAX);
         team.fill(kind.values() * GRAIN, &mut values, |start, chunk| {
             let rows = chunk.as_chunks_mut().0;
-            rows.iter_mut().zip(start / kind.values()..).for_each(|(row, v)| *row = metric(v).0);
+            rows.iter_mut().zip(start / kind.values()..).for_each(|(row, v)| match metric(v) {
+                Ok(metric) => *row = metric.0,
+                Err(_) => _ = first.fetch_min(v, Relaxed),
+            });
         });
+        let first = first.into_inner();
+        if let Some(Err(sizes)) = (first < count).then(|| metric(first)) {
+            return Err(Error::NotHeld { path: path.into(), vertex: first + 1, sizes });
+        }
         let solution = Solution { vertices: count, fields: vec![SolutionField { kind, values }] };
         Ok(io::add_solution(batch, team, path, &solution)?)
     }

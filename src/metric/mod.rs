@@ -12,6 +12,7 @@ mod frame;
 pub mod from_image;
 pub mod from_points;
 pub mod gradation;
+pub mod held;
 pub mod implied;
 mod intersection;
 pub mod lanes;

@@ -1,6 +1,6 @@
 //! Where a new vertex takes its metric from.
 use super::field::{complexity_between, complexity_of_logs};
-use super::{Analytic, Background, Sym3};
+use super::{Analytic, Background, Error, Sym3, held};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{EDGES, MatchedFaces};
 use crate::mesh::vector::{Vec3, add, distance, lerp, scale, volume6};
@@ -27,7 +27,7 @@ impl Source {
     #[inline]
     pub fn log_at(&self, p: Vec3, hint: &mut u32) -> Sym3 {
         match self {
-            Self::Analytic { field, log_scale } => field.log_at(p).plus_identity(*log_scale),
+            Self::Analytic { field, log_scale } => field.log_at(p).plus_identity(*log_scale).held_log(),
             Self::Background(background) => background.log_at(p, hint),
         }
     }
@@ -50,17 +50,37 @@ impl Source {
     /// Complexity ∫ √det M of the field on a mesh, for the background the mesh it came with. An analytic field is integrated by the
     /// midpoint rule over bisected tetrahedra, since a coarse mesh's vertices do not resolve it.
     pub fn complexity(&self, team: Team<'_>, mesh: &TetMesh) -> f64 {
+        let corners = |t: usize| Some(mesh.tets.nodes[t].map(|v| mesh.vertices[v as usize]));
         match self {
             Self::Background(background) => complexity_between(team, mesh, background.logs()),
-            Self::Analytic { .. } => {
-                let depth = (SAMPLES / mesh.tets.len().max(1)).max(1).ilog2();
-                let corners = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
-                // As many samples a task whatever their depth.
-                team.sum(GRAIN >> depth.min(GRAIN.ilog2()), mesh.tets.len(), |range| {
-                    mesh.tets.nodes[range].iter().map(|tet| self.integrate(corners(tet), depth)).sum()
-                })
-            }
+            Self::Analytic { .. } => self.sampled_complexity(team, mesh.tets.len(), corners),
         }
+    }
+
+    /// As [`Source::complexity`] of a mesh of up to so many tetrahedra, told by their corners; none where there is no tetrahedron.
+    pub fn complexity_within(
+        &self,
+        team: Team<'_>,
+        tets: usize,
+        corners: impl Fn(usize) -> Option<[Vec3; 4]> + Sync,
+    ) -> f64 {
+        match self {
+            Self::Background(background) => complexity_between(team, background.locator().mesh(), background.logs()),
+            Self::Analytic { .. } => self.sampled_complexity(team, tets, corners),
+        }
+    }
+
+    fn sampled_complexity(
+        &self,
+        team: Team<'_>,
+        tets: usize,
+        corners: impl Fn(usize) -> Option<[Vec3; 4]> + Sync,
+    ) -> f64 {
+        let depth = (SAMPLES / tets.max(1)).max(1).ilog2();
+        // As many samples a task whatever their depth.
+        team.sum(GRAIN >> depth.min(GRAIN.ilog2()), tets, |range| {
+            range.filter_map(&corners).map(|corners| self.integrate(corners, depth)).sum()
+        })
     }
 
     /// No less than the complexity, and quickly found, where the field lies on the mesh itself: the exponential function is convex,
@@ -87,6 +107,24 @@ impl Source {
         left[i] = middle;
         right[j] = middle;
         self.integrate(left, depth - 1) + self.integrate(right, depth - 1)
+    }
+
+    /// Checks that all sizes at the vertices of a mesh can be computed with. Between them, they can too.
+    ///
+    /// # Errors
+    /// [`Error::Sizes`] of the first vertex where not.
+    pub fn check(&self, team: Team<'_>, mesh: &TetMesh) -> Result<(), Error> {
+        let logs = self.logs_on(mesh);
+        let log = |v: usize| logs.map_or_else(|| self.log_at(mesh.vertices[v], &mut 0), |logs| logs[v]);
+        held::check(team, mesh.vertices.len(), log)
+    }
+
+    /// At how many vertices of the background sizes were cut, since doubles do not hold the metric else.
+    pub fn cut(&self) -> usize {
+        match self {
+            Self::Analytic { .. } => 0,
+            Self::Background(background) => background.cut(),
+        }
     }
 
     /// Scales M by e^log_factor.

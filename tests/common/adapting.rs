@@ -1,5 +1,6 @@
 //! Runs of `geo-adapt adapt`, each in a folder of its own, and what every run promises.
 use super::program;
+use geo_adapt::mesh::io::{FieldKind, Solution, SolutionField};
 use geo_adapt::mesh::vector::{Vec3, area2, norm, scale, volume6};
 use geo_adapt::mesh::{Elements, TetMesh, io, validity};
 use geo_adapt::metric::{Field, Sym3};
@@ -40,7 +41,7 @@ impl Workplace {
     /// Writes a metric for the mesh as size.solb.
     pub fn metric(&self, mesh: &TetMesh, at: impl Fn(Vec3) -> Sym3) -> String {
         let path = self.path("size.solb");
-        Field { metrics: mesh.vertices.iter().map(|&p| at(p)).collect() }.write(&path).unwrap();
+        write_tensors(&path, mesh.vertices.iter().map(|&p| at(p)));
         text(&path)
     }
 
@@ -90,6 +91,13 @@ impl Workplace {
         assert!(!self.path("out.meshb").exists() && !self.path("out.solb").exists(), "{message}");
         message
     }
+}
+
+/// Writes tensors as they are, metrics or not.
+pub fn write_tensors(path: &Path, tensors: impl Iterator<Item = Sym3>) {
+    let values: Vec<f64> = tensors.flat_map(|tensor| tensor.0).collect();
+    let field = SolutionField { kind: FieldKind::SymmetricTensor, values };
+    io::write_solution(path, &Solution { vertices: field.values.len() / 6, fields: vec![field] }).unwrap();
 }
 
 /// What a refused run said: exit code 2, nothing on stdout, one error on stderr.

@@ -31,6 +31,9 @@ pub enum Error {
         /// How many more.
         others: usize,
     },
+    /// A metric beyond what can be computed with.
+    #[error(transparent)]
+    Metric(#[from] crate::metric::Error),
     /// A face of more than two tetrahedra.
     #[error("{tets} tetrahedra share the face of nodes {} {} {}; `geo-adapt inspect` lists what is wrong with a mesh", nodes[0], nodes[1], nodes[2])]
     Shared {

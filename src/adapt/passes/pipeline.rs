@@ -49,6 +49,13 @@ const PATIENCE: usize = 1;
 /// Tetrahedra below this mean ratio go through the end-game.
 const REPAIR_BELOW: f64 = 0.5;
 
+/// The end-game tries as many tetrahedra in a run as make this part of the mesh, and some. It is dear: one costs as much as some thousand
+/// flips looked at. Where a metric can be met, fewer are below its limit; where it cannot, the end-game would not end.
+const REPAIR_SHARE: f64 = 0.25;
+
+/// Tetrahedra that the end-game tries however small the mesh.
+const REPAIR_FEW: f64 = 500.0;
+
 /// The store is renumbered when it has grown by this factor.
 const OUT_OF_ORDER: usize = 2;
 
@@ -110,6 +117,10 @@ pub struct Pipeline<'c, 'm> {
     input: usize,
     /// Whether the mesh has more vertices than its metric accounts for, so that nothing is inserted any more.
     pub overgrown: bool,
+    /// Tetrahedra that the end-game tried.
+    repaired: usize,
+    /// Tetrahedra that it would have tried, had there been fewer.
+    pub unrepaired: usize,
     /// Tetrahedra when the store was last renumbered.
     ordered: usize,
 }
@@ -140,6 +151,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             pass: 0,
             input,
             overgrown: false,
+            repaired: 0,
+            unrepaired: 0,
             ordered,
         }
     }
@@ -263,6 +276,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             let mut items = self.tets(|store, t| store.quality(t) < REPAIR_BELOW);
             let store = &self.context.store;
             self.team().sort_by(&mut items, |x, y| store.quality(*x).total_cmp(&store.quality(*y)).then(x.cmp(y)));
+            self.no_more_than_repaired(&mut items);
             if self.observer.stop() || self.sweep(Kind::Repair, &Repair, &items).done == 0 {
                 break;
             }
@@ -271,6 +285,15 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
         // Flips have looked at the worst only.
         self.looked = looked;
+    }
+
+    /// Of the items of the end-game as many as it may still try, the worst.
+    fn no_more_than_repaired(&mut self, items: &mut Vec<TetId>) {
+        let most = (REPAIR_FEW + REPAIR_SHARE * self.live_tets() as f64) as usize;
+        let left = most.saturating_sub(self.repaired);
+        self.unrepaired = items.len().saturating_sub(left);
+        items.truncate(left);
+        self.repaired += items.len();
     }
 
     /// Brings unprojected vertices to the model; after some passes they are taken out instead.
@@ -320,7 +343,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             return;
         }
         self.keep_order();
-        let items = self.long_edges();
+        let mut items = self.long_edges();
+        self.no_more_than_allowed(&mut items);
         if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
             self.project();
         }
@@ -331,7 +355,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         if self.observer.stop() {
             return false;
         }
-        let items = centroid::active_tets(self.team(), self.context);
+        let mut items = centroid::active_tets(self.team(), self.context);
+        self.no_more_than_allowed(&mut items);
         let done = self.sweep(Kind::Split, &InsertCentroids, &items).done;
         self.project();
         self.reconnect(self.criterion, 1);
@@ -349,6 +374,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let mut items = self.long_edges();
         let store = &self.context.store;
         items.retain(|edge| store.dimension(edge.a).max(store.dimension(edge.b)) < 3);
+        self.no_more_than_allowed(&mut items);
         if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
             self.project();
         }
@@ -357,7 +383,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         if self.observer.stop() {
             return false;
         }
-        let items = metric_orthogonal::active_vertices(self.team(), self.context);
+        let mut items = metric_orthogonal::active_vertices(self.team(), self.context);
+        self.no_more_than_allowed(&mut items);
         let done = self.sweep(Kind::Split, &InsertMetricOrthogonal, &items).done;
         self.reconnect(self.criterion, 1);
         !self.is_little(done)

@@ -13,8 +13,9 @@ use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
 use crate::geometry::{Discrete, Model, Names, names};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::{TetMesh, crossing, io};
+use crate::metric::held::GREATEST_RATIO;
 use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
-use crate::metric::{Background, Field, Limits, Source, Sym3, field, grade};
+use crate::metric::{self, Background, Field, Limits, Source, Sym3, field, grade};
 use crate::sizing;
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
@@ -138,6 +139,13 @@ impl InputArguments {
         }
         let (mut source, made) = self.source(team, (&mesh, faces), logs, (&place, &model, &names), notices)?;
         stage("metric ready");
+        if source.cut() > 0 {
+            notices.push(format!(
+                "sizes of more than {GREATEST_RATIO:.0e} times the least at the same vertex were cut to that at {} vertices: a tensor of \
+                 doubles does not hold them",
+                source.cut()
+            ));
+        }
         self.scale(team, &mesh, &mut source, made.is_some())?;
         stage("complexity");
         Ok(Input { mesh, place, model, source, made, names })
@@ -243,10 +251,18 @@ impl InputArguments {
 
     /// Scales the source to the complexity that is asked for, which one that was made for it has; and refuses one that no mesh can have.
     fn scale(&self, team: Team<'_>, mesh: &TetMesh, source: &mut Source, is_made: bool) -> Result<(), String> {
+        let named = |error: metric::Error| format!("{}: {error}", self.mesh.display());
+        source.check(team, mesh).map_err(named)?;
         if self.complexity.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
             return Ok(());
         }
         let own = source.complexity(team, mesh);
+        if !(own > 0.0 && own.is_finite()) {
+            return Err(format!(
+                "{}: the metric's complexity on this mesh is {own}; are mesh and metric in the same units?",
+                self.mesh.display()
+            ));
+        }
         if let Some(target) = self.complexity.filter(|_| !is_made && !self.is_bounded()) {
             source.scale(team, field::complexity_factor(own, target).ln());
         }

@@ -57,6 +57,16 @@ pub fn metric_path(mesh: &Path) -> PathBuf {
     mesh.with_extension("solb")
 }
 
+/// Why a mesh stopped growing, and what helps.
+const STOPPED_GROWING: &str = "memory ran out, or there are far more vertices than the metric's complexity accounts for: then no mesh meets it. \
+     On a curved wall it asks for cells much flatter than the wall bends within an edge, or its sizes differ by orders of magnitude within \
+     a cell, or are many times the domain in some directions; bound it by --aspect-ratio, --hmax or --gradation, or with --field leave \
+     the geometry in (no --no-geometry)";
+
+/// Why bad tetrahedra were not tried.
+const UNREPAIRED: &str = "more than a mesh has that meets its metric, and the last of them were not tried again; bound the metric by \
+     --aspect-ratio or --gradation";
+
 /// The report of a run.
 #[derive(Serialize)]
 pub struct Report {
@@ -73,6 +83,8 @@ pub struct Report {
     /// Boundary vertices, from 0, that found no room on the model: their tetrahedra would be inverted at its closest point.
     off_model: Vec<u32>,
     overgrown: bool,
+    /// Tetrahedra of a mean ratio below 0.5 that were left untried in the end, since there were too many.
+    unrepaired: usize,
     /// Surface triangles beyond --normal-deviation or --hausdorff.
     deviating: usize,
     /// Pairs of boundary triangles that cross, and the first of them; indices count from 0.
@@ -120,6 +132,7 @@ impl Report {
             fidelity,
             off_model: extracted.off_model,
             overgrown: adapted.overgrown,
+            unrepaired: adapted.unrepaired,
             deviating: adapted.deviating,
             crossings: extracted.crossings,
             operations: operations(&adapted.work),
@@ -164,12 +177,10 @@ impl Report {
             );
         }
         if self.overgrown {
-            table.row(
-                "stopped growing",
-                "memory ran out, or there are far more vertices than the metric's complexity accounts for: then it asks on a curved wall \
-                 for cells much flatter than the wall bends within an edge; bound it by --aspect-ratio or --hmax, or with --field leave the \
-                 geometry in (no --no-geometry)",
-            );
+            table.row("stopped growing", STOPPED_GROWING);
+        }
+        if self.unrepaired > 0 {
+            table.row("left as they are", format_args!("{} bad tetrahedra: {UNREPAIRED}", self.unrepaired));
         }
         table.line("");
         table.line(&format!("{:<14}{:>12}{:>12}{:>9}{:>10}", "operation", "attempts", "done", "sweeps", "seconds"));

@@ -6,7 +6,7 @@ use crate::cli::terminal::PrintError;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Read, Solution, read_mesh_on, read_solution_on};
 use crate::mesh::vector::distance;
-use crate::metric::{Field, Limits, Sym3, field};
+use crate::metric::{Field, Limits, Sym3, field, held};
 use crate::tasks::{Pool, Team};
 use std::path::{Path, PathBuf};
 
@@ -194,6 +194,7 @@ pub fn all_logs(run: &RunArguments, team: Team<'_>, path: &Path) -> Result<Vec<S
 
 /// The complexity of ln M on a mesh (`path` is for the error): positive.
 pub fn complexity(team: Team<'_>, path: &Path, mesh: &TetMesh, logs: &[Sym3]) -> Result<f64, String> {
+    held::check(team, logs.len(), |v| logs[v]).map_err(|error| format!("{}: {error}", path.display()))?;
     let complexity = field::complexity_of_logs(team, mesh, logs);
     if complexity > 0.0 && complexity.is_finite() {
         return Ok(complexity);

@@ -1,18 +1,27 @@
-//! When a mesh has more vertices than its metric can account for, it stops growing.
+//! A mesh may have so many vertices as its metric can account for, and some beside; then it stops growing.
 //!
-//! A unit mesh has about two vertices a unit of complexity (METHOD.md §1), near walls three. Where a metric asks on a curved wall for cells
-//! so flat that the wall rises by many of them within one edge, triangles of that shape would stand across the wall: edges are cut until the
-//! wall is flat between their ends, whatever their length, and each cut asks for more. Such a mesh would grow until memory ends.
+//! A unit mesh has about two vertices a unit of complexity (METHOD.md §1), near walls three. Some metrics can be met by no mesh, and
+//! would let it grow until memory ends: on a curved wall cells so flat that the wall rises by many of them within one edge (edges are cut
+//! until the wall is flat between their ends, whatever their length, and each cut asks for more); sizes that differ by many orders
+//! within a cell, or that are many times the domain in some directions.
 use super::Pipeline;
-use crate::adapt::core::ids::VertexId;
-use crate::mesh::vector::volume6;
+use crate::adapt::core::ids::{FACE, TetId, VertexId};
+use crate::mesh::vector::{area2, norm, volume6};
+use crate::metric::Sym3;
 use crate::tasks::GRAIN;
 
 /// Vertices a unit of complexity that no mesh of a metric that can be met has.
 const MOST_A_COMPLEXITY: f64 = 8.0;
 
-/// Vertices that a mesh may have whatever its complexity, beside twice those of the input.
-const ALWAYS_ALLOWED: f64 = 20_000.0;
+/// Vertices a unit of area, in the two greatest sizes: a domain thinner than its cells has more surface than complexity. A surface
+/// mesh of unit edges has 1.15.
+const MOST_AN_AREA: f64 = 4.0;
+
+/// Vertices that a mesh may have whatever its metric, beside twice those of the input.
+const ALWAYS_ALLOWED: f64 = 1_000.0;
+
+/// And where the user bounds how far the surface strays from the model: how many vertices that takes, no metric tells.
+const FOR_THE_SURFACE: f64 = 20_000.0;
 
 impl Pipeline<'_, '_> {
     /// Complexity of the metric on the mesh as it is: Σ √det M |k| over the tetrahedra, the metric the mean of the vertices'.
@@ -28,6 +37,34 @@ impl Pipeline<'_, '_> {
         })
     }
 
+    /// Complexity of the metric between the vertices of the mesh too, which where it is coarse may not know of a layer.
+    fn full_complexity(&self) -> f64 {
+        let store = &self.context.store;
+        let corners = |t: usize| {
+            let t = TetId(t as u32);
+            store.is_tet(t).then(|| store.vertices(t).map(|v| store.position(v)))
+        };
+        self.context.source.complexity_within(self.team(), store.tet_bound(), corners)
+    }
+
+    /// Area of the boundary and of what lies between regions, in the two greatest sizes: layers across it count nothing.
+    fn area(&self) -> f64 {
+        let store = &self.context.store;
+        self.team().sum(GRAIN, store.tet_bound(), |range| {
+            let of = |t: TetId, i: usize| {
+                let corners = FACE[i].map(|k| store.vertices(t)[k]);
+                let [a, b, c] = corners.map(|v| store.position(v));
+                let logs = corners.map(|v| store.log(v));
+                let mean: Sym3 = Sym3(std::array::from_fn(|k| logs.iter().map(|log| log.0[k]).sum::<f64>() / 3.0));
+                let [least, middle, _] = mean.eigen().values;
+                let sides = if store.neighbour(t, i).is_some() { 0.5 } else { 1.0 };
+                0.5 * sides * norm(area2(a, b, c)) * (0.5 * (least + middle)).exp()
+            };
+            let tagged = |t: TetId| (0..4).filter(move |&i| store.tags(t)[i] != 0).map(move |i| (t, i));
+            store.live_tets_in(range).flat_map(tagged).map(|(t, i)| of(t, i)).sum()
+        })
+    }
+
     /// Live vertices.
     pub(super) fn live(&self) -> usize {
         let store = &self.context.store;
@@ -35,14 +72,44 @@ impl Pipeline<'_, '_> {
         parts.into_iter().sum()
     }
 
+    /// Live tetrahedra.
+    pub(super) fn live_tets(&self) -> usize {
+        let store = &self.context.store;
+        let parts = self.team().chunks(GRAIN, store.tet_bound(), |range| store.live_tets_in(range).count());
+        parts.into_iter().sum()
+    }
+
     /// Whether the mesh may still grow; once it may not, it may no more in this run.
     pub(super) fn may_grow(&mut self) -> bool {
-        let allowed = ALWAYS_ALLOWED + 2.0 * self.input as f64;
-        let live = self.live() as f64;
-        if !self.overgrown && live > allowed {
-            self.overgrown = live > allowed + MOST_A_COMPLEXITY * self.complexity();
-        }
+        self.overgrown = self.overgrown || !self.is_accounted_for(self.live());
         !self.overgrown
+    }
+
+    /// Of the items of a sweep that each add a vertex as many as may be, the first ones: of a metric that can be met all.
+    pub(super) fn no_more_than_allowed<T>(&self, items: &mut Vec<T>) {
+        let live = self.live();
+        // What is refused is an item too, so that twice as many leave room enough.
+        if !self.is_accounted_for((live + items.len()) / 2) {
+            items.truncate(((2.0 * self.allowed()) as usize).saturating_sub(live));
+        }
+    }
+
+    /// Whether input and metric account for so many vertices: what is quickly known is asked first.
+    fn is_accounted_for(&self, vertices: usize) -> bool {
+        let vertices = vertices as f64;
+        let always = self.always_allowed();
+        vertices <= always || vertices <= always + MOST_A_COMPLEXITY * self.complexity() || vertices <= self.allowed()
+    }
+
+    /// Vertices that the mesh may have whatever its metric.
+    fn always_allowed(&self) -> f64 {
+        let for_the_surface = if self.surface.is_some() { FOR_THE_SURFACE } else { 0.0 };
+        ALWAYS_ALLOWED + for_the_surface + 2.0 * self.input as f64
+    }
+
+    /// Vertices that the mesh may have.
+    fn allowed(&self) -> f64 {
+        self.always_allowed() + MOST_A_COMPLEXITY * self.full_complexity() + MOST_AN_AREA * self.area()
     }
 }
 
