@@ -2,6 +2,7 @@
 mod growth;
 mod surface_bounds;
 mod thinning;
+mod voids;
 
 use crate::adapt::core::context::{Context, LONG, Limits};
 use crate::adapt::core::edge_list;
@@ -112,6 +113,8 @@ pub struct Pipeline<'c, 'm> {
     pub overgrown: bool,
     /// Tetrahedra when the store was last renumbered.
     ordered: usize,
+    /// When the narrow voids were last looked for.
+    voids: voids::Known,
 }
 
 impl<'c, 'm> Pipeline<'c, 'm> {
@@ -141,6 +144,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             input,
             overgrown: false,
             ordered,
+            voids: voids::Known::default(),
         }
     }
 
@@ -450,6 +454,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.make_room(if kind == Kind::Split { items.len() } else { 0 });
         self.context.store.tick();
         let start = Instant::now();
+        self.find_voids();
         self.observer.begin(kind, self.pass, items.len());
         let advance = |n: usize| self.observer.advance(n);
         let counts = schedule::run(operation, items, self.context, &mut self.states, (self.execution, kind), &advance);
