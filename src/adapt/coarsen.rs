@@ -2,9 +2,11 @@
 //!
 //! The mesh is mapped onto itself: some vertices stay, each of the others goes onto a neighbour that stays, and tetrahedra of which two
 //! vertices meet vanish. The boundary is mapped onto itself, so the map covers the domain once; where all tetrahedra that are left are
-//! positive they therefore fill it without overlap, and their faces match. No neighbours need be known, and nothing is written but a
+//! positive they therefore fill it without overlap, and their faces match. Where the boundary is curved its new triangles may pass through
+//! others across a void, so there they are held against each other ([`apart`]). No neighbours need be known, and nothing is written but a
 //! word a vertex and what is left: a round goes through the memory a few times, while thinning vertex by vertex goes through it
 //! for each sixth of the vertices.
+mod apart;
 mod level;
 mod repair;
 mod surface;
@@ -65,7 +67,7 @@ pub fn coarsened(
         if hints.is_empty() {
             hints = balls.firsts();
         }
-        level = level.coarser(&balls);
+        level = level.coarser(team, &balls);
         if (before - level.points.len()) as f64 <= LITTLE * before as f64 {
             break;
         }

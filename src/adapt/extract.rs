@@ -102,12 +102,11 @@ pub fn extract(
 
 /// Where the boundary passes through itself, by the numbers of the triangles.
 fn crossings(team: Team<'_>, vertices: &[Vec3], triangles: &[Triangle]) -> Crossings {
-    let boundary: Vec<u32> =
-        triangles.iter().zip(0..).filter(|(triangle, _)| triangle.outward.is_some()).map(|(_, i)| i).collect();
-    let nodes = |i: usize| triangles[boundary[i] as usize].outward.unwrap_or_default();
-    let mut found = crossing::crossings(team, boundary.len(), |i| nodes(i).map(|v| vertices[v as usize]), TOLD);
+    let boundary = triangles.iter().zip(0..).filter_map(|(triangle, i)| Some((triangle.outward?, i)));
+    let (nodes, numbers): (Vec<[u32; 3]>, Vec<usize>) = boundary.unzip();
+    let mut found = crossing::crossings(team, &nodes, |v| vertices[v as usize], TOLD);
     for told in &mut found.first {
-        told.triangles = told.triangles.map(|i| boundary[i] as usize);
+        told.triangles = told.triangles.map(|i| numbers[i]);
     }
     found
 }

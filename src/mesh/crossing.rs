@@ -2,7 +2,7 @@
 use super::TetMesh;
 use super::adjacency::{FACES, MatchedFaces, NONE};
 use super::box_tree::{Bounds, BoxTree};
-use super::triangle_pair::{Corners, meeting};
+use super::triangle_pair::{Corners, crossing};
 use super::vector::Vec3;
 use crate::tasks::Team;
 use serde::Serialize;
@@ -34,34 +34,60 @@ pub fn of_boundary(team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, told: u
     let triangles = team.collect(1 << 12, mesh.tets.len(), |range, found| {
         for t in range {
             let open = (0..4).filter(|&i| faces.neighbours[t][i] == NONE);
-            found.extend(open.map(|i| FACES[i].map(|k| mesh.vertices[mesh.tets.nodes[t][k] as usize])));
+            found.extend(open.map(|i| FACES[i].map(|k| mesh.tets.nodes[t][k])));
         }
     });
-    crossings(team, triangles.len(), |i| triangles[i], told)
+    crossings(team, &triangles, |v| mesh.vertices[v as usize], told)
 }
 
-/// Pairs of triangles, all looking outward, that have more in common than corners and edges ([`meeting`]); of these so many are told.
-/// The result does not depend on the threads.
-pub fn crossings(team: Team<'_>, count: usize, corners: impl Fn(usize) -> Corners + Sync, told: usize) -> Crossings {
-    if count == 0 {
+/// Pairs of triangles, all looking outward, that pass through each other ([`crossing`]); of these so many are told. The result does not
+/// depend on the threads.
+pub fn crossings<I: Copy + PartialEq + Sync>(
+    team: Team<'_>,
+    triangles: &[[I; 3]],
+    at: impl Fn(I) -> Vec3 + Sync,
+    told: usize,
+) -> Crossings {
+    crossings_of(team, triangles, at, |_| true, crossing, told)
+}
+
+/// A test of two triangles, by their nodes and corners, that gives where they meet.
+pub type Test<I> = fn((&[I; 3], &Corners), (&[I; 3], &Corners)) -> Option<Vec3>;
+
+/// As [`crossings`], of the triangles that are asked for, with each other and with all, by a test.
+pub fn crossings_of<I: Copy + PartialEq + Sync>(
+    team: Team<'_>,
+    triangles: &[[I; 3]],
+    at: impl Fn(I) -> Vec3 + Sync,
+    is_asked: impl Fn(usize) -> bool + Sync,
+    test: Test<I>,
+    told: usize,
+) -> Crossings {
+    let count = triangles.len();
+    if !(0..count).any(&is_asked) {
         return Crossings::default();
     }
+    let corners = |i: usize| triangles[i].map(&at);
     let tree = BoxTree::new(count, |i| bounds(&corners(i as usize)));
     let parts = team.chunks(GRAIN, count, |range| {
         let mut found = Crossings::default();
         let mut near: Vec<usize> = Vec::new();
-        for i in range {
+        for i in range.filter(|&i| is_asked(i)) {
             let a = corners(i);
             let around = bounds(&a);
             near.clear();
-            tree.overlapping(&around, |j| near.extend((j as usize > i).then_some(j as usize)));
+            tree.overlapping(&around, |j| near.push(j as usize));
             near.sort_unstable();
-            for &j in &near {
+            // A pair of two that are asked for is found by the first of them.
+            for &j in near.iter().filter(|&&j| j != i && (j > i || !is_asked(j))) {
                 let b = corners(j);
-                let Some(at) = overlap(&around, &b).then(|| meeting(&a, &b)).flatten() else { continue };
+                let Some(at) = overlap(&around, &b).then(|| test((&triangles[i], &a), (&triangles[j], &b))).flatten()
+                else {
+                    continue;
+                };
                 found.count += 1;
                 if found.first.len() < told {
-                    found.first.push(Crossing { triangles: [i, j], at });
+                    found.first.push(Crossing { triangles: [i.min(j), i.max(j)], at });
                 }
             }
         }
@@ -106,14 +132,15 @@ mod tests {
         let count = vertices.len() as u32;
         mesh.vertices.extend(vertices.iter().map(|p| p.map(|x| 0.71 * x + 0.5)));
         mesh.triangles.nodes.extend(triangles.iter().map(|t| t.map(|v| v + count)));
-        let corners = |i: usize| mesh.triangles.nodes[i].map(|v| mesh.vertices[v as usize]);
-        let count = mesh.triangles.len();
-        let alone = crossings(Team::alone(), count, corners, 5);
+        let at = |v: u32| mesh.vertices[v as usize];
+        let all = &mesh.triangles.nodes;
+        let alone = crossings(Team::alone(), all, at, 5);
         assert!(alone.count > 20 && alone.first.len() == 5, "{alone:?}");
         // Every pair is there once; one of each cube.
         let mut plain = 0;
         for i in 0..triangles.len() {
-            plain += (0..2 * triangles.len()).filter(|&j| j > i && meeting(&corners(i), &corners(j)).is_some()).count();
+            let crosses = |j: usize| crossing((&all[i], &all[i].map(at)), (&all[j], &all[j].map(at))).is_some();
+            plain += (i + 1..all.len()).filter(|&j| crosses(j)).count();
         }
         assert_eq!(alone.count, plain);
         for Crossing { triangles: [i, j], at } in &alone.first {
@@ -123,7 +150,7 @@ mod tests {
         for threads in [2, 3] {
             let pool = Pool::new(threads).unwrap();
             let team = Team::new(&pool, Plan::default());
-            assert_eq!(crossings(team, count, corners, 5), alone);
+            assert_eq!(crossings(team, all, at, 5), alone);
         }
     }
 }

@@ -32,8 +32,7 @@ pub enum FlawKind {
     PinchedVertex,
     /// A vertex of no tetrahedron.
     HangingVertex,
-    /// Two triangles of the boundary pass through each other, or touch beside their corners and edges: the mesh overlaps itself. Looked
-    /// for where all tetrahedra are positive.
+    /// Two triangles of the boundary pass through each other: the mesh overlaps itself. Looked for where all tetrahedra are positive.
     CrossingTriangles,
 }
 

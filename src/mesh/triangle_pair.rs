@@ -1,15 +1,46 @@
-//! Whether two triangles meet where they should not: exact, by the coordinates of their corners alone.
+//! Whether two triangles of a boundary pass through each other: exact.
 //!
-//! Corners with equal coordinates count as one. So triangles of a mesh that was taken apart at an edge or a vertex ([`super::pinch`]) may
-//! touch there, as neighbours do.
+//! Bodies may touch, in whatever way: a mesh that was taken apart at an edge or a vertex ([`super::split_nonmanifold`]) does, and so does one of parts in
+//! contact. Nor is it a crossing where rounding brings a corner through what it touches. So before they are held against each other, triangles
+//! draw back into their bodies by next to nothing.
+use super::locate::nearest_on_triangle;
 use super::predicate::orientation;
-use super::vector::{Vec3, add, dot, lerp, norm, scale, sub, unit};
+use super::vector::{Vec3, add, area2, dot, lerp, norm, scale, sub, unit};
 use robust::Coord;
 
 /// A triangle, by its corners.
 pub type Corners = [Vec3; 3];
 
-/// A point where two triangles that look outward meet beside the corners and edges that they share; none where they do not. Equal
+/// What a triangle draws back by, in parts of its size.
+const DRAWN_BACK: f64 = 1e-9;
+
+/// The same in parts of its distance from the origin, which is rounded.
+const ROUNDING: f64 = 4e-15;
+
+/// A point where two triangles that look outward, of these nodes, pass through each other; none where they only touch. Those that share an
+/// edge do where they are folded onto each other.
+pub fn crossing<I: PartialEq>((nodes_a, a): (&[I; 3], &Corners), (nodes_b, b): (&[I; 3], &Corners)) -> Option<Vec3> {
+    if are_apart(a, b) {
+        return None;
+    }
+    let [of_a, of_b] =
+        [[nodes_a, nodes_b], [nodes_b, nodes_a]].map(|[of, others]| [0, 1, 2].map(|k| others.contains(&of[k])));
+    if of_a.iter().filter(|shared| **shared).count() > 1 {
+        return meeting(a, b);
+    }
+    meeting(&drawn_back(a, of_a), &drawn_back(b, of_b))
+}
+
+/// A triangle drawn back against its normal, all but the corners that stay.
+fn drawn_back(a: &Corners, stays: [bool; 3]) -> Corners {
+    let [p, q, r] = *a;
+    let size = norm(sub(q, p)).max(norm(sub(r, p)));
+    let from = a.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let step = scale(unit(area2(p, q, r)), -(DRAWN_BACK * size).max(ROUNDING * from));
+    [0, 1, 2].map(|k| if stays[k] { a[k] } else { add(a[k], step) })
+}
+
+/// A point where two triangles that look outward meet, or touch, beside the corners and edges that they share, by their coordinates; none where they do not. Equal
 /// triangles that face each other touch and do not meet; equal ones that look the same way do. Degenerate triangles meet nothing.
 pub fn meeting(a: &Corners, b: &Corners) -> Option<Vec3> {
     if has_twice(a) || has_twice(b) || are_apart(a, b) {
@@ -125,6 +156,33 @@ fn segment_through([p, q]: [Vec3; 2], [at_p, at_q]: [f64; 2], b: &Corners, plane
     let turns = [0, 1, 2].map(|k| orientation(p, q, b[k], b[(k + 1) % 3]));
     let is_through = turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0);
     is_through.then(|| lerp(p, q, at_p / (at_p - at_q)))
+}
+
+/// Distance of two triangles; 0 where they meet.
+pub fn distance(a: &Corners, b: &Corners) -> f64 {
+    let plane_meets = |a: &Corners, b: &Corners| Plane::of(b).is_some() && edges_through(a, b, 0b111).is_some();
+    if plane_meets(a, b) || plane_meets(b, a) {
+        return 0.0;
+    }
+    let to_triangle = |p: Vec3, t: &Corners| {
+        let weights = nearest_on_triangle(p, *t);
+        let foot = (0..3).fold([0.0; 3], |sum, k| add(sum, scale(t[k], weights[k])));
+        norm(sub(foot, p))
+    };
+    let corners = (0..3).fold(f64::INFINITY, |least, k| least.min(to_triangle(a[k], b)).min(to_triangle(b[k], a)));
+    let edge = |t: &Corners, k: usize| [t[k], t[(k + 1) % 3]];
+    (0..9).fold(corners, |least, k| least.min(segments_distance(edge(a, k / 3), edge(b, k % 3))))
+}
+
+/// Distance of two segments where it is not at an end of one; else more.
+fn segments_distance([p, q]: [Vec3; 2], [r, s]: [Vec3; 2]) -> f64 {
+    let (u, v, w) = (sub(q, p), sub(s, r), sub(p, r));
+    let (uu, uv, vv, uw, vw) = (dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w));
+    let determinant = uu * vv - uv * uv;
+    let (x, y) = ((uv * vw - vv * uw) / determinant, (uu * vw - uv * uw) / determinant);
+    let is_within = |x: f64| (0.0..=1.0).contains(&x);
+    // No number of parallel ones, which are nearest at an end of one too.
+    if is_within(x) && is_within(y) { norm(sub(lerp(p, q, x), lerp(r, s, y))) } else { f64::INFINITY }
 }
 
 /// Two of the three coordinates: the plane that a triangle is looked at in.
@@ -249,6 +307,29 @@ mod tests {
         assert!(meet(FLAT, at([1.0, 1.0, 1.0], [1.0, 1.0, -1.0])));
         assert!(meet(FLAT, at([1.0, 1.0, 0.0], [1.0, 1.0, -1.0])));
         assert!(!meet(FLAT, at([-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0])));
+    }
+
+    #[test]
+    fn what_touches_does_not_cross() {
+        let crosses = |b: Corners| {
+            let found = crossing((&[0, 1, 2], &FLAT), (&[3, 4, 5], &b)).is_some();
+            assert_eq!(crossing((&[3, 4, 5], &b), (&[0, 1, 2], &FLAT)).is_some(), found);
+            found
+        };
+        // A corner on it, and through it by rounding, by more; FLAT looks up, so its body is below.
+        for (z, expected) in [(0.0, false), (-1e-13, false), (-1e-6, true), (1e-6, false)] {
+            assert_eq!(crosses([[1.0, 1.0, z], [2.0, 1.0, 1.0], [1.0, 2.0, 1.0]]), expected, "{z}");
+        }
+        // In its plane: one that faces it, one that looks the same way.
+        assert!(!crosses([[0.5, 0.5, 0.0], [0.5, 1.5, 0.0], [1.5, 0.5, 0.0]]));
+        assert!(crosses([[0.5, 0.5, 0.0], [1.5, 0.5, 0.0], [0.5, 1.5, 0.0]]));
+        // Edges along each other, at an edge of two bodies that touch there; with an end in common, and with a node.
+        assert!(!crosses([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0]]));
+        assert!(!crosses([[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 0.0, 2.0]]));
+        let beside = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0]];
+        assert_eq!(crossing((&[0, 1, 2], &FLAT), (&[0, 4, 5], &beside)), None);
+        let through = [[0.0, 0.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0]];
+        assert!(crossing((&[0, 1, 2], &FLAT), (&[0, 4, 5], &through)).is_some());
     }
 
     #[test]

@@ -1,4 +1,5 @@
 //! A mesh between two rounds of coarsening.
+use super::apart;
 use super::repair::MapRepair;
 use super::surface::Surface;
 use super::vertex_map::VertexMap;
@@ -102,10 +103,14 @@ impl<'m> Level<'m> {
     }
 
     /// The level after one round.
-    pub fn coarser(self, balls: &Balls) -> Self {
+    pub fn coarser(self, team: Team<'_>, balls: &Balls) -> Self {
         let surface = Surface::of(&self);
         let mut map = VertexMap::of(&self, balls, &surface);
-        MapRepair { level: &self, balls, surface: &surface }.repair(&mut map);
+        let repair = MapRepair { level: &self, balls, surface: &surface };
+        repair.repair(&mut map);
+        while apart::keep(team, &self, &surface, &mut map) {
+            repair.repair(&mut map);
+        }
         self.mapped(&map)
     }
 

@@ -6,6 +6,9 @@ use crate::mesh::vector::{Vec3, add, area2, dot, scale, unit};
 /// Least cosine between a triangle and what it comes from, and between it and the surface at its vertices.
 const LEAST_COSINE: f64 = 0.94;
 
+/// A triangle that turns by less than this cosine stays in its plane.
+const STILL: f64 = 1.0 - 1e-12;
+
 /// The triangles at the vertices of the boundary.
 pub struct Surface {
     /// For each vertex its place here, [`NONE`] inside.
@@ -63,6 +66,13 @@ impl Surface {
                 }
             }
         }
+    }
+
+    /// Whether a triangle leaves its plane and stays one.
+    pub fn bends(&self, level: &Level, t: u32, map: &VertexMap) -> bool {
+        let nodes = &level.triangles[t as usize];
+        let mapped = map.map(nodes);
+        mapped != *nodes && is_proper(&mapped) && dot(unit(normal(level, &mapped)), unit(normal(level, nodes))) < STILL
     }
 
     /// Whether a triangle vanishes, stays as it is, or still lies along the surface.

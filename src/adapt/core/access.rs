@@ -19,6 +19,9 @@ pub trait Access: Send {
     /// Whether a claim that is refused now is refused until the round ends. Then it is best to claim early what will be needed.
     const IS_LASTING: bool = false;
 
+    /// Whether no other thread works on the mesh.
+    const IS_ALONE: bool = false;
+
     /// Claims a vertex for the operation at hand; claiming twice is harmless.
     fn claim(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal>;
 
@@ -36,6 +39,8 @@ pub trait Access: Send {
 pub struct Exclusive;
 
 impl Access for Exclusive {
+    const IS_ALONE: bool = true;
+
     #[inline(always)]
     fn claim(&mut self, _store: &Store, _v: VertexId) -> Result<(), Refusal> {
         Ok(())

@@ -5,6 +5,7 @@
 use super::access::Access;
 use super::ids::{FACE, TetId, VertexId};
 use super::refusal::Refusal;
+use super::voids::Guarded;
 use super::worker::Worker;
 
 /// A tetrahedron to be made.
@@ -85,15 +86,18 @@ impl<A: Access> Worker<'_, '_, A> {
     ///
     /// # Errors
     /// `Geometry` when something required would go, `Topology` when old and new tetrahedra have different
-    /// boundaries, `Full` when there are no more ids. The mesh is unchanged then.
+    /// boundaries, `Full` when there are no more ids, `Crossing` when the boundary would pass through itself. The mesh is
+    /// unchanged then.
     pub fn commit(&mut self) -> Result<(), Refusal> {
         let Replacement { old, new, dead, .. } = &self.state.replacement;
         let stays = |a, b| new.iter().any(|tet| tet.vertices.contains(&a) && tet.vertices.contains(&b));
         self.context.required.check(self.store, old, dead, stays)?;
         self.enter_old_faces()?;
         self.match_new_faces()?;
+        let guarded = self.guard_surface()?;
         self.number_new_tets()?;
         self.write_new_tets();
+        self.note_surface(guarded);
         Ok(())
     }
 
@@ -185,6 +189,14 @@ impl<A: Access> Worker<'_, '_, A> {
         let outside_all = old.iter().flat_map(|&t| self.store.neighbours(t));
         let outside_all = outside_all.filter(|n| n.is_some() && !state.set.contains(n.0)).count();
         if halves == 0 && declared == 0 && outside_taken == outside_all { Ok(()) } else { Err(Refusal::Topology) }
+    }
+
+    /// Holds the new boundary against what is near it across a void.
+    fn guard_surface(&mut self) -> Result<Guarded, Refusal> {
+        let links = std::mem::take(&mut self.state.replacement.links);
+        let result = self.guard_replacement(|index, i| matches!(links[index][i], Link::Surface { .. }));
+        self.state.replacement.links = links;
+        result
     }
 
     /// Gives the new tetrahedra ids: those of the old ones first.

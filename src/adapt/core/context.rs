@@ -2,6 +2,7 @@
 use super::ids::VertexId;
 use super::required::Required;
 use super::store::Store;
+use super::voids::Voids;
 use crate::geometry::{Evaluate, Geometry, Model, SurfaceKind};
 use crate::mesh::vector::Vec3;
 use crate::metric::Source;
@@ -90,6 +91,8 @@ pub struct Context<'m> {
     pub required: Required,
     /// For each vertex of the input its id. For vertices that are gone the value means nothing.
     pub ids: Vec<VertexId>,
+    /// Where the boundary is near itself across a void.
+    pub voids: Voids,
     /// Limits of the present pass.
     pub limits: Limits,
 }
@@ -105,13 +108,24 @@ impl<'m> Context<'m> {
         });
         let planes = planes.collect();
         let ids = (0..store.vertex_bound() as u32).map(VertexId).collect();
-        Self { store, source, model, planes, required: Required::default(), ids, limits: Limits::default() }
+        Self {
+            store,
+            source,
+            model,
+            planes,
+            required: Required::default(),
+            ids,
+            voids: Voids::default(),
+            limits: Limits::default(),
+        }
     }
 
     /// Renumbers the mesh along a space-filling curve; returns the new id of each old one. Pools of free ids must be emptied.
     pub fn reorder(&mut self, team: Team<'_>) -> Vec<VertexId> {
         let number = self.store.reorder(team);
         self.required.renumber(&number);
+        // Its triangles are known by the old ids.
+        self.voids = Voids::default();
         team.fill(GRAIN, &mut self.ids, |_, ids| {
             for id in ids.iter_mut().filter(|id| id.is_some()) {
                 *id = number[id.index()];

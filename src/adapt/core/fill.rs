@@ -6,7 +6,9 @@ use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, Side, TriangleIndex, sorted3};
+use crate::mesh::crossing::crossings_of;
 use crate::mesh::predicate::is_positive;
+use crate::mesh::triangle_pair::crossing;
 use crate::mesh::vector::Vec3;
 use crate::metric::{Source, Sym3, mean_ratios};
 use crate::tasks::{GRAIN, Team};
@@ -105,7 +107,10 @@ pub fn fill_known(
     filling.write_tets(faces);
     filling.tag_faces(faces)?;
     filling.join_ridges();
-    let unprojected = filling.leave_inverting();
+    let mut unprojected = filling.leave_inverting();
+    while filling.leave_crossing(faces, &mut unprojected) {
+        unprojected.append(&mut filling.leave_inverting());
+    }
     filling.set_metrics(source, logs, hints);
     let Filling { mut store, order, .. } = filling;
     store.note_order();
@@ -250,6 +255,29 @@ impl Filling<'_> {
                 return unprojected;
             }
         }
+    }
+
+    /// Where the boundary would pass through itself because of projected points, these go back to where they were; whether there were such.
+    fn leave_crossing(&self, faces: &MatchedFaces, unprojected: &mut Vec<VertexId>) -> bool {
+        let before = |v: VertexId| -> Vec3 { self.mesh.vertices[self.order.vertices[v.index()] as usize] };
+        let is_moved = |v: VertexId| self.store.position(v) != before(v);
+        let walls = self.team.collect(GRAIN, self.mesh.tets.len(), |range, walls| {
+            for t in range {
+                let open = (0..4).filter(|&i| faces.neighbours[t][i] == NONE);
+                walls.extend(open.map(|i| FACES[i].map(|k| self.id(self.mesh.tets.nodes[t][k]))));
+            }
+        });
+        let at = |v| self.store.position(v);
+        let crossings =
+            crossings_of(self.team, &walls, at, |i| walls[i].into_iter().any(is_moved), crossing, usize::MAX);
+        let many = unprojected.len();
+        for v in crossings.first.iter().flat_map(|crossing| crossing.triangles).flat_map(|i| walls[i]) {
+            if is_moved(v) {
+                self.store.set_position(v, before(v));
+                unprojected.push(v);
+            }
+        }
+        unprojected.len() > many
     }
 
     /// Gives every vertex its metric: the known one where the vertex is at its place in the mesh, else the source's.

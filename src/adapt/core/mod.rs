@@ -27,4 +27,5 @@ pub mod store;
 pub mod timed_evaluator;
 pub mod vertex_moves;
 pub mod vertex_replacement;
+pub mod voids;
 pub mod worker;

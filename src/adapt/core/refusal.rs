@@ -23,6 +23,8 @@ pub enum Refusal {
     Topology,
     /// The store has no room left before the next sweep.
     Full,
+    /// Two parts of the boundary would pass through each other, across a void.
+    Crossing,
 }
 
 impl Refusal {
@@ -32,7 +34,7 @@ impl Refusal {
     }
 
     /// All kinds, in the order of their counters.
-    pub const ALL: [Refusal; 9] = [
+    pub const ALL: [Refusal; 10] = [
         Refusal::Conflict,
         Refusal::Stale,
         Refusal::Geometry,
@@ -42,6 +44,7 @@ impl Refusal {
         Refusal::Normal,
         Refusal::Topology,
         Refusal::Full,
+        Refusal::Crossing,
     ];
 }
 
@@ -53,7 +56,7 @@ pub struct Counts {
     /// Carried out.
     pub done: u64,
     /// Refused, by reason, in the order of [`Refusal::ALL`].
-    pub refused: [u64; 9],
+    pub refused: [u64; 10],
 }
 
 impl Counts {

@@ -87,7 +87,8 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// Moves a claimed vertex, then calls `make_valid`. Where that is refused, the vertex goes back.
-    /// Until then its tetrahedra may be inverted, so `make_valid` has to replace all of them in one commit.
+    /// Until then its tetrahedra may be inverted, so `make_valid` has to replace all of them in one commit, which then knows that their
+    /// triangles on the boundary have moved.
     ///
     /// # Errors
     /// `Geometry` when the vertex must not move, else the refusal of `make_valid`.
@@ -100,14 +101,17 @@ impl<A: Access> Worker<'_, '_, A> {
         self.context.required.check_move(v)?;
         let before = self.vertex_state(v);
         self.write_vertex(v, to);
-        make_valid(self).inspect_err(|_| self.write_vertex(v, &before))
+        self.state.surface_change.moving = Some(v);
+        let result = make_valid(self).inspect_err(|_| self.write_vertex(v, &before));
+        self.state.surface_change.moving = None;
+        result
     }
 
     /// Moves a vertex whose ball is claimed to a place where all its tetrahedra are positive; `ratios` are their mean ratios there. `is_fair`
     /// judges the mesh with the vertex there; where it says no, the vertex goes back.
     ///
     /// # Errors
-    /// `Geometry` when the vertex must not move, `Normal` when it was not fair.
+    /// `Geometry` when the vertex must not move, `Normal` when it was not fair, `Crossing` when the boundary would pass through itself.
     pub fn move_in_ball(
         &mut self,
         v: VertexId,
@@ -117,7 +121,11 @@ impl<A: Access> Worker<'_, '_, A> {
         is_fair: impl FnOnce(&mut Self) -> bool,
     ) -> Result<(), Refusal> {
         let before = self.vertex_state(v);
-        self.with_vertex_at(v, to, |worker| if is_fair(worker) { Ok(()) } else { Err(Refusal::Normal) })?;
+        self.with_vertex_at(
+            v,
+            to,
+            |worker| if is_fair(worker) { worker.keep_apart(v, ball) } else { Err(Refusal::Normal) },
+        )?;
         let way = sub(to.placed.point, before.placed.point);
         let far = before.metric.quadratic(way) > FAR * FAR;
         for (&t, ratio) in ball.iter().zip(ratios) {
@@ -126,6 +134,14 @@ impl<A: Access> Worker<'_, '_, A> {
             if far { self.store.touch(t) } else { self.store.touch_moved(t) }
         }
         Ok(())
+    }
+
+    /// Moves a vertex whose ball is claimed to a place where all its tetrahedra are positive; their mean ratios are not known yet.
+    ///
+    /// # Errors
+    /// `Geometry` when the vertex must not move, `Crossing` when the boundary would pass through itself.
+    pub fn move_unmeasured(&mut self, v: VertexId, to: &VertexState, ball: &[TetId]) -> Result<(), Refusal> {
+        self.with_vertex_at(v, to, |worker| worker.keep_apart(v, ball))
     }
 
     /// Measures tetrahedra again after their vertices have moved, and stamps them so that all operations look at them.

@@ -37,6 +37,8 @@ pub struct State<'m> {
     pub shell: super::shell::Shell,
     /// Boundary vertices that are not yet on the model.
     pub unprojected: Vec<VertexId>,
+    /// What an operation does to the boundary.
+    pub surface_change: super::voids::SurfaceChange,
     /// Tetrahedra to be measured together.
     pub batch: crate::metric::batch::Batch,
 }
@@ -56,6 +58,7 @@ impl<'m> State<'m> {
             passing_ball: Ball::default(),
             shell: super::shell::Shell::default(),
             unprojected: Vec::new(),
+            surface_change: super::voids::SurfaceChange::default(),
             batch: crate::metric::batch::Batch::default(),
         }
     }

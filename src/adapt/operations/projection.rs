@@ -99,8 +99,12 @@ impl<A: Access> Worker<'_, '_, A> {
             let point = lerp(placed.point, goal.point, step);
             if self.is_positive_at(v, point, ball) {
                 let to = self.state_at(Placed { point, ..placed }, hint);
-                self.with_vertex_at(v, &to, |_| Ok(()))?;
-                break;
+                match self.move_unmeasured(v, &to, ball) {
+                    Ok(()) => break,
+                    // Nearer to where it was it may keep out of what is across a void.
+                    Err(Refusal::Crossing) => {}
+                    Err(refusal) => return Err(refusal),
+                }
             }
             step *= 0.5;
         }

@@ -2,6 +2,7 @@
 mod growth;
 mod surface_bounds;
 mod thinning;
+mod voids;
 
 use crate::adapt::core::context::{Context, LONG, Limits};
 use crate::adapt::core::edge_list;
@@ -123,6 +124,8 @@ pub struct Pipeline<'c, 'm> {
     pub unrepaired: usize,
     /// Tetrahedra when the store was last renumbered.
     ordered: usize,
+    /// When the narrow voids were last looked for.
+    voids: voids::Known,
 }
 
 impl<'c, 'm> Pipeline<'c, 'm> {
@@ -154,6 +157,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             repaired: 0,
             unrepaired: 0,
             ordered,
+            voids: voids::Known::default(),
         }
     }
 
@@ -477,6 +481,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.make_room(if kind == Kind::Split { items.len() } else { 0 });
         self.context.store.tick();
         let start = Instant::now();
+        self.find_voids();
         self.observer.begin(kind, self.pass, items.len());
         let advance = |n: usize| self.observer.advance(n);
         let counts = schedule::run(operation, items, self.context, &mut self.states, (self.execution, kind), &advance);

@@ -176,6 +176,16 @@ impl Report {
                 format_args!("{count} pairs of triangles; the first: {} and {} at {at}", a + 1, b + 1),
             );
         }
+        let kept_apart: u64 = self.operations.values().filter_map(|operation| operation.refused.get("crossing")).sum();
+        if kept_apart > 0 {
+            table.row(
+                "kept apart",
+                format_args!(
+                    "{kept_apart} changes of the boundary were refused, which would have brought it through itself across a narrow void: \
+                     edges stay as short there as that needs"
+                ),
+            );
+        }
         if self.overgrown {
             table.row("stopped growing", STOPPED_GROWING);
         }

@@ -10,7 +10,8 @@ impl<A: Access> Worker<'_, '_, A> {
     ///
     /// # Errors
     /// `Topology` when a–b is not the edge of just two surface triangles of one face, both of this tetrahedron, or the edge across is on the
-    /// surface already; `Geometry` when the edge must stay; `Normal` when the surface would turn from its model.
+    /// surface already; `Geometry` when the edge must stay; `Normal` when the surface would turn from its model;
+    /// `Crossing` when it would pass through itself.
     pub fn remove_boundary_tet(&mut self, t: TetId, a: VertexId, b: VertexId) -> Result<(), Refusal> {
         let (v, n, tags) = (self.store.vertices(t), self.store.neighbours(t), self.store.tags(t));
         // The faces with the edge a–b lie opposite c and d, those that will be the surface opposite a and b.

@@ -67,7 +67,7 @@ impl<A: Access> Worker<'_, '_, A> {
         patch.fill(self.store, v, &ball.tets, &ball.link);
         let moved = self.descend(v, ball, &triangles, patch);
         self.state.star.surface = triangles;
-        if moved { Ok(()) } else { Err(Refusal::Shape) }
+        moved
     }
 
     /// Newton's step, whole and shortened; where a tetrahedron is flat, the pliant direction instead.
@@ -77,15 +77,14 @@ impl<A: Access> Worker<'_, '_, A> {
         ball: &Ball,
         triangles: &[([VertexId; 3], u32)],
         patch: &mut SmoothingPatch,
-    ) -> bool {
+    ) -> Result<(), Refusal> {
         let held = self.vertex_state(v);
         let from = held.placed.point;
         let Some(model) = patch.quadratic_model(from, &held.log, &held.metric) else {
             let limit = patch.energy(from, &held.log, &held.metric) * (1.0 - GAIN);
             let to = patch.pliant(from, &held.metric);
-            return STEPS
-                .into_iter()
-                .any(|step| self.move_to(v, &held, lerp(from, to, step), ball, triangles, patch, limit));
+            let targets = STEPS.map(|step| lerp(from, to, step));
+            return self.move_to_one(v, &held, targets, ball, triangles, patch, limit);
         };
         let step = self.newton_step(&held.placed, &model);
         let limit = model.energy * (1.0 - 0.5 * GAIN);
@@ -93,13 +92,34 @@ impl<A: Access> Worker<'_, '_, A> {
         // No number comes where the surface has no normal, as at a pole: the vertex stays.
         let saved = -0.5 * dot(model.gradient, step);
         if saved.is_nan() || saved < GAIN * model.energy {
-            return false;
+            return Err(Refusal::Shape);
         }
         let length = held.metric.quadratic(step).sqrt();
         let step = scale(step, (LONGEST / length).min(1.0));
-        [1.0, 0.4]
-            .into_iter()
-            .any(|part| self.move_to(v, &held, add(from, scale(step, part)), ball, triangles, patch, limit))
+        let targets = [1.0, 0.4].map(|part| add(from, scale(step, part)));
+        self.move_to_one(v, &held, targets, ball, triangles, patch, limit)
+    }
+
+    /// Moves the vertex to the first of the targets that is possible.
+    #[allow(clippy::too_many_arguments)]
+    fn move_to_one(
+        &mut self,
+        v: VertexId,
+        held: &VertexState,
+        targets: [Vec3; 2],
+        ball: &Ball,
+        triangles: &[([VertexId; 3], u32)],
+        patch: &mut SmoothingPatch,
+        limit: f64,
+    ) -> Result<(), Refusal> {
+        let mut result = Err(Refusal::Shape);
+        for target in targets {
+            result = self.move_to(v, held, target, ball, triangles, patch, limit);
+            if matches!(result, Ok(()) | Err(Refusal::Conflict)) {
+                break;
+            }
+        }
+        result
     }
 
     /// −H⁻¹g within the tangent space of the entity.
@@ -137,22 +157,23 @@ impl<A: Access> Worker<'_, '_, A> {
         triangles: &[([VertexId; 3], u32)],
         patch: &mut SmoothingPatch,
         limit: f64,
-    ) -> bool {
+    ) -> Result<(), Refusal> {
         let placed = self.place(held.placed.entity, target, &[v]);
         let mut hint = held.hint;
         let log = self.context.source.log_at(placed.point, &mut hint);
         if !patch.falls_below(limit, placed.point, &log) {
-            return false;
+            return Err(Refusal::Shape);
         }
         let metric = log.exp();
         if patch.with_lengths(placed.point, &metric) >= limit {
-            return false;
+            return Err(Refusal::Shape);
         }
         let before = (!triangles.is_empty()).then(|| self.worst_deviation(triangles));
         let to = VertexState { placed, log, metric, hint };
         let moved = self.move_in_ball(v, &to, &ball.tets, patch.mean_ratios(), |worker| {
             before.is_none_or(|before| worker.compare_normals(before, triangles, 0.0).is_ok())
         });
-        moved.is_ok()
+        // Where the surface holds it back the shapes get no better: that is how it is counted.
+        moved.map_err(|refusal| if refusal == Refusal::Normal { Refusal::Shape } else { refusal })
     }
 }

@@ -1,0 +1,72 @@
+//! Narrow voids: places where two parts of the boundary face each other, nearer than they may come to move.
+//!
+//! Inside, positive tetrahedra keep the mesh from overlapping itself. Across a void nothing does: the chords of its walls rise when their edges get
+//! longer, and one wall would pass through the other. So where walls are near ([`near`] finds these places between sweeps), each change of
+//! the surface is held against the triangles that are there ([`guard`]), by exact predicates, and refused where it would bring two of them
+//! through each other. Elsewhere nothing is asked, and without narrow voids nothing at all.
+//!
+//! What is near another thing across a void cannot be claimed by vertices, so such changes are made by one thread alone: beside others
+//! they are a conflict, and wait until the last of a sweep, which one thread does. So the mesh does not depend on the threads.
+mod guard;
+mod near;
+#[cfg(test)]
+mod tests;
+mod triangles;
+
+use crate::mesh::box_tree::{Bounds, BoxTree};
+use crate::mesh::triangle_pair::Corners;
+use std::sync::{PoisonError, RwLock, RwLockReadGuard};
+use triangles::Triangles;
+
+pub use guard::{Guarded, SurfaceChange};
+
+/// The narrow voids of a mesh.
+#[derive(Default)]
+pub struct Voids {
+    narrow: Option<Narrow>,
+}
+
+/// Where walls are near each other, and the boundary triangles there.
+struct Narrow {
+    /// Boxes about the triangles that were near others when they were looked for, with all that these may come to fill.
+    zone: BoxTree,
+    boxes: Vec<Bounds>,
+    /// The boundary triangles whose boxes meet the zone, always as they are.
+    triangles: RwLock<Triangles>,
+}
+
+impl Voids {
+    /// Whether there is none.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.narrow.is_none()
+    }
+}
+
+impl Narrow {
+    fn new(boxes: Vec<Bounds>) -> Self {
+        let zone = BoxTree::new(boxes.len(), |i| boxes[i as usize]);
+        Self { zone, boxes, triangles: RwLock::default() }
+    }
+
+    /// Whether a triangle's box meets the zone.
+    fn meets(&self, corners: &Corners) -> bool {
+        let around = bounds(corners, 0.0);
+        let mut met = false;
+        self.zone.overlapping(&around, |i| met |= overlap(&around, &self.boxes[i as usize]));
+        met
+    }
+
+    fn triangles(&self) -> RwLockReadGuard<'_, Triangles> {
+        self.triangles.read().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The box of a triangle, so much larger on all sides.
+fn bounds([p, q, r]: &Corners, margin: f64) -> Bounds {
+    [[0, 1, 2].map(|k| p[k].min(q[k]).min(r[k]) - margin), [0, 1, 2].map(|k| p[k].max(q[k]).max(r[k]) + margin)]
+}
+
+fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    (0..3).all(|k| a[0][k] <= b[1][k] && b[0][k] <= a[1][k])
+}

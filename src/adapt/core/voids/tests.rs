@@ -1,0 +1,73 @@
+use super::triangles::{Triangle, Triangles};
+use super::*;
+use crate::adapt::core::context::Context;
+use crate::adapt::core::fill::{self, Filled};
+use crate::adapt::core::ids::VertexId;
+use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
+use crate::geometry::{Discrete, Model};
+use crate::mesh::triangle_pair::meeting;
+use crate::mesh::{TetMesh, samples};
+use crate::metric::{Background, Source, Sym3};
+use crate::tasks::Team;
+
+/// The boxes of the zone of a mesh for a uniform size, and the triangles that are in it.
+fn zone(mesh: &TetMesh, size: f64) -> (usize, usize) {
+    let (model, place) = Discrete::from_mesh(Team::alone(), mesh, DEFAULT_RIDGE_ANGLE).expect("it has a surface");
+    let logs = vec![Sym3::IDENTITY.times(-2.0 * size.ln()); mesh.vertices.len()];
+    let background = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs);
+    let (model, source) = (Model::Discrete(model), Source::Background(background));
+    let Filled { store, .. } = fill::fill(Team::alone(), mesh, &place, &source).expect("it is valid");
+    let context = Context::new(store, &source, &model);
+    let voids = Voids::of(Team::alone(), &context);
+    let Some(narrow) = voids.narrow else { return (0, 0) };
+    assert!(narrow.meets(&[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 1.0]]));
+    assert!(!narrow.meets(&[[0.0; 3], [0.1, 0.0, 0.0], [0.1, 0.0, 0.1]]));
+    let triangles = narrow.triangles.into_inner().expect("nobody failed");
+    (narrow.boxes.len(), triangles.len())
+}
+
+#[test]
+fn walls_that_are_nearer_than_their_chords_rise() {
+    let mesh = samples::rod_in_bushing(0.01, 48, 6);
+    let (boxes, triangles) = zone(&mesh, 0.5);
+    // Both walls: 48 · 6 quadrilaterals each.
+    assert_eq!(boxes, 2 * 2 * 48 * 6);
+    assert!(triangles >= boxes);
+    // As fine as it is they stay where they are; a wide gap is none; and planes do not move.
+    assert_eq!(zone(&samples::rod_in_bushing(0.3, 48, 6), 0.13), (0, 0));
+    assert_eq!(zone(&samples::cube(4), 1.0), (0, 0));
+}
+
+#[test]
+fn triangles_are_found_as_they_come_and_go() {
+    let mut seed = 3u64;
+    let mut next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut all: Vec<Triangle> = Vec::new();
+    let mut triangles = Triangles::default();
+    for i in 0..600u32 {
+        // Of sizes from a thousandth to one.
+        let (size, at) = (10f64.powf(-3.0 * next()), [0; 3].map(|_| next()));
+        let corners = [0; 3].map(|_| at.map(|x| x + size * next()));
+        let key = [3 * i, 3 * i + 1, 3 * i + 2].map(VertexId);
+        all.push(Triangle { key, corners });
+        triangles.insert(all[all.len() - 1]);
+        if i % 3 == 2 {
+            let gone = all.swap_remove((next() * all.len() as f64) as usize);
+            triangles.remove(&gone.key);
+            assert!(triangles.get(&gone.key).is_none());
+        }
+    }
+    assert_eq!(triangles.len(), all.len());
+    let mut met = 0;
+    for triangle in &all {
+        assert_eq!(triangles.get(&triangle.key).map(|t| t.corners), Some(triangle.corners));
+        let others = all.iter().filter(|other| other.key != triangle.key);
+        let expected = others.filter(|other| meeting(&triangle.corners, &other.corners).is_some()).count();
+        assert_eq!(triangles.crossings(&[*triangle], |key| *key == triangle.key), expected);
+        met += expected;
+    }
+    assert!(met > 20, "{met}");
+}
