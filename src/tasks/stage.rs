@@ -1,4 +1,5 @@
 //! Stages of a run, told on standard error to whoever measures: `GEO_ADAPT_STAGES=1`.
+use std::io::Write;
 use std::sync::{LazyLock, Mutex};
 use std::time::Instant;
 
@@ -25,7 +26,10 @@ pub fn stage(name: &str) {
         kilobytes.unwrap_or(f64::NAN) / 1000.0
     };
     let [memory, most] = ["VmRSS:", "VmHWM:"].map(megabytes);
-    eprintln!("stage {name:<18}{step:>7.2} s, cpu {cpu:>6.2} s, at {all:>6.2} s, {memory:>6.0} MB, most {most:.0} MB");
+    let _ = writeln!(
+        std::io::stderr(),
+        "stage {name:<18}{step:>7.2} s, cpu {cpu:>6.2} s, at {all:>6.2} s, {memory:>6.0} MB, most {most:.0} MB"
+    );
 }
 
 /// Time of all threads in the program and in the system, in hundredths of a second as Linux tells it; NaN elsewhere.

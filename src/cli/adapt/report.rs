@@ -43,8 +43,10 @@ struct Operation {
 #[derive(Clone, Serialize)]
 pub struct Asked {
     /// The mesh, or the model that the mesh was made of.
+    #[serde(serialize_with = "crate::cli::files::text::path")]
     pub input: PathBuf,
     /// Where the adapted mesh goes.
+    #[serde(serialize_with = "crate::cli::files::text::path")]
     pub output: PathBuf,
     /// Threads.
     pub threads: usize,

@@ -32,6 +32,7 @@ pub struct Arguments {
 #[derive(Serialize)]
 struct Report {
     version: &'static str,
+    #[serde(serialize_with = "crate::cli::files::text::path")]
     mesh: PathBuf,
     function: Scalar,
     vertices: usize,

@@ -5,6 +5,7 @@
 //! `cli` writes files: [`Outputs`] takes a [`Target`], and only [`Files`] makes one.
 mod identity;
 mod outputs;
+pub mod text;
 
 pub use outputs::Outputs;
 

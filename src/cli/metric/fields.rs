@@ -54,6 +54,7 @@ pub const BOUNDS: [&str; 4] = ["gradation", "hmin", "hmax", "aspect_ratio"];
 /// The metric that was made, for tables and JSON.
 #[derive(Clone, Serialize)]
 pub struct Made {
+    #[serde(serialize_with = "crate::cli::files::text::paths")]
     fields: Vec<PathBuf>,
     sensors: usize,
     steps: usize,

@@ -72,8 +72,11 @@ fn cells(text: &str) -> Result<Cells, String> {
 #[derive(Serialize)]
 struct Report<'a> {
     version: &'static str,
+    #[serde(serialize_with = "crate::cli::files::text::path")]
     input: &'a Path,
+    #[serde(serialize_with = "crate::cli::files::text::optional_path")]
     cad: Option<&'a Path>,
+    #[serde(serialize_with = "crate::cli::files::text::path")]
     output: &'a Path,
     options: Options,
     #[serde(flatten)]

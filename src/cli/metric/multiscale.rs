@@ -37,7 +37,9 @@ pub struct Arguments {
 #[derive(Serialize)]
 struct Report<'a> {
     version: &'static str,
+    #[serde(serialize_with = "crate::cli::files::text::path")]
     mesh: &'a Path,
+    #[serde(serialize_with = "crate::cli::files::text::path")]
     output: &'a Path,
     multiscale: super::fields::Made,
     metric: Summary,
