@@ -44,6 +44,16 @@ fn a_wide_gap_hinders_nothing() {
     assert_eq!(refused, 0);
 }
 
+#[test]
+fn a_sharp_edge_of_a_void_gets_as_coarse_as_is_asked() {
+    // Two sides that share their edges, in a far field that is as coarse as the lens is long.
+    let start = samples::about_a_lens(0.1, 64, 8);
+    let (mesh, _) = coarsened(start, &[0.3, 1.0], "2");
+    let on_lens = |p: &[f64; 3]| p[0].abs() <= 1.0 && p[1].abs() <= 0.0501 * (1.0 - p[0] * p[0]) + 1e-9;
+    let left = mesh.vertices.iter().filter(|p| on_lens(p)).count();
+    assert!(left <= 30, "{left} vertices on the lens");
+}
+
 /// The rod pushed into its bushing.
 fn crossing() -> TetMesh {
     let mut mesh = samples::rod_in_bushing(0.05, 24, 3);

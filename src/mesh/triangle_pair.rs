@@ -158,31 +158,32 @@ fn segment_through([p, q]: [Vec3; 2], [at_p, at_q]: [f64; 2], b: &Corners, plane
     is_through.then(|| lerp(p, q, at_p / (at_p - at_q)))
 }
 
-/// Distance of two triangles; 0 where they meet.
-pub fn distance(a: &Corners, b: &Corners) -> f64 {
+/// The shortest way from a triangle to another; zero where they meet.
+pub fn way(a: &Corners, b: &Corners) -> Vec3 {
     let plane_meets = |a: &Corners, b: &Corners| Plane::of(b).is_some() && edges_through(a, b, 0b111).is_some();
     if plane_meets(a, b) || plane_meets(b, a) {
-        return 0.0;
+        return [0.0; 3];
     }
     let to_triangle = |p: Vec3, t: &Corners| {
         let weights = nearest_on_triangle(p, *t);
-        let foot = (0..3).fold([0.0; 3], |sum, k| add(sum, scale(t[k], weights[k])));
-        norm(sub(foot, p))
+        sub((0..3).fold([0.0; 3], |sum, k| add(sum, scale(t[k], weights[k]))), p)
     };
-    let corners = (0..3).fold(f64::INFINITY, |least, k| least.min(to_triangle(a[k], b)).min(to_triangle(b[k], a)));
     let edge = |t: &Corners, k: usize| [t[k], t[(k + 1) % 3]];
-    (0..9).fold(corners, |least, k| least.min(segments_distance(edge(a, k / 3), edge(b, k % 3))))
+    let from_corners = (0..3).flat_map(|k| [to_triangle(a[k], b), scale(to_triangle(b[k], a), -1.0)]);
+    let between_edges = (0..9).filter_map(|k| way_between(edge(a, k / 3), edge(b, k % 3)));
+    let all = from_corners.chain(between_edges);
+    all.reduce(|best, way| if norm(way) < norm(best) { way } else { best }).unwrap_or_default()
 }
 
-/// Distance of two segments where it is not at an end of one; else more.
-fn segments_distance([p, q]: [Vec3; 2], [r, s]: [Vec3; 2]) -> f64 {
+/// The shortest way from a segment to another, where it is not at an end of one.
+fn way_between([p, q]: [Vec3; 2], [r, s]: [Vec3; 2]) -> Option<Vec3> {
     let (u, v, w) = (sub(q, p), sub(s, r), sub(p, r));
     let (uu, uv, vv, uw, vw) = (dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w));
     let determinant = uu * vv - uv * uv;
     let (x, y) = ((uv * vw - vv * uw) / determinant, (uu * vw - uv * uw) / determinant);
     let is_within = |x: f64| (0.0..=1.0).contains(&x);
     // No number of parallel ones, which are nearest at an end of one too.
-    if is_within(x) && is_within(y) { norm(sub(lerp(p, q, x), lerp(r, s, y))) } else { f64::INFINITY }
+    (is_within(x) && is_within(y)).then(|| sub(lerp(r, s, y), lerp(p, q, x)))
 }
 
 /// Two of the three coordinates: the plane that a triangle is looked at in.
@@ -330,6 +331,21 @@ mod tests {
         assert_eq!(crossing((&[0, 1, 2], &FLAT), (&[0, 4, 5], &beside)), None);
         let through = [[0.0, 0.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0]];
         assert!(crossing((&[0, 1, 2], &FLAT), (&[0, 4, 5], &through)).is_some());
+    }
+
+    #[test]
+    fn the_shortest_way_between_triangles() {
+        let lifted = |z: f64| FLAT.map(|[x, y, _]| [x, y, z]);
+        assert_eq!(way(&FLAT, &lifted(2.0)), [0.0, 0.0, 2.0]);
+        assert_eq!(way(&lifted(2.0), &FLAT), [0.0, 0.0, -2.0]);
+        assert_eq!(way(&FLAT, &[[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [2.0, 1.0, 1.0]]), [0.0; 3]);
+        // From a corner to an edge, and from an edge to another, which pass at a distance.
+        assert_eq!(way(&FLAT, &[[2.0, -1.0, 0.0], [2.0, -3.0, 1.0], [2.0, -3.0, -1.0]]), [0.0, -1.0, 0.0]);
+        let over = [[2.0, -1.0, 1.0], [2.0, 1.0, 1.0], [2.0, 0.0, 5.0]];
+        assert!((norm(way(&FLAT, &over)) - 1.0).abs() < 1e-12);
+        let beside = [[2.0, -2.0, 1.0], [2.0, 1.0, -2.0], [2.0, -5.0, -5.0]];
+        let expected = [0.0, -0.5, -0.5];
+        assert!(norm(sub(way(&FLAT, &beside), expected)) < 1e-12, "{:?}", way(&FLAT, &beside));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::adapt::core::edge_list::EdgeItem;
 use crate::adapt::core::id_pool::ID_BLOCK;
 use crate::adapt::core::ids::{TetId, VertexId};
 use crate::adapt::core::measure::{is_longer, is_shorter};
-use crate::adapt::core::refusal::Counts;
+use crate::adapt::core::refusal::{Counts, Refusal};
 use crate::adapt::core::store::Store;
 use crate::adapt::core::worker::State;
 use crate::adapt::operations::collapse::onto_end::Collapse;
@@ -486,6 +486,10 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let advance = |n: usize| self.observer.advance(n);
         let counts = schedule::run(operation, items, self.context, &mut self.states, (self.execution, kind), &advance);
         self.observer.end(&counts);
+        if counts.refused[Refusal::Crossing as usize] > 0 {
+            // There may be room once what lies across the void has changed.
+            self.looked[kind as usize] = 0;
+        }
         let work = &mut self.work[kind as usize];
         work.counts.add(&counts);
         work.sweeps += 1;

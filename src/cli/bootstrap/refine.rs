@@ -81,24 +81,28 @@ pub fn run(
 }
 
 impl Refined {
-    /// Vertices off the model, and whether a triangle of the surface is turned over: 0 and false for a good mesh.
-    fn flaws(&self) -> (usize, bool) {
+    /// Vertices off the model, whether a triangle of the surface is turned over, and pairs of triangles that cross: 0, false and 0 for a
+    /// good mesh.
+    fn flaws(&self) -> (usize, bool, usize) {
         let folded = self.fidelity.worst_normal.is_some_and(|worst| worst.deviation > FOLDED);
-        (self.adapted.extracted.off_model.len(), folded)
+        (self.adapted.extracted.off_model.len(), folded, self.adapted.extracted.crossings.count)
     }
 
     /// Why another mesh to begin with may be better.
     pub fn flaw(&self) -> Option<String> {
-        let (off, folded) = self.flaws();
+        let (off, folded, crossings) = self.flaws();
         let at = |at: Option<Vec3>| at.map_or(String::new(), |at| format!(" at {}", table::place(at)));
-        if self.interrupted || off == 0 && !folded {
+        if self.interrupted || off == 0 && !folded && crossings == 0 {
             None
         } else if off > 0 {
             let first = self.adapted.extracted.off_model[0] as usize;
             let at = at(self.adapted.extracted.mesh.vertices.get(first).copied());
             Some(format!("{off} vertices of its surface found no room on the model, the first{at}"))
-        } else {
+        } else if folded {
             Some(format!("its surface is folded{}", at(self.fidelity.worst_normal.map(|worst| worst.at))))
+        } else {
+            let first = self.adapted.extracted.crossings.first.first().map(|crossing| crossing.at);
+            Some(format!("{crossings} pairs of triangles of its surface cross, the first{}", at(first)))
         }
     }
 

@@ -6,7 +6,7 @@ use crate::adapt::core::ids::{FACE, VertexId};
 use crate::adapt::core::store::Store;
 use crate::geometry::Entity;
 use crate::mesh::box_tree::{Bounds, BoxTree};
-use crate::mesh::triangle_pair::{Corners, distance};
+use crate::mesh::triangle_pair::{Corners, way};
 use crate::mesh::vector::{Vec3, add, area2, dot, norm, scale, sub, unit};
 use crate::metric::quality::edge_length;
 use crate::tasks::{GRAIN, Team};
@@ -15,10 +15,13 @@ use crate::tasks::{GRAIN, Team};
 const FEW: usize = 256;
 
 /// Edges get no longer than by this factor until the voids are looked for again.
-const GROWTH: f64 = 4.0;
+const GROWTH: f64 = 2.5;
 
 /// Chords rise no higher than so many times what the bend of the surface at their ends tells.
-const SAFETY: f64 = 2.0;
+const SAFETY: f64 = 1.5;
+
+/// Part of a reach that counts across the normal: model edges move within their faces.
+const SIDEWAYS: f64 = 0.3;
 
 /// A bend below this part of an edge is rounding.
 const STRAIGHT: f64 = 1e-9;
@@ -169,7 +172,14 @@ fn near_others(team: Team<'_>, walls: &[Wall], reaches: &[f64], boxes: &[Bounds]
             && !walls[i].vertices.iter().any(|v| walls[j].vertices.contains(v))
             && is_above(i, j)
             && is_above(j, i)
-            && distance(&walls[i].corners, &walls[j].corners) <= reaches[i] + reaches[j]
+            && {
+                let way = way(&walls[i].corners, &walls[j].corners);
+                let (length, along) = (norm(way), unit(way));
+                // They meet along the way between them.
+                let part = |cosine: f64| cosine.max(SIDEWAYS);
+                let reach = reaches[i] * part(dot(normals[i], along)) + reaches[j] * part(-dot(normals[j], along));
+                length <= reach
+            }
     };
     team.collect(FEW, walls.len(), |range, near| {
         near.extend(range.filter(|&i| {

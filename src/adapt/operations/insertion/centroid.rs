@@ -204,7 +204,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let placed = self.place(entity, point, around);
         let result = self.insert(seed, seeds, placed, around[0]);
-        if matches!(result, Err(Refusal::Inverted | Refusal::Topology | Refusal::Crossing)) && placed.point != point {
+        if matches!(result, Err(Refusal::Inverted | Refusal::Topology)) && placed.point != point {
             // As in split_edge: no room on the model yet.
             let v = self.insert(seed, seeds, Placed { point, ..placed }, around[0])?;
             self.state.unprojected.push(v);

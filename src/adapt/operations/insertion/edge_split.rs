@@ -63,8 +63,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let placed = self.place(entity, straight, &[a, b]);
         let seeds = std::mem::take(&mut self.state.shell.tets);
         let mut result = self.insert(Seed::Edge(a, b), &seeds, placed, a);
-        if matches!(result, Err(Refusal::Inverted | Refusal::Topology | Refusal::Crossing)) && placed.point != straight
-        {
+        if matches!(result, Err(Refusal::Inverted | Refusal::Topology)) && placed.point != straight {
             // No room on the model: the point waits on the straight edge until there is (project.rs).
             result = self.insert(Seed::Edge(a, b), &seeds, Placed { point: straight, ..placed }, a);
             if let Ok(v) = result {
