@@ -62,8 +62,8 @@ mod tests {
     use crate::tasks::Team;
     use std::collections::BTreeMap;
 
-    /// A shallow roof with the ridge a–b over the edge c–d, about which two more tetrahedra reach down to a fifth point; what shedding
-    /// the tetrahedron under the roof comes to, and the tetrahedra that are left.
+    /// A shallow roof with the ridge a–b over the edge c–d, about which two more tetrahedra reach down to a fifth point. Returns the
+    /// result of removing the tetrahedron under the roof, and the number of tetrahedra that are left.
     fn shed_roof(height: f64) -> (Result<(), Refusal>, usize, Result<(), String>) {
         let vertices =
             vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, height], [0.0, 1.0, height], [0.0, 0.0, -2.0]];

@@ -1,21 +1,21 @@
-//! When a mesh has more vertices than its metric can account for, it stops growing.
+//! A bound on growth: a mesh with far more vertices than its metric accounts for gets no more.
 //!
-//! A unit mesh has about two vertices a unit of complexity (METHOD.md §1), near walls three. Where a metric asks on a curved wall for cells
-//! so flat that the wall rises by many of them within one edge, triangles of that shape would stand across the wall: edges are cut until the
-//! wall is flat between their ends, whatever their length, and each cut asks for more. Such a mesh would grow until memory ends.
+//! A unit mesh has about two vertices a unit of complexity (METHOD.md §1), near walls three. A metric may ask on a curved wall for cells
+//! so flat that the wall rises by many of them within one edge. Triangles of that shape would stand across the wall, so edges are cut
+//! until the wall is flat between their ends, and each cut asks for more. Such a mesh would grow until memory ends.
 use super::Pipeline;
 use crate::adapt::core::ids::VertexId;
 use crate::mesh::vector::volume6;
 use crate::tasks::GRAIN;
 
-/// Vertices a unit of complexity that no mesh of a metric that can be met has.
+/// No mesh of a metric that can be met has so many vertices a unit of complexity.
 const MOST_A_COMPLEXITY: f64 = 8.0;
 
-/// Vertices that a mesh may have whatever its complexity, beside twice those of the input.
+/// So many vertices, and twice those of the input, are allowed whatever the complexity.
 const ALWAYS_ALLOWED: f64 = 20_000.0;
 
 impl Pipeline<'_, '_> {
-    /// Complexity of the metric on the mesh as it is: Σ √det M |k| over the tetrahedra, the metric the mean of the vertices'.
+    /// Complexity of the metric on the mesh as it is: Σ √det M̄ |k| over the tetrahedra, M̄ the mean of their vertices.
     fn complexity(&self) -> f64 {
         let store = &self.context.store;
         self.team().sum(GRAIN, store.tet_bound(), |range| {
@@ -35,7 +35,7 @@ impl Pipeline<'_, '_> {
         parts.into_iter().sum()
     }
 
-    /// Whether the mesh may still grow; once it may not, it may no more in this run.
+    /// Whether the mesh may still grow. Once the answer is no, it stays no in this run.
     pub(super) fn may_grow(&mut self) -> bool {
         let allowed = ALWAYS_ALLOWED + 2.0 * self.input as f64;
         let live = self.live() as f64;
