@@ -69,7 +69,7 @@ pub enum Sweep {
     Smooth,
 }
 
-/// What a [`Sweep`] is done to.
+/// The items of a [`Sweep`].
 pub enum Items {
     /// Edges in the order of the passes.
     Edges(Vec<EdgeItem>),
@@ -80,7 +80,7 @@ pub enum Items {
 }
 
 impl Items {
-    /// How many.
+    /// How many items there are.
     pub fn count(&self) -> usize {
         match self {
             Items::Edges(items) => items.len(),
@@ -152,7 +152,7 @@ impl<'m> Workbench<'m> {
         Ok(Self { context, states, pool })
     }
 
-    /// What the sweep is done to in the mesh as it is.
+    /// The items of a sweep in the mesh as it is.
     pub fn items(&self, sweep: Sweep) -> Items {
         let store = &self.context.store;
         match sweep {
@@ -291,7 +291,7 @@ mod tests {
     use crate::mesh::samples::cube;
     use crate::metric::Analytic;
 
-    /// What is timed is done, and done well.
+    /// The sweeps that are timed do something, and leave a valid mesh.
     #[test]
     fn every_sweep_does_something_and_leaves_a_valid_mesh() {
         let source = Source::Analytic { field: Analytic::Polar1, log_scale: -3.0 };

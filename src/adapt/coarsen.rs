@@ -1,11 +1,12 @@
 //! Coarsening before the store is filled: where the metric asks for far fewer vertices, whole neighbourhoods go onto one vertex at once.
 //!
 //! The mesh is mapped onto itself: some vertices stay, each of the others goes onto a neighbour that stays, and tetrahedra of which two
-//! vertices meet vanish. The boundary is mapped onto itself, so the map covers the domain once; where all tetrahedra that are left are
-//! positive they therefore fill it without overlap, and their faces match. Where the boundary is curved its new triangles may pass through
-//! others across a void, so there they are held against each other ([`apart`]). No neighbours need be known, and nothing is written but a
-//! word a vertex and what is left: a round goes through the memory a few times, while thinning vertex by vertex goes through it
-//! for each sixth of the vertices.
+//! vertices meet vanish. The boundary is mapped onto itself, so the map covers the domain once. Where all tetrahedra that are left are
+//! positive, they therefore fill the domain without overlap, and their faces match.
+//! A curved boundary may then pass through another part of itself across a void: there the new triangles are tested ([`apart`]).
+//!
+//! Neighbours need not be known, and only a word a vertex and the result are written. A round passes through the memory a few times;
+//! thinning vertex by vertex passes through it for each sixth of the vertices.
 mod apart;
 mod level;
 mod repair;
@@ -24,10 +25,10 @@ use crate::tasks::{GRAIN, Team, stage};
 use level::Level;
 use std::borrow::Cow;
 
-/// A mesh of so many times the tetrahedra that the metric asks for is coarsened.
+/// A mesh with this many times the tetrahedra that the metric asks for is coarsened.
 const CROWDED: f64 = 4.0;
 
-/// A round that removes less than this part of the vertices is the last: the next would remove little, and thinning does that as fast.
+/// A round that removes less than this share of the vertices is the last. Thinning removes the rest as fast.
 const LITTLE: f64 = 0.6;
 
 /// A coarse mesh with what filling a store needs.
@@ -40,11 +41,11 @@ pub struct Coarse {
     pub logs: Vec<Sym3>,
     /// For each vertex a tetrahedron of the input that has it.
     pub hints: Vec<u32>,
-    /// For each vertex that of the input.
+    /// For each vertex its number in the input.
     pub origin: Vec<u32>,
 }
 
-/// The mesh made coarse; none where it is not several times too fine, or not valid.
+/// The mesh made coarse; none where it is not much too fine, or not valid.
 pub fn coarsened(
     team: Team<'_>,
     mesh: &TetMesh,

@@ -13,7 +13,7 @@ use crate::metric::Sym3;
 use crate::tasks::{GRAIN, Team};
 use std::collections::HashMap;
 
-/// What the mesh calls each face and each edge of the model, and how it turns a face's triangles.
+/// The mesh's references of the model's faces and edges, and which way it turns a face's triangles.
 pub struct References {
     /// By face.
     pub faces: Vec<i32>,
@@ -31,7 +31,7 @@ pub struct Extracted {
     pub classification: Classification,
     /// M at its vertices.
     pub metrics: Vec<Sym3>,
-    /// Boundary vertices that found no room on the model: their tetrahedra would be inverted at its closest point.
+    /// Boundary vertices without room on the model: at their closest points tetrahedra would be inverted.
     pub off_model: Vec<u32>,
     /// Boundary vertices that must not move: they are as far from the model as they were in the input.
     pub held: Vec<u32>,
@@ -39,7 +39,7 @@ pub struct Extracted {
     pub crossings: Crossings,
 }
 
-/// Pairs of crossing triangles that are told.
+/// How many pairs of crossing triangles are told.
 const TOLD: usize = 3;
 
 /// A surface triangle.
@@ -47,7 +47,7 @@ const TOLD: usize = 3;
 struct Triangle {
     nodes: [u32; 3],
     face: u32,
-    /// Its nodes, so that the normal points outwards, if there is nothing beyond.
+    /// On the boundary its nodes, in the order in which the normal points outwards.
     outward: Option<[u32; 3]>,
 }
 
@@ -111,13 +111,13 @@ fn crossings(team: Team<'_>, vertices: &[Vec3], triangles: &[Triangle]) -> Cross
     found
 }
 
-/// Something of each vertex.
+/// A value for each vertex.
 fn at<T: Copy + Send>(team: Team<'_>, vertices: &[u32], of: impl Fn(VertexId) -> T + Sync) -> Vec<T> {
     team.map(GRAIN, vertices.len(), |i| of(VertexId(vertices[i])))
 }
 
-/// References that the vertices had in the input. Only corners and frozen vertices surely are what they were: other ids may have been
-/// used again.
+/// References that the vertices had in the input, for corners and frozen vertices. The id of any other may have been used again for a new
+/// vertex.
 fn vertex_refs(team: Team<'_>, context: &Context, vertices: &[u32], input: &TetMesh) -> Vec<i32> {
     let is_old = |v: VertexId| matches!(context.store.entity(v), Entity::Vertex(_)) || context.is_frozen(v);
     let is_there = |v: VertexId| v.is_some() && context.store.is_vertex(v);

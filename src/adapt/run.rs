@@ -122,7 +122,7 @@ pub fn adapt(
     Ok(Adapted { extracted, work, overgrown, unrepaired, deviating, geometry })
 }
 
-/// The mesh in a store, made coarse on the way where it is crowded, and whether that was so.
+/// The mesh in a store, coarsened first where it has far too many vertices. Returns whether it had.
 fn filled(
     team: Team<'_>,
     mesh: &TetMesh,
@@ -140,7 +140,7 @@ fn filled(
         filled.ids = ids;
         return Ok((filled, true));
     }
-    // What is wrong with the mesh is told in its own numbers.
+    // Faults of the mesh are told with the numbers of the input.
     Ok((fill::fill(team, mesh, place, source)?, coarse.is_some()))
 }
 
@@ -153,7 +153,7 @@ fn face_refs(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<i32> 
     refs.iter().enumerate().map(|(face, reference)| reference.unwrap_or(face as i32 + 1)).collect()
 }
 
-/// The faces most of whose triangles look into the domain: the files of some programs have all of them so.
+/// Whether most triangles of a face look into the domain, for each face. In the files of some programs all do.
 fn inward_faces(team: Team<'_>, mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<bool> {
     let mut outward = vec![0i64; model.topology().faces.len()];
     for ((given, turned), &face) in mesh.triangles.nodes.iter().zip(outward_triangles(team, mesh)).zip(&place.faces) {

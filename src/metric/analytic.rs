@@ -84,8 +84,8 @@ fn size(distance: f64) -> f64 {
     H0 + 2.0 * (H1 - H0) * distance.abs()
 }
 
-/// polar-2's size around the cylinder. The formula holds for r ≥ 0.5, d ≤ 1; for points that lie inside the cylinder (a chord
-/// of the coarse boundary) the value at its surface stays, else the size would vanish at r = 0.467.
+/// polar-2's size around the cylinder. The formula holds for r ≥ 0.5, d ≤ 1. Points inside the cylinder (on a chord of a coarse
+/// boundary) get the value at its surface; by the formula the size would vanish at r = 0.467.
 #[inline]
 fn circumferential(r: f64) -> f64 {
     let d = (10.0 * (0.6 - r)).clamp(0.0, 1.0);

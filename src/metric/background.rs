@@ -55,7 +55,7 @@ impl Background {
     }
 
     /// ln M at p, log-Euclidean in the tetrahedron that contains p, or in the nearest one at the point nearest to p.
-    /// `hint` is the tetrahedron where the search starts (any number will do) and becomes the one found.
+    /// The search starts at the tetrahedron `hint` (any number will do), which becomes the one found.
     #[inline]
     pub fn log_at(&self, p: Vec3, hint: &mut u32) -> Sym3 {
         let found = self.locator.locate(p, hint);

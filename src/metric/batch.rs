@@ -1,8 +1,8 @@
 //! Mean ratios of several tetrahedra at once: the inner loop of smoothing, of stars and of edge removal.
 //!
 //! A [`Batch`] holds [`LANES`] triangles with all that does not depend on the fourth vertex, the apex, so that trying another
-//! place for it costs little. Compiled for the baseline, AVX2 and AVX-512, chosen at run time; without fused
-//! multiplication, so that both give the same bits.
+//! place for it costs little. It is compiled for the baseline, AVX2 and AVX-512, and chosen at run time. There is no fused
+//! multiplication in it, so all of these give the same bits.
 use super::Sym3;
 use super::exponential::{SERIES, STRONG};
 use super::lanes::{
@@ -37,7 +37,7 @@ pub struct Batch {
 /// Mean ratios of the tetrahedra of a [`Batch`].
 #[derive(Clone, Copy, Debug)]
 pub struct Shapes {
-    /// Q³: it needs no cube root. 0 where a tetrahedron is not positive, or so flat that only exact arithmetic knows: none such is made.
+    /// Q³, which needs no cube root. 0 where a tetrahedron is not positive, or so flat that only exact arithmetic could tell: these are refused.
     pub cubes: Lanes,
 }
 
@@ -107,7 +107,7 @@ impl Batch {
         if mild { Shapes { cubes } } else { self.shapes_one_by_one(apex, log, cubes) }
     }
 
-    /// Metrics of strong anisotropy: along their eigenvectors.
+    /// For metrics of strong anisotropy, by their eigenvectors.
     #[cold]
     fn shapes_one_by_one(&self, apex: &LaneVec3, log: &LaneSym3, cubes: Lanes) -> Shapes {
         let mut exact = cubes;
@@ -255,8 +255,9 @@ fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> (Lanes, bool) {
     (surely.above(0.0, cubes, Lanes::ZERO), mild)
 }
 
-/// 1/Q³ = S³/(432 V²), S the sum of the squared edges in the mean metric: with v = ∇V/V and s = ∇S/S its gradient is
-/// (3s − 2v)/Q³ and its Hessian (6 (v − s)(v − s)ᵀ + 18 M̄/S)/Q³, positive definite: each tetrahedron's part is convex.
+/// 1/Q³ = S³/(432 V²), with S the sum of the squared edges in the mean metric and V six times the volume (METHOD.md §2.4). With
+/// v = ∇V/V and s = ∇S/S the gradient is (3s − 2v)/Q³ and the Hessian (6 (v − s)(v − s)ᵀ + 18 M̄/S)/Q³, which is positive
+/// definite: each tetrahedron's part is convex.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn quadratic_model(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneQuadratic {
     let [a, b, c] = &batch.corners;
@@ -288,7 +289,7 @@ fn quadratic_model(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneQuadra
     LaneQuadratic { volume, energy, gradient, hessian }
 }
 
-/// Edges from one vertex, one a lane: the other ends.
+/// Edges at one vertex, one a lane, by their other ends.
 #[derive(Clone, Copy)]
 pub struct IncidentEdges {
     ends: LaneVec3,
@@ -319,8 +320,8 @@ impl IncidentEdges {
         self.ends.map(|x| x.0[lane])
     }
 
-    /// Lengths of the edges to p, of metric M there: the log law of METHOD.md §1, which near equal lengths at both ends is
-    /// their mean to within its square.
+    /// Lengths of the edges to p, with the metric M there, by the log law of METHOD.md §1.3. Where the lengths at both ends are nearly
+    /// equal their mean is taken, which differs from it in second order.
     #[inline]
     pub fn lengths(&self, p: Vec3, metric: &Sym3) -> [f64; LANES] {
         lengths(self, &everywhere(p), &everywhere_tensor(metric)).0

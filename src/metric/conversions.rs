@@ -25,7 +25,7 @@ impl From<Sym3> for Matrix3<f64> {
 }
 
 impl From<Matrix3<f64>> for Sym3 {
-    /// The symmetric part: of a matrix that is symmetric but for its rounding nothing else is lost.
+    /// Takes the symmetric part. Of a matrix that is symmetric to rounding nothing else is lost.
     fn from(m: Matrix3<f64>) -> Self {
         let mean = |i: usize, j: usize| 0.5 * (m[(i, j)] + m[(j, i)]);
         Self([m[(0, 0)], mean(0, 1), m[(1, 1)], mean(0, 2), mean(1, 2), m[(2, 2)]])

@@ -11,7 +11,7 @@ pub struct Eigen {
     pub vectors: [Vec3; 3],
 }
 
-/// Beyond this ratio of the eigenvalues of a metric (anisotropy 100) the small ones deserve Jacobi's relative accuracy.
+/// Beyond this ratio of the eigenvalues of a metric (anisotropy 100) the small ones need Jacobi's relative accuracy.
 const WELL_CONDITIONED: f64 = 1e-4;
 
 /// A deviation from the mean by no more than this share of it is rounding.
@@ -35,8 +35,8 @@ pub(super) const COSINE: [f64; 8] = [
     0.000_542_607_713,
 ];
 
-/// cos(acos(t)/3) for t in [0, 1]: the root of 4c³ − 3c = t in [√3/2, 1]. The slope there is at least 6, so that from a polynomial
-/// one Newton step reaches the rounding.
+/// cos(acos(t)/3) for t in [0, 1]: the root of 4c³ − 3c = t in [√3/2, 1]. The slope there is at least 6, so one Newton step from the
+/// value of the polynomial is right to rounding.
 #[inline(always)]
 fn cosine_of_third(t: f64) -> f64 {
     let (t2, k) = (t * t, &COSINE);
@@ -57,8 +57,8 @@ pub(super) fn isolated_root(p: f64, r: f64) -> f64 {
     (2.0 * root * c).copysign(r)
 }
 
-/// The roots of x³ = 3p x + 2r: the isolated one, then the other two, ascending. If these are close, they are known to
-/// the root of the rounding only.
+/// The roots of x³ = 3p x + 2r: the isolated one, then the other two, ascending. If these two are close, they are right only to
+/// the square root of the rounding.
 #[inline(always)]
 pub(super) fn roots(p: f64, r: f64) -> [f64; 3] {
     let x = isolated_root(p, r);
@@ -76,7 +76,7 @@ impl Sym3 {
         if size <= ISOTROPIC * mean.abs() || size <= f64::MIN_POSITIVE || !size.is_finite() {
             return Eigen { values: [mean; 3], vectors: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] };
         }
-        // Scaled to terms of about 1 nothing under- or overflows, and the mean's rounding, which may then count, is taken off.
+        // With terms scaled to about 1 nothing under- or overflows. Then the rounding of the mean may matter, and is taken off.
         let s = Sym3(deviator.0.map(|x| x / size));
         let rest = s.trace() / 3.0;
         let (s, mean) = (s.plus_identity(-rest), mean + size * rest);
@@ -100,7 +100,7 @@ impl Sym3 {
         if eigen.values[0] > WELL_CONDITIONED * eigen.values[2] { eigen } else { self.eigen_jacobi() }
     }
 
-    /// Spectral decomposition by cyclic Jacobi rotations: slow, and as accurate as it gets.
+    /// Spectral decomposition by cyclic Jacobi rotations: the slowest way, and the most accurate.
     pub fn eigen_jacobi(&self) -> Eigen {
         let mut a = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.at(i, j)));
         let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -11,9 +11,9 @@ const STEPS: usize = 10_000;
 
 /// The metric whose unit ball is the smallest ellipsoid with its centre at the origin that holds the points, which must span space.
 ///
-/// Khachiyan's algorithm (1996) with the steps away of Todd & Yildirim (2007), on X = Σ u_i x_i x_iᵀ of weights u with the sum 1: at
-/// the optimum x_iᵀ X⁻¹ x_i = 3 for those with a weight, and M = X⁻¹/3. What comes back is scaled so that all points are within.
-/// `weights` is room that is used again.
+/// Khachiyan's algorithm (1996) with the away steps of Todd & Yildirim (2007), on X = Σ u_i x_i x_iᵀ with weights u of sum 1. At the
+/// optimum x_iᵀ X⁻¹ x_i = 3 for all points with a weight, and M = X⁻¹/3. The result is scaled so that all points are within.
+/// `weights` is scratch.
 pub fn smallest_about_origin(points: &[Vec3], weights: &mut Vec<f64>) -> Option<Sym3> {
     const D: f64 = 3.0;
     weights.clear();

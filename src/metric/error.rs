@@ -2,7 +2,7 @@
 use super::held::{GREATEST_RATIO, SIZES};
 use std::path::PathBuf;
 
-/// What was wrong with a metric: what, where, and the remedy.
+/// What is wrong with a metric, where, and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The file could not be read or written.

@@ -2,8 +2,8 @@
 //!
 //! A symmetric tensor is L = (tr L/3) I + S. With S³ = 3p S + 2r I (Cayley–Hamilton), exp S = a0 I + a1 S + a2 S²,
 //! where the polynomial interpolates e^x at the three eigenvalues of S (Newton's divided differences). Only the
-//! eigenvalues are needed, no vectors, and a close pair does no harm: the interpolation error of a node that is off by
-//! √ε, with its twin off as much, is of the order ε.
+//! eigenvalues are needed, no vectors. A close pair does no harm: if its two nodes are off by √ε, the interpolation is off
+//! by the order of ε.
 use super::Sym3;
 use super::eigen::{Eigen, invariants, roots};
 

@@ -21,8 +21,8 @@ impl Field {
         Ok(Read { content: Self { metrics }, notices })
     }
 
-    /// Reads ln M at every vertex from a .sol or .solb file of M, as [`Field::read`] checks it: the eigenvalues that tell whether a
-    /// tensor is positive definite give its logarithm.
+    /// Reads ln M at every vertex from a .sol or .solb file of M, with the checks of [`Field::read`]. The eigenvalues that tell whether a
+    /// tensor is positive definite also give its logarithm.
     pub fn read_logs(team: Team<'_>, path: &Path, vertices: usize) -> Result<Read<Vec<Sym3>>, Error> {
         read_each(team, path, Some(vertices), checked_log)
     }
@@ -35,7 +35,7 @@ impl Field {
         team.map(GRAIN, metrics.len(), |i| checked_log(metrics[i]).expect("a positive definite tensor"))
     }
 
-    /// As [`Field::read_logs`], of a mesh that is not at hand: as many as there are.
+    /// As [`Field::read_logs`], without a mesh: as many as the file has.
     pub fn read_all_logs(team: Team<'_>, path: &Path) -> Result<Read<Vec<Sym3>>, Error> {
         read_each(team, path, None, checked_log)
     }

@@ -1,4 +1,4 @@
-//! A metric by its eigenvectors: there great anisotropy costs no figures.
+//! A metric by its eigenvectors, where great anisotropy costs no accuracy.
 //!
 //! The six terms of a tensor are rounded by 1e-16 of the greatest: at an anisotropy of 1e6 (eigenvalues 1e12 apart) the least
 //! eigenvalue has four figures left, and products of such tensors fewer. Here M = Σ roots_i² v_i v_iᵀ, and what is done with two
@@ -65,7 +65,7 @@ impl Frame {
         Some((Self { roots: both.values.map(f64::sqrt), vectors: both.vectors.map(in_space) }, least))
     }
 
-    /// The least size that G, relative to self, has where it is finer than self.
+    /// The least size of G in the directions in which it is finer than self.
     pub fn least_excess(&self, relative: &Relative) -> f64 {
         let eigen = relative.eigen();
         let excess = eigen.values.into_iter().zip(eigen.vectors).filter(|(value, _)| *value > 1.0);
@@ -95,7 +95,7 @@ impl Relative {
         Sym3::outer(a, 1.0).plus(Sym3::outer(b, 1.0)).plus(Sym3::outer(c, 1.0))
     }
 
-    /// Eigenvalues and eigenvectors of N: those about 1 to 1e-10 also where others are 1e12.
+    /// Eigenvalues and eigenvectors of N. Eigenvalues about 1 are right to 1e-10 even beside others of 1e12.
     pub fn eigen(&self) -> Eigen {
         let form = self.form();
         if form.trace() < MODERATE { form.eigen_spd() } else { gram_eigen(self.0) }
@@ -108,8 +108,8 @@ impl Relative {
     }
 }
 
-/// Eigenvalues and eigenvectors of WᵀW from the rows of W, without WᵀW, which would square what is lost: the columns of W are turned
-/// in pairs until they are orthogonal (one-sided Jacobi: Hestenes 1958; its accuracy: Demmel & Veselić 1992).
+/// Eigenvalues and eigenvectors of WᵀW from the rows of W. WᵀW itself would lose twice as many figures, so pairs of columns of W are
+/// rotated until all are orthogonal (one-sided Jacobi: Hestenes 1958; its accuracy: Demmel & Veselić 1992).
 fn gram_eigen(rows: [Vec3; 3]) -> Eigen {
     let mut columns = [0, 1, 2].map(|j| [rows[0][j], rows[1][j], rows[2][j]]);
     let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -143,16 +143,16 @@ fn gram_eigen(rows: [Vec3; 3]) -> Eigen {
 
 /// What two metrics are to each other.
 pub enum Both {
-    /// The first has nowhere a greater size than the second: it is their intersection.
+    /// In no direction the first has a greater size than the second: it is the intersection.
     First,
-    /// The second has nowhere a greater size than the first.
+    /// In no direction the second has a greater size than the first: it is the intersection.
     Second,
     /// Another metric.
     New(Frame),
 }
 
-/// M1 ∩ M2: the metric whose unit ball fits into both unit balls (METHOD.md §1): where the unit ball of M1 is made a sphere, the
-/// eigenvalues of M2 are raised to at least 1. One that fits into the other is told as it is, to a share `rounding` of λ.
+/// M1 ∩ M2: the metric whose unit ball fits into both unit balls (METHOD.md §1.6). In the frame in which M1 is the identity, the
+/// eigenvalues of M2 are raised to at least 1. A metric that fits into the other, to a share `rounding` of λ, is returned as it is.
 pub fn intersect(a: &Frame, b: &Frame, rounding: f64) -> Both {
     let relative = a.relative(b, b.roots);
     let values = relative.eigen().values;

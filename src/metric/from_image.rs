@@ -6,7 +6,7 @@ use crate::mesh::box_tree::BoxTree;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team};
 
-/// Second derivatives below this share of the greatest of the image are raised to it: rounding of single precision.
+/// Second derivatives are raised to at least this share of the image's greatest. Below it is the rounding of single precision.
 const NOISE: f64 = 1e-6;
 
 /// What the metric has to be.
@@ -21,7 +21,7 @@ pub struct Wish {
 }
 
 impl Wish {
-    /// ln M of the scale at which `make` gives what is wished.
+    /// ln M from `make`, at the scale that meets the wish.
     fn meet(&self, team: Team<'_>, mesh: &TetMesh, make: impl Fn(f64) -> Vec<Sym3>) -> Result<Vec<Sym3>, Unreachable> {
         let mut logs = Vec::new();
         reach(self.complexity, |scale| {
@@ -36,8 +36,8 @@ impl Wish {
     }
 }
 
-/// ln M of the L² metric det(|H|)^(−1/7) |H| of second derivatives at the vertices, shape (n,) (Loseille & Alauzet 2011), scaled to what
-/// is wished. Second derivatives up to `rounding` are noise, value/length²; none when all are.
+/// ln M of the L² metric det(|H|)^(−1/7) |H| of second derivatives at the vertices, shape (n,) (Loseille & Alauzet 2011), scaled to
+/// meet the wish. Second derivatives up to `rounding`, in value/length², are noise; none when all are.
 ///
 /// # Errors
 /// [`Unreachable`] when the limits do not let the complexity come near.
@@ -65,8 +65,8 @@ pub fn of_hessians(
     wish.meet(team, mesh, |scale| team.map(GRAIN, raw.len(), |v| raw[v].plus_identity(scale))).map(Some)
 }
 
-/// ln M of the sizes h0 + d·ln r at a distance d from the nearest of some points, r the growth that is wished (e where it is none), with
-/// the h0 that gives the complexity: fine at borders, coarse away from them.
+/// ln M of the sizes h0 + d·ln r at the distance d from the nearest of some points: fine at borders, coarse away from them. r is the growth
+/// wished for (e if there is none), and h0 is found so that the complexity is met.
 ///
 /// # Errors
 /// [`Unreachable`] when limits, or a mesh with no vertices near the points, do not let the complexity come near.

@@ -5,7 +5,7 @@ use crate::mesh::box_tree::BoxTree;
 use crate::mesh::vector::{Vec3, dot, scale, sub};
 use crate::tasks::Team;
 
-/// Half-axes below this share of the greatest distance are raised to it: where points lie in a plane, on a line, or in one place.
+/// Half-axes are raised to at least this share of the greatest distance: points may lie in a plane, on a line, or in one place.
 const THINNEST: f64 = 1e-3;
 
 /// Vertices a task: one takes tens of microseconds.
@@ -22,9 +22,9 @@ pub struct TooFew {
 pub struct FromPoints {
     /// ln M at the vertices, shape (n,).
     pub logs: Vec<Sym3>,
-    /// Points that were there before, and were passed over.
+    /// Points that repeat another one, which were left out.
     pub duplicates: usize,
-    /// Vertices whose neighbours lie in a plane or on a line, nearly: their thin half-axes were raised.
+    /// Vertices whose neighbours lie nearly in a plane or on a line, so that half-axes were raised.
     pub flat: usize,
 }
 
@@ -94,12 +94,12 @@ impl Search<'_> {
             }
             if nearest.len() == neighbours { nearest[neighbours - 1].0 } else { f64::INFINITY }
         });
-        // Two points that differ are not both at the vertex; should their squares vanish, the least size there is.
+        // Two different points are not both at the vertex. Should their squares underflow, the least size is taken.
         let radius = nearest.last().map_or(0.0, |entry| entry.0.sqrt()).max(1e-150);
         around.clear();
         around.extend(nearest.iter().map(|entry| scale(sub(cloud[entry.1 as usize], vertex), 1.0 / radius)));
         let axes = [[THINNEST, 0.0, 0.0], [0.0, THINNEST, 0.0], [0.0, 0.0, THINNEST]];
-        // The ball of the thinnest half-axis, by an octahedron: to √3 of it.
+        // An octahedron stands for the ball of the thinnest half-axis; it is too small by √3 at most.
         around.extend(axes);
         let ball = Sym3::IDENTITY;
         let log = smallest_about_origin(around, weights).unwrap_or(ball).ln();

@@ -1,4 +1,4 @@
-//! The metric of a mesh itself: the one in which it is a unit mesh, as far as it can be.
+//! The metric of a mesh itself: the one in which it is nearest to a unit mesh.
 use super::Sym3;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, cross, dot, scale, sub, volume6};
@@ -7,12 +7,12 @@ use crate::tasks::{GRAIN, Rows, Team};
 /// The metric in which all six edges of a tetrahedron have length one; none for a flat or inverted one.
 ///
 /// The six equations e_kᵀ M e_k = 1 have the solution M = ½ Σ_i ∇λ_i ∇λ_iᵀ, λ_i the barycentric coordinates: along an edge from
-/// node i to node j the only ones that change are λ_i and λ_j, by −1 and 1. A sum of squares: it cannot lose its positivity to the
-/// rounding of an elimination.
+/// node i to node j only λ_i and λ_j change, by −1 and 1. Since it is a sum of squares, rounding cannot make it indefinite, as an
+/// elimination could.
 pub fn unit_metric([a, b, c, d]: [Vec3; 4]) -> Option<Sym3> {
     let six = volume6(a, b, c, d);
     let [u, v, w] = [b, c, d].map(|p| sub(p, a));
-    // Of a flat one the sign is rounding.
+    // The sign of a flat tetrahedron is rounding.
     let rounding = 1e-15 * dot(u, u).max(dot(v, v)).max(dot(w, w)).powf(1.5);
     if !(six > rounding && six.is_finite()) {
         return None;
@@ -27,19 +27,19 @@ pub fn unit_metric([a, b, c, d]: [Vec3; 4]) -> Option<Sym3> {
 pub struct Implied {
     /// ln M at the vertices, shape (n,).
     pub logs: Vec<Sym3>,
-    /// Tetrahedra that are flat or inverted, and were passed over.
+    /// Flat or inverted tetrahedra, which were left out.
     pub flat: usize,
-    /// Vertices with no other tetrahedron, which have the mean of the whole mesh.
+    /// Vertices with no good tetrahedron, which have the mean of the whole mesh.
     pub bare: usize,
 }
 
-/// At each vertex the log-Euclidean mean, by volume, of the unit metrics of its tetrahedra. Its complexity is about a tetrahedron
-/// over 8.5 (√2/12 each), 0.6 to 0.7 of the vertices. None when all tetrahedra are flat or inverted.
+/// At each vertex the log-Euclidean mean, by volume, of the unit metrics of its tetrahedra. Its complexity is about √2/12 for each
+/// tetrahedron, 0.6 to 0.7 of the number of vertices. None when all tetrahedra are flat or inverted.
 pub fn implied(team: Team<'_>, mesh: &TetMesh) -> Option<Implied> {
     let tets = &mesh.tets.nodes;
     let corners = |t: usize| tets[t].map(|v| mesh.vertices[v as usize]);
     let logs = team.map(GRAIN / 4, tets.len(), |t| unit_metric(corners(t)).map_or(Sym3::ZERO, |m| m.ln()));
-    // ln M of a real one is not zero but by chance; its volume tells.
+    // A volume of 0 marks the tetrahedra that were left out.
     let volumes = team.map(GRAIN, tets.len(), |t| {
         let [a, b, c, d] = corners(t);
         if unit_metric([a, b, c, d]).is_some() { volume6(a, b, c, d) } else { 0.0 }

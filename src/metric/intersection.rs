@@ -4,14 +4,14 @@ use super::frame::{Both, Frame, intersect};
 use crate::tasks::{GRAIN, Team};
 use std::cmp::Ordering;
 
-/// Metrics whose relative eigenvalues exceed 1 by no more than this fit into each other: rounding at an anisotropy of 1e6.
+/// A metric fits into another when their relative eigenvalues exceed 1 by no more than this: the rounding at an anisotropy of 1e6.
 const ROUNDING: f64 = 1e-9;
 
 impl Sym3 {
-    /// M1 ∩ M2: the metric whose unit ball fits into both unit balls (METHOD.md §1). Exactly commutative; where one fits into the
-    /// other it is that one, to the last bit. Both must be positive definite. To an anisotropy of 1e6 it is right to 1e-9 of each
-    /// eigenvalue for metrics given by [`Sym3::ln`] (see [`Sym3::intersect_logs`]); tensors themselves have a least eigenvalue
-    /// rounded by 1e-16 of the greatest.
+    /// M1 ∩ M2: the metric whose unit ball fits into both unit balls (METHOD.md §1.6). Both must be positive definite. It is exactly
+    /// commutative, and where one fits into the other it is that one, to the last bit. Up to an anisotropy of 1e6 each eigenvalue is
+    /// right to 1e-9 of itself for metrics given by [`Sym3::ln`] (see [`Sym3::intersect_logs`]). The least eigenvalue of a tensor
+    /// itself is rounded by 1e-16 of the greatest.
     pub fn intersect(&self, other: &Self) -> Self {
         match both(self, other, Frame::of_metric) {
             Ok(one) => *one,
@@ -28,7 +28,7 @@ impl Sym3 {
     }
 }
 
-/// One of the two, or another metric. The lesser in the order of the terms is always the first, so that it is the same both ways.
+/// One of the two, or a new metric. The lesser in the order of the terms is always taken first, so that the result is the same both ways.
 fn both<'s>(a: &'s Sym3, b: &'s Sym3, frame: impl Fn(&Sym3) -> Frame) -> Result<&'s Sym3, Frame> {
     let order = a.0.iter().zip(&b.0).map(|(x, y)| x.total_cmp(y)).find(|order| order.is_ne());
     let (a, b) = match order {
@@ -43,7 +43,7 @@ fn both<'s>(a: &'s Sym3, b: &'s Sym3, frame: impl Fn(&Sym3) -> Frame) -> Result<
     }
 }
 
-/// Takes ln of the intersection with other metrics at each vertex, from ln M, both of shape (n,); returns at how many it is another.
+/// Intersects ln M at each vertex with another ln M, both of shape (n,). Returns at how many vertices that changed it.
 ///
 /// # Panics
 /// When the lengths differ.

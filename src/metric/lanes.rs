@@ -2,7 +2,7 @@
 //!
 //! Plain arrays whose operations the compiler turns into vector instructions; the kernels that use them are compiled for the
 //! baseline, for AVX2 and for AVX-512, and chosen at run time (`multiversion`). The elementary functions are polynomials
-//! of our own: a call of the library's would end the vectors.
+//! of our own: a call of the library's functions would take one number at a time.
 use super::Sym3;
 use crate::mesh::vector::Vec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};

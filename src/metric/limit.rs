@@ -35,7 +35,7 @@ impl Limits {
         Sym3::from_eigen(&super::Eigen { values: within, ..eigen })
     }
 
-    /// Whether Gershgorin's circles already tell that all sizes are within: for most, without eigenvalues.
+    /// Whether Gershgorin's circles tell that all sizes are within the limits. For most tensors they do, and no eigenvalues are needed.
     #[inline]
     fn are_far_from(&self, log: &Sym3) -> bool {
         let [a, b, c, d, e, f] = log.0;
@@ -57,7 +57,7 @@ impl Limits {
         values.map(|x| x.max(greatest - 2.0 * ratio.ln()))
     }
 
-    /// Limits ln M at all vertices, shape (n,); returns at how many it changed.
+    /// Limits ln M at all vertices, shape (n,). Returns at how many that changed it.
     pub fn apply(&self, team: Team<'_>, logs: &mut [Sym3]) -> usize {
         if self.are_none() {
             return 0;
@@ -74,7 +74,7 @@ impl Limits {
     }
 }
 
-/// Exponents closer than this, relative, are those of a metric that has been limited before: its logarithm's rounding.
+/// Relative difference of exponents that is rounding, as in a metric that has been limited before.
 const ROUNDING: f64 = 1e-13;
 
 #[cfg(test)]

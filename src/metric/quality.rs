@@ -6,7 +6,7 @@ use crate::mesh::vector::{Vec3, sub, volume6};
 /// 36/3^(1/3) · (1/6)^(2/3): the mean ratio's factor when six times the volume is used.
 const FACTOR: f64 = 7.559_526_299_369_24;
 
-/// An edge whose lengths at its ends differ by no more than this has their mean as its length.
+/// When the lengths in the metrics of both ends differ by no more than this, the length is their mean.
 const EQUAL_LENGTHS: f64 = 1e-3;
 
 /// Length of the edge vector v between vertices of metrics ma and mb: the log law of METHOD.md §1.

@@ -13,13 +13,13 @@ use crate::metric::Sym3;
 use crate::tasks::{Rows, Team};
 use std::borrow::Cow;
 
-/// Of a vertex inside.
+/// Marks a vertex inside.
 pub const INSIDE: u32 = u32::MAX;
 
-/// Of a vertex that stays: on a vertex or an edge of the model, required, or beside what is required.
+/// Marks a vertex that stays: on a vertex or an edge of the model, required, or beside something required.
 pub const FIXED: u32 = u32::MAX - 1;
 
-/// The mesh as plain arrays; the first level borrows those of the input.
+/// The mesh as plain arrays. The first level borrows those of the input.
 pub struct Level<'m> {
     /// Positions.
     pub points: Cow<'m, [Vec3]>,
@@ -29,7 +29,7 @@ pub struct Level<'m> {
     pub metrics: Vec<Sym3>,
     /// For each vertex the model face that it lies on, [`INSIDE`] or [`FIXED`].
     pub faces: Vec<u32>,
-    /// For each vertex that of the input.
+    /// For each vertex its number in the input.
     pub origin: Vec<u32>,
     /// Vertices of the tetrahedra.
     pub tets: Cow<'m, [[u32; 4]]>,
@@ -37,9 +37,9 @@ pub struct Level<'m> {
     pub regions: Cow<'m, [i32]>,
     /// Vertices of the triangles.
     pub triangles: Cow<'m, [[u32; 3]]>,
-    /// For each triangle that of the input which became it.
+    /// For each triangle the number of the input's triangle that became it.
     pub triangle_origin: Vec<u32>,
-    /// The triangles' model faces, by triangles of the input.
+    /// The model faces of the input's triangles.
     pub of_face: &'m [u32],
 }
 
@@ -47,7 +47,7 @@ pub struct Level<'m> {
 pub struct Balls(Rows);
 
 impl Balls {
-    /// Of so many vertices.
+    /// Lists the tetrahedra at each of so many vertices.
     pub fn of<const N: usize>(elements: &[[u32; N]], vertices: usize) -> Self {
         Self(Rows::at_nodes(Team::alone(), elements, vertices))
     }
@@ -65,7 +65,7 @@ impl Balls {
 }
 
 impl<'m> Level<'m> {
-    /// The input.
+    /// The first level: the input.
     pub fn of(mesh: &'m TetMesh, place: &'m Classification, logs: Cow<'m, [Sym3]>, required: &Required) -> Self {
         let mut faces: Vec<u32> = place
             .entities
@@ -78,7 +78,7 @@ impl<'m> Level<'m> {
             .collect();
         required.frozen().for_each(|v: VertexId| faces[v.index()] = FIXED);
         if required.frozen().next().is_some() {
-            // All about an edge that may be required stays as it is.
+            // Tetrahedra at an edge that may be required keep all of their vertices.
             let frozen = |v: &u32| required.is_frozen(VertexId(*v));
             let near = mesh.tets.nodes.iter().filter(|nodes| nodes.iter().copied().filter(|v| frozen(v)).count() > 1);
             near.flatten().for_each(|&v| faces[v as usize] = FIXED);

@@ -1,4 +1,4 @@
-//! What a round would leave is measured; vertices that would leave something bad stay.
+//! Measures what a round of coarsening would leave. Vertices whose way would leave something bad get another way, or stay.
 use super::level::{Balls, INSIDE, Level, is_proper};
 use super::surface::Surface;
 use super::vertex_map::{self, VertexMap};
@@ -6,19 +6,19 @@ use crate::mesh::predicate::is_positive;
 use crate::metric::mean_ratios;
 use crate::metric::quality::mean_ratio;
 
-/// Least mean ratio of a tetrahedron that comes.
+/// Least mean ratio of a new tetrahedron.
 const FLOOR: f64 = 0.1;
 
-/// An edge that comes is not longer than this, unless the one that it comes from was.
+/// Greatest length of a new edge, unless the edge that it comes from was longer.
 const LONG: f64 = 2.0;
 
-/// Vertices near another that are looked at: as many as there are mostly.
+/// How many vertices near another are looked at; mostly there are no more.
 const WAYS: usize = 24;
 
-/// Of those near enough the nearest are tried, so many.
+/// How many of these are tried, the nearest first.
 const TRIED: usize = 8;
 
-/// A level, of which vertices are to go.
+/// A level with the map that is to be repaired.
 pub struct MapRepair<'l, 'm> {
     /// The level.
     pub level: &'l Level<'m>,
@@ -29,7 +29,7 @@ pub struct MapRepair<'l, 'm> {
 }
 
 impl MapRepair<'_, '_> {
-    /// Sends vertices other ways, and lets those stay that have none, until nothing bad would be left.
+    /// Sends vertices another way, or lets them stay where there is none, until nothing bad would be left.
     pub fn repair(&self, map: &mut VertexMap) {
         let (level, surface) = (self.level, self.surface);
         let is_turned = |t: &u32, map: &VertexMap| !surface.is_fair(level, *t, map);
@@ -51,7 +51,7 @@ impl MapRepair<'_, '_> {
                 turned.extend(surface.at(v).iter().filter(|&t| is_turned(t, map)));
             }
         }
-        // Those that stay because of what was bad about them may have a way now; not those that others go onto.
+        // A vertex that stays because of something bad about it may have a way now, unless others go onto it.
         let mut led = map.led();
         for v in kept {
             if map.target(v) == v && !led[v as usize] && self.turn(v, map) {
@@ -87,7 +87,7 @@ impl MapRepair<'_, '_> {
         bad
     }
 
-    /// Whether a tetrahedron vanishes, stays as it is, or is good enough.
+    /// Whether a tetrahedron is no problem: it vanishes, stays as it is, or is good enough.
     fn is_fair(&self, t: u32, map: &VertexMap) -> bool {
         let (level, nodes) = (self.level, &self.level.tets[t as usize]);
         let mapped = map.map(nodes);
@@ -96,7 +96,7 @@ impl MapRepair<'_, '_> {
         }
         let points = mapped.map(|v| level.points[v as usize]);
         let logs = mapped.map(|v| &level.logs[v as usize]);
-        // What costs least comes first.
+        // The cheapest test comes first.
         is_positive(points) && !self.gets_long(nodes, &mapped) && mean_ratio(points, logs) >= FLOOR
     }
 
@@ -106,7 +106,7 @@ impl MapRepair<'_, '_> {
         nodes.into_iter().any(|v| map.target(v) != v && self.turn(v, map))
     }
 
-    /// Sends a vertex inside onto another of those near it that stay, so that nothing bad is left about it; the nearest are tried first.
+    /// Sends a vertex inside onto another one that stays, the nearest first, so that nothing bad is left about it.
     fn turn(&self, v: u32, map: &mut VertexMap) -> bool {
         if self.level.faces[v as usize] != INSIDE {
             return false;

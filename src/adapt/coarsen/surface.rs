@@ -3,7 +3,7 @@ use super::level::{Balls, FIXED, Level, is_proper};
 use super::vertex_map::VertexMap;
 use crate::mesh::vector::{Vec3, add, area2, dot, scale, unit};
 
-/// Least cosine between a triangle and what it comes from, and between it and the surface at its vertices.
+/// Least cosine between the normals of a triangle and of the one that it comes from, and of the surface at its vertices.
 const LEAST_COSINE: f64 = 0.94;
 
 /// A triangle that turns by less than this cosine stays in its plane.
@@ -11,10 +11,10 @@ const STILL: f64 = 1.0 - 1e-12;
 
 /// The triangles at the vertices of the boundary.
 pub struct Surface {
-    /// For each vertex its place here, [`NONE`] inside.
+    /// For each vertex its place in these lists; [`NONE`] inside.
     slots: Vec<u32>,
     balls: Balls,
-    /// For each vertex on a face the unit normal there, be it outward or not.
+    /// For each vertex on a face a unit normal there, of either sign.
     normals: Vec<Vec3>,
 }
 
@@ -56,7 +56,7 @@ impl Surface {
         }
     }
 
-    /// Calls `f` with the vertices on faces that are joined to v by an edge on their own face; with some twice.
+    /// Calls `f` with the vertices on faces that are joined to v by an edge on the same face; some come twice.
     pub fn neighbours(&self, level: &Level, v: u32, mut f: impl FnMut(u32)) {
         for &t in self.at(v) {
             let face = level.of_face[level.triangle_origin[t as usize] as usize];
@@ -75,7 +75,7 @@ impl Surface {
         mapped != *nodes && is_proper(&mapped) && dot(unit(normal(level, &mapped)), unit(normal(level, nodes))) < STILL
     }
 
-    /// Whether a triangle vanishes, stays as it is, or still lies along the surface.
+    /// Whether a triangle is no problem: it vanishes, stays as it is, or still lies along the surface.
     pub fn is_fair(&self, level: &Level, t: u32, map: &VertexMap) -> bool {
         let nodes = &level.triangles[t as usize];
         let mapped = map.map(nodes);
@@ -91,7 +91,7 @@ impl Surface {
     }
 }
 
-/// Normal of twice the area.
+/// The normal, with a length of twice the area.
 fn normal(level: &Level, nodes: &[u32; 3]) -> Vec3 {
     let [a, b, c] = nodes.map(|v| level.points[v as usize]);
     area2(a, b, c)

@@ -2,13 +2,13 @@
 use super::level::{Balls, FIXED, INSIDE, Level};
 use super::surface::Surface;
 
-/// Edges shorter than this, in the metrics of both ends, may vanish.
+/// Edges shorter than this in the metrics of both ends may vanish.
 const SHORT: f64 = 0.85;
 
 /// What becomes of a vertex.
 #[derive(Clone, Copy)]
 struct Image {
-    /// The vertex that it goes onto, itself where it stays; [`OPEN`] before that is known.
+    /// The vertex that it goes onto; itself where it stays; [`OPEN`] where that is not decided.
     target: u32,
     /// The vertex that looked at it last.
     seen: u32,
@@ -24,8 +24,8 @@ pub struct VertexMap {
 }
 
 impl VertexMap {
-    /// Vertices are taken in their order, those of the model's edges first, then of its faces: one that no vertex which stays has near
-    /// stays. Of several that are near a vertex goes onto the nearest.
+    /// Vertices are taken in their order, those on edges of the model first, then those on its faces. A vertex stays when no vertex that
+    /// stays is near it; else it goes onto the nearest of these.
     pub fn of(level: &Level, balls: &Balls, surface: &Surface) -> Self {
         let count = level.points.len();
         let mut map = Self { images: vec![Image { target: OPEN, seen: OPEN, distance: f32::INFINITY }; count] };
@@ -43,7 +43,7 @@ impl VertexMap {
         map
     }
 
-    /// Lets a vertex stay, unless it is known to go.
+    /// Lets a vertex stay, unless it goes already.
     fn stays(&mut self, v: u32) -> bool {
         let image = &mut self.images[v as usize];
         if image.target == OPEN {
@@ -52,7 +52,7 @@ impl VertexMap {
         image.target == v
     }
 
-    /// Offers v, which stays, to the vertices inside that are joined to it.
+    /// Offers v, which stays, as a target to the vertices inside that are joined to it.
     fn attract_inside(&mut self, level: &Level, balls: &Balls, v: u32) {
         for &t in balls.at(v) {
             for x in level.tets[t as usize] {
@@ -63,7 +63,7 @@ impl VertexMap {
         }
     }
 
-    /// Offers v, which stays, to a vertex that is joined to it.
+    /// Offers v, which stays, as a target to a vertex that is joined to it.
     #[inline]
     fn attract(&mut self, level: &Level, v: u32, x: u32) {
         let image = &mut self.images[x as usize];
@@ -74,19 +74,19 @@ impl VertexMap {
         }
     }
 
-    /// The vertex that one goes onto: itself where it stays.
+    /// The vertex that a vertex goes onto: itself where it stays.
     #[inline(always)]
     pub fn target(&self, v: u32) -> u32 {
         self.images[v as usize].target
     }
 
-    /// An element after its vertices have gone where they go.
+    /// An element with its vertices replaced by their targets.
     #[inline(always)]
     pub fn map<const N: usize>(&self, nodes: &[u32; N]) -> [u32; N] {
         nodes.map(|v| self.target(v))
     }
 
-    /// Sends a vertex onto another; returns where it went before.
+    /// Sends a vertex onto another. Returns its target before.
     pub fn send(&mut self, v: u32, target: u32, distance: f32) -> (u32, f32) {
         let image = &mut self.images[v as usize];
         let before = (image.target, image.distance);
@@ -103,7 +103,7 @@ impl VertexMap {
         led
     }
 
-    /// Lets the vertex of an element stay that has the longest way; none where all do.
+    /// Of the vertices of an element, lets the one with the longest way stay. None where all stay already.
     pub fn keep_one(&mut self, nodes: &[u32]) -> Option<u32> {
         let goes = nodes.iter().copied().filter(|&v| self.target(v) != v);
         let way = |v: &u32| self.images[*v as usize].distance;
@@ -113,7 +113,7 @@ impl VertexMap {
     }
 }
 
-/// Fourth power of the length of an edge, infinite where it is not short in the metrics of both ends; single precision will do to
+/// Fourth power of the length of an edge, infinite where it is not short in the metrics of both ends. Single precision is enough to
 /// choose by.
 #[inline(always)]
 pub fn distance(level: &Level, a: u32, b: u32) -> f32 {

@@ -1,4 +1,4 @@
-//! Boundary vertices that could not be put on the model when they were made go there once there is room.
+//! Projection of boundary vertices for which there was no room on the model when they were made.
 use super::collapse::onto_end::CollapseScratch;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ids::{TetId, VertexId};
@@ -12,11 +12,11 @@ use crate::mesh::vector::{Vec3, distance, lerp, norm};
 /// Halvings of the way to the model within one attempt.
 const HALVINGS: u32 = 5;
 
-/// A vertex this near to its entity, in parts of its distance from the origin, is on it: the rounding of a projection.
+/// A vertex nearer to its entity than this share of its distance from the origin is on it: projections round by as much.
 const ARRIVED: f64 = 1e-15;
 
-/// Removes boundary vertices that never arrived on the model: what a sweep of [`Project`] just before has left over, so that no id can
-/// stand for another vertex by now.
+/// Removes boundary vertices that never arrived on the model. The items are what a sweep of [`Project`] just before has left over, so no
+/// id stands for another vertex by now.
 pub struct RemoveUnprojected;
 
 impl Operation for RemoveUnprojected {
@@ -61,9 +61,9 @@ impl Operation for Project {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Moves a unprojected vertex to the closest point of its entity, its cavity growing where it must; if that fails, as far
-    /// towards it as inverts no tetrahedron, by up to five halvings.
-    /// Refused as `Inverted` while it has not arrived: to be tried again after reconnection.
+    /// Moves an unprojected vertex to the closest point of its entity, with a cavity that grows where it must. If that fails, the vertex
+    /// goes as far towards that point as no tetrahedron is inverted, by up to five halvings of the way.
+    /// Refused as `Inverted` while it has not arrived; then it is tried again after reconnection.
     pub fn project(&mut self, v: VertexId) -> Result<(), Refusal> {
         self.claim_live(v)?;
         self.context.required.check_move(v)?;
@@ -77,7 +77,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let (start, hint) = (self.store.position(v), self.store.hint(v));
         let goal = self.place(self.store.entity(v), start, &[v]);
         if has_arrived(start, goal) {
-            // Smoothing was here before, or the id belongs to another vertex now.
+            // Smoothing has put it on the model already, or the id belongs to another vertex now.
             return Ok(());
         }
         let to = self.state_at(goal, hint);

@@ -1,4 +1,4 @@
-//! The end-game on the worst tetrahedra: what reconnection and smoothing left is tried with larger cavities.
+//! Repair of the worst tetrahedra: what reconnection and smoothing could not improve is tried with larger cavities.
 use crate::adapt::core::access::Access;
 use crate::adapt::core::edge_list::EdgeItem;
 use crate::adapt::core::ids::{EDGE, TetId, VertexId};
@@ -10,7 +10,7 @@ use crate::adapt::schedule::Operation;
 use crate::mesh::vector::{Vec3, dot, lerp, sub};
 use std::ops::RangeInclusive;
 
-/// How much better, in part, the worst tetrahedron of a larger cavity must become.
+/// The worst mean ratio of a larger cavity must grow by this factor.
 pub const GAIN: f64 = 1.05;
 
 /// Below this mean ratio an edge may be split for the shape alone. Where two edges of the model run side by side, nearer than the metric's
@@ -39,8 +39,8 @@ impl Operation for Repair {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Repairs one bad tetrahedron: one of its vertices is joined anew to a larger cavity, or removed onto any neighbour, if the
-    /// worst tetrahedron becomes clearly better by it.
+    /// Repairs one bad tetrahedron: a larger cavity becomes a star about one of its vertices, or a vertex goes onto any neighbour, if
+    /// the worst tetrahedron becomes clearly better by it.
     pub fn repair(&mut self, scratch: &mut CollapseScratch, t: TetId) -> Result<(), Refusal> {
         let vertices = self.claim_moving_tet(t)?;
         let quality = self.store.quality(t);
@@ -65,8 +65,8 @@ impl<A: Access> Worker<'_, '_, A> {
         if quality < SPLIT_BELOW { self.split_opposite(t, vertices) } else { Err(Refusal::Shape) }
     }
 
-    /// Splits an edge of a tetrahedron where another of its vertices faces it, the longest for which that is possible. The limits of the
-    /// end-game ask of insertion that the worst tetrahedron becomes better, and nothing of lengths.
+    /// Splits the longest edge of a tetrahedron that can be split at the point closest to another of its vertices. The limits of this pass
+    /// ask of an insertion that the worst tetrahedron becomes better, and nothing about lengths.
     fn split_opposite(&mut self, t: TetId, vertices: [VertexId; 4]) -> Result<(), Refusal> {
         let mut edges = EDGE.map(|[i, j]| (self.length(vertices[i], vertices[j]), i, j));
         edges.sort_by(|x, y| y.0.total_cmp(&x.0));

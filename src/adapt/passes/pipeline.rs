@@ -32,22 +32,22 @@ use crate::tasks::{GRAIN, Team};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
 
-/// Passes at most that bring the edges to their length.
+/// Most passes for the sizes.
 const SIZE_PASSES: usize = 20;
 
-/// A size pass that changes less than this part of the vertices is the last.
+/// A size pass that changes less than this share of the vertices is the last.
 const LITTLE: f64 = 0.05;
 
-/// The shapes are done when a pass saves less than this part of the mean of 1/Q − 1.
+/// A shape pass that saves less than this share of the mean of 1/Q − 1 is the last.
 const SETTLED: f64 = 0.2;
 
-/// Passes at most that improve the shapes.
+/// Most passes for the shapes.
 const SHAPE_PASSES: usize = 6;
 
-/// Passes of the shapes after which vertices that wait for room on the model are taken out.
+/// After so many shape passes, vertices that are still unprojected are removed.
 const PATIENCE: usize = 1;
 
-/// Tetrahedra below this mean ratio go through the end-game.
+/// Tetrahedra below this mean ratio are repaired.
 const REPAIR_BELOW: f64 = 0.5;
 
 /// The end-game tries as many tetrahedra in a run as make this part of the mesh, and some. It is dear: one costs as much as some thousand
@@ -60,10 +60,10 @@ const REPAIR_FEW: f64 = 500.0;
 /// The store is renumbered when it has grown by this factor.
 const OUT_OF_ORDER: usize = 2;
 
-/// Tetrahedra that an insertion adds, with much to spare: six is usual.
+/// Room for so many tetrahedra a new vertex. Six are usual.
 const TETS_A_VERTEX: usize = 12;
 
-/// Limits while the sizes are brought about: what is bad is flipped and smoothed, what is fair may wait.
+/// Limits of the size passes: only what is bad is flipped and smoothed.
 fn size_limits() -> Limits {
     Limits {
         improve_below: 0.4,
@@ -76,7 +76,7 @@ fn size_limits() -> Limits {
     }
 }
 
-/// Limits while shapes are improved: nothing may become bad that is not.
+/// Limits of the shape passes: nothing may become bad that is not bad already.
 fn shape_limits() -> Limits {
     Limits {
         improve_below: 0.9,
@@ -97,17 +97,17 @@ pub struct Pipeline<'c, 'm> {
     pub states: Vec<State<'m>>,
     /// The threads.
     pub execution: Execution<'c>,
-    /// Who is told.
+    /// Is told of the progress.
     pub observer: &'c dyn Observer,
     /// Criterion of the flips that follow refinement.
     pub criterion: Criterion,
     /// Where refinement puts new vertices.
     pub points: PointCreation,
-    /// Whether the mesh had far too many vertices, some of which may be left.
+    /// Whether the mesh was coarsened, so that it may still have too many vertices.
     pub crowded: bool,
     /// How far surface triangles may deviate from the model.
     pub surface: SurfaceBounds,
-    /// By kind of operation.
+    /// Times and counts, by kind of operation.
     pub work: [Work; KINDS],
     /// Boundary vertices that are not on the model yet.
     pub unprojected: Vec<VertexId>,
@@ -226,14 +226,14 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         sum / count
     }
 
-    /// Puts near in memory what is near in space, if much has come since that was done.
+    /// Renumbers the store, if it has grown much since it was last renumbered.
     fn keep_order(&mut self) {
         if self.context.store.tet_bound() > OUT_OF_ORDER * self.ordered {
             self.reorder();
         }
     }
 
-    /// Puts near in memory what is near in space.
+    /// Renumbers the store, so that what is near in space is near in memory.
     fn reorder(&mut self) {
         self.collect_unprojected();
         let number = self.context.reorder(self.team());
@@ -243,7 +243,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.ordered = self.context.store.tet_bound();
     }
 
-    /// One pass of insertion and collapse, with as much reconnection as they need; whether it changed little.
+    /// One pass of insertion and collapse, with the reconnection that they need. Returns whether it changed little.
     fn size_pass(&mut self) -> bool {
         let before = self.changes();
         self.refine();
@@ -253,7 +253,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.is_little(self.changes() - before)
     }
 
-    /// One pass of all operations. Flips come after the edges' turn, where they find most: after smoothing they find next to nothing.
+    /// One pass of all operations. Flips come after collapses and splits, where they find most; after smoothing they find next to nothing.
     fn shape_pass(&mut self) {
         self.collapse();
         // Long edges that were refused are tried again: room may have come from farther away.
@@ -264,7 +264,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.smooth();
     }
 
-    /// The end-game on the tetrahedra below the limit, with edges a little longer than elsewhere allowed.
+    /// Repairs the tetrahedra below the limit. Edges may become a little longer than elsewhere.
     fn repair(&mut self) {
         let looked = self.looked;
         self.limit(Limits {
@@ -287,7 +287,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.reconnect(Criterion::MeanRatio, 2);
             self.smooth();
         }
-        // Flips have looked at the worst only.
+        // Here flips looked at the worst tetrahedra only.
         self.looked = looked;
     }
 
@@ -300,7 +300,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.repaired += items.len();
     }
 
-    /// Brings unprojected vertices to the model; after some passes they are taken out instead.
+    /// Brings unprojected vertices to the model; after some passes they are removed instead.
     fn settle(&mut self, pass: usize) {
         self.project();
         if self.unprojected.is_empty() || pass < PATIENCE {
@@ -341,7 +341,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.reconnect(self.criterion, 1);
     }
 
-    /// Splits long edges and brings what lies on the model there.
+    /// Splits long edges, and projects the new vertices that are not on the model yet.
     fn split(&mut self) {
         if !self.may_grow() {
             return;
@@ -354,7 +354,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
     }
 
-    /// Refines at centroids; whether that went well, so that edges need not be split yet.
+    /// Refines at centroids. Returns whether that changed much; then edges need not be split yet.
     fn create(&mut self) -> bool {
         if self.observer.stop() {
             return false;
@@ -367,8 +367,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         !self.is_little(done)
     }
 
-    /// Splits edges that are so long that a point at unit distance from one end would leave bad tetrahedra, and all long ones on the
-    /// model; then creates points along eigenvectors. Whether that went well, so that no other edges need be split yet.
+    /// Splits edges so long that a point at unit distance from one end would leave bad tetrahedra, and all long edges on the model. Then
+    /// creates points along eigenvectors. Returns whether that changed much; then no other edges need be split yet.
     fn extend(&mut self) -> bool {
         let long = self.context.limits.long;
         self.context.limits.long = metric_orthogonal::FAR * long;
@@ -402,7 +402,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
     }
 
-    /// Flips at the tetrahedra that changed since the last time, until little is gained.
+    /// Flips at the tetrahedra that changed since flips last looked, until little is gained.
     fn reconnect(&mut self, criterion: Criterion, sweeps: usize) {
         for _ in 0..sweeps {
             let since = self.begin(Kind::Reconnect);
@@ -426,7 +426,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
     }
 
-    /// Notes that an operation looks at everything now; returns when it did so last.
+    /// Notes that a kind of operation looks at everything now. Returns when it did so last.
     fn begin(&mut self, kind: Kind) -> u32 {
         std::mem::replace(&mut self.looked[kind as usize], self.context.store.clock() + 1)
     }
@@ -461,7 +461,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn make_room(&mut self, new: usize) {
         let team = self.team();
         let store = &mut self.context.store;
-        // Threads and parts take whole blocks of ids, and not all the same number of them.
+        // Threads and parts take ids in whole blocks, and some take more blocks than others.
         let slack = ID_BLOCK * (self.states.len() + 2 * schedule::deterministic::MOST_PARTS);
         let vertices = 2 * new + slack;
         let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
@@ -497,7 +497,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         counts
     }
 
-    /// Edges to be split: those of the model's edges first, then of its faces, then inside; long ones first.
+    /// Edges to be split: first those on edges of the model, then those on its faces, then those inside; each time the longest first.
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
         let (store, limit) = (&self.context.store, self.context.limits.long);

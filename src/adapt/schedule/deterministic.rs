@@ -1,9 +1,9 @@
 //! The same mesh bit for bit, whatever the number of threads.
 //!
-//! In each round the mesh is in parts that depend on nothing but the mesh and the items. Each part is one thread's until the round
-//! ends: its items are done in their order, with ids of its own, and what would touch another part waits for the next round, whose parts
-//! are cut elsewhere. A tetrahedron with vertices in two parts stands still, and so does whatever a part can see of another; so it makes no
-//! difference which part comes first. No lock is taken: a claim is a look at a byte that does not change.
+//! In each round the mesh is cut into parts that depend on nothing but the mesh and the items. One thread has a part until the round
+//! ends. It does the part's items in their order, with ids of the part's own. An item that would touch another part waits for the next
+//! round, which is cut elsewhere. A tetrahedron with vertices in two parts stands still, and so does everything that a part can see of
+//! another. So it makes no difference which part is done first. No lock is taken: a claim reads a byte that does not change.
 use super::parts::Parts;
 use super::{Advance, Item, Operation, ThreadContext, sequential};
 use crate::adapt::core::access::Owned;
@@ -17,34 +17,34 @@ use crate::tasks::{Plan, Pool};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// Parts at most: enough for many threads, and no more, since what lies between them waits.
-/// Their words fit in a byte.
+/// Most parts: enough for many threads, but no more, since what lies between parts waits.
+/// Their numbers fit in a byte.
 pub const MOST_PARTS: usize = 64;
 
-/// Items a part in the first round, at least, where that leaves more than [`FEW`] parts: the larger the fewer meet another part.
+/// Least items a part in the first round, where that leaves more than [`FEW`] parts. In larger parts fewer items meet another part.
 /// Few in the unit tests, whose meshes are small.
 const ITEMS: usize = if cfg!(test) { 12 } else { 4096 };
 
-/// Parts of short lists, if they have [`FEWEST_ITEMS`] each.
+/// Short lists have so many parts, if each gets [`FEWEST_ITEMS`].
 const FEW: usize = 4;
 
-/// Items a part, at least.
+/// Least items a part.
 const FEWEST_ITEMS: usize = if cfg!(test) { 6 } else { 1024 };
 
-/// What is left is one thread's when it is less than this part of all items.
+/// When less than this share of all items is left, one thread does the rest.
 const LITTLE: f64 = 0.008;
 
 /// Vertices or tetrahedra that are looked at in one task.
 const GRAIN: usize = 1 << 13;
 
-/// Vertices whose parts are found at once.
+/// The parts of so many vertices are found together.
 const AT_ONCE: usize = 8;
 
-/// Where an item is done.
+/// Instead of the part of an item: it waits for another round, or is gone.
 const WAITS: u32 = u32::MAX;
 const GONE: u32 = u32::MAX - 1;
 
-/// What a part has of its own in a round, and what comes of it.
+/// What a part has of its own in a round, and its results.
 struct Part {
     id_pool: IdPool,
     unprojected: Vec<VertexId>,
@@ -76,26 +76,26 @@ pub fn run<'m, O: Operation>(
         }
         let mut round = Round { operation, items, context, pool, plan, left, parts };
         left = round.run(threads, &mut counts, advance);
-        // What is left lies between the parts of this round: fewer and larger parts have less between them.
+        // What is left lies between the parts of this round. Fewer and larger parts have less between them.
         parts = (parts / 2).min(power(left.len() / FEWEST_ITEMS));
         shared = true;
     }
 }
 
-/// All vertices are nobody's again.
+/// Clears the owners of all vertices.
 fn give_back(store: &Store, (pool, plan): (&Pool, Plan)) {
     pool.task_for(Plan { grain: GRAIN, ..plan }, store.vertex_bound(), |_, range| {
         range.for_each(|i| store.owner(VertexId(i as u32)).store(0, Relaxed));
     });
 }
 
-/// Whose a vertex is, 0 when it is nobody's.
+/// The owner of a vertex, 0 for none.
 #[inline(always)]
 fn owner(store: &Store, v: VertexId) -> u8 {
     store.owner(v).load(Relaxed)
 }
 
-/// Parts of the first round: large ones, but some for a few threads however short the list.
+/// How many parts the first round has: large ones, but a few even for short lists.
 fn first_parts(items: usize) -> usize {
     power(items / ITEMS).max(FEW.min(power(items / FEWEST_ITEMS))).min(MOST_PARTS)
 }
@@ -152,7 +152,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         again
     }
 
-    /// Writes whose each vertex is. The dead are nobody's: their ids may become anybody's.
+    /// Writes the owners of the vertices. Dead ids have none: any part may get them.
     fn give_out(&self, parts: &Parts) {
         let store = &self.context.store;
         self.pool.task_for(Plan { grain: GRAIN, ..self.plan }, store.vertex_bound(), |_, range| {
@@ -166,7 +166,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         });
     }
 
-    /// The part in which each item can be done.
+    /// For each item the part in which it can be done.
     fn parts_of_items(&self) -> Vec<u32> {
         let store = &self.context.store;
         let between = if O::WHOLE_BALLS { self.between() } else { Vec::new() };
@@ -185,7 +185,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         })
     }
 
-    /// Whether a vertex has a neighbour in another part.
+    /// For each vertex whether it has a neighbour in another part.
     fn between(&self) -> Vec<AtomicBool> {
         let store = &self.context.store;
         let mut between = Vec::new();
@@ -202,7 +202,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         between
     }
 
-    /// The items' numbers by part, where each part begins, and those that wait. What is gone is counted as that.
+    /// The items' numbers sorted by part, where each part begins, and the items that wait. Items that are gone are counted as `Stale`.
     fn sorted(&self, parts_of: &[u32], counts: &mut Counts) -> (Vec<u32>, Vec<usize>, Vec<u32>) {
         let mut starts = vec![0usize; self.parts + 1];
         let is_done = |part: u32| (part as usize) < self.parts;

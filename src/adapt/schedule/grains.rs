@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 /// Items a task of the speculative scheduler, by kind of operation. `geo-adapt tune` measures them.
 ///
-/// The parts of the deterministic one follow from the mesh and the items alone.
+/// The parts of the deterministic scheduler follow from the mesh and the items alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grains([usize; KINDS]);
 
@@ -27,7 +27,7 @@ impl Grains {
 }
 
 impl Default for Grains {
-    /// Measured on two threads: smaller ones cost claims and cold caches, whatever the back-end (ARCHITECTURE.md has the table).
+    /// Measured on two threads: smaller ones cost claims and cold caches, whatever the back-end (docs/decisions/tasks.md has the table).
     fn default() -> Self {
         Self::uniform(512)
     }

@@ -1,4 +1,4 @@
-//! Who runs what, when: an operation is applied to a list of items by one thread or by several.
+//! The schedulers: an operation is applied to a list of items by one thread or by several.
 pub mod deterministic;
 mod grains;
 mod parts;
@@ -19,14 +19,14 @@ use serde::Serialize;
 
 pub use grains::Grains;
 
-/// Who does what, when.
+/// How the threads share the items of a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scheduler {
-    /// All threads, each in parts of the mesh that do not depend on them: the same mesh bit for bit for any number of threads.
+    /// All threads, in parts of the mesh that do not depend on the threads: the same mesh bit for bit for any number of them.
     #[default]
     Deterministic,
-    /// All threads, each where no other is at the moment: another mesh, as good, each time.
+    /// All threads, each where no other is at the moment: another mesh each time, as good.
     Speculative,
     /// One thread, one item after the other.
     Sequential,
@@ -51,7 +51,7 @@ impl Scheduler {
 pub struct Execution<'c> {
     /// The threads.
     pub pool: &'c Pool,
-    /// Who does what.
+    /// How they share the items.
     pub scheduler: Scheduler,
     /// Who runs the tasks, and how they are made.
     pub plan: Plan,
@@ -61,7 +61,7 @@ pub struct Execution<'c> {
 
 /// Something an operation is done to.
 pub trait Item: Copy + Send + Sync {
-    /// The vertices it is known by, some repeatedly; of one that is gone they may be anything. Between sweeps only.
+    /// The vertices that it is known by; some may be repeated. For an item that is gone they may be any. Between sweeps only.
     fn vertices(self, store: &Store) -> [VertexId; 4];
 }
 
@@ -83,12 +83,12 @@ impl Item for TetId {
     }
 }
 
-/// Something to be done to each item of a list, written once for any way of claiming.
+/// An operation on each item of a list, written once for all ways of claiming.
 pub trait Operation: Sync {
     /// What it is done to.
     type Item: Item;
 
-    /// What a thread needs at hand for it, kept for a sweep.
+    /// The scratch of a thread for it, kept for a sweep.
     type Scratch: Default + Send;
 
     /// Whether it needs all tetrahedra at the vertices of its item.
@@ -106,13 +106,13 @@ pub trait Operation: Sync {
 /// Called now and then with the number of items that were done since.
 pub type Advance<'a> = &'a (dyn Fn(usize) + Sync);
 
-/// A thread in a sweep: what it keeps from sweep to sweep, and what the operation needs at hand.
+/// A thread in a sweep: what it keeps from sweep to sweep, and the scratch of the operation.
 pub struct ThreadContext<'s, 'm, O: Operation> {
     state: &'s mut State<'m>,
     scratch: O::Scratch,
 }
 
-/// Applies the operation to all items; there is a state for each thread.
+/// Applies the operation to all items. There is one state a thread.
 pub fn run<'m, O: Operation>(
     operation: &O,
     items: &[O::Item],

@@ -1,13 +1,13 @@
 //! The mesh in parts for one round of the deterministic scheduler: half-spaces cut the items in halves, again and again.
 //!
-//! The cuts depend on the mesh alone. Of several directions the one whose cut crosses the fewest tetrahedra is taken: along a
-//! boundary layer, not across it, and in a later round across the cuts of the one before, beside which its items lie.
+//! The cuts depend on the mesh and the items alone. Of several directions the one whose cut crosses the fewest tetrahedra is taken. So a
+//! cut runs along a boundary layer and not across it; and in a later round, whose items lie beside the cuts of the last, across those.
 use super::Item;
 use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::store::Store;
 use crate::mesh::vector::{Vec3, dot};
 
-/// Normals of the cuts that are tried.
+/// The normals that are tried for a cut.
 const DIRECTIONS: [Vec3; 9] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
@@ -20,10 +20,10 @@ const DIRECTIONS: [Vec3; 9] = [
     [0.0, 1.0, -1.0],
 ];
 
-/// Items a part that are looked at to find the cuts.
+/// How many items a part are sampled to find the cuts.
 const SAMPLED: usize = 32;
 
-/// A cut: where a point has more than `offset` along the direction, it is on the second side.
+/// A cut. A point is on the second side when its coordinate along the direction is above `offset`.
 #[derive(Clone, Copy, Default)]
 struct Cut {
     direction: usize,
@@ -36,7 +36,7 @@ pub struct Parts {
     cuts: Vec<Cut>,
 }
 
-/// A sampled item: along each direction its vertex, and the extent of a tetrahedron there.
+/// A sampled item: along each direction the coordinate of its vertex, and the extent of a tetrahedron there.
 struct Sample {
     at: [f64; DIRECTIONS.len()],
     extent: [[f64; 2]; DIRECTIONS.len()],
@@ -65,7 +65,7 @@ impl Parts {
         Self { cuts }
     }
 
-    /// The part each point lies in: several at a time, which do not wait for each other.
+    /// The parts in which points lie. Several at a time, so that the processor works on them side by side.
     #[inline]
     pub fn hold<const N: usize>(&self, points: [Vec3; N]) -> [usize; N] {
         let mut nodes = [0; N];
@@ -104,7 +104,7 @@ fn cut(samples: &[Sample], order: &mut [u32], cuts: &mut [Cut], node: usize) {
     cut(samples, above, cuts, 2 * node + 2);
 }
 
-/// Brings the lesser half along a direction to the front; returns where the second half begins.
+/// Brings the half with lesser coordinates along a direction to the front. Returns where the other half begins.
 fn halve(samples: &[Sample], order: &mut [u32], direction: usize) -> f64 {
     let at = |s: &u32| samples[*s as usize].at[direction];
     let middle = order.len() / 2;

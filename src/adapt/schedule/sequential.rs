@@ -1,4 +1,4 @@
-//! One thread, the items in their order: the reference for all other schedulers.
+//! One thread does the items in their order: the reference for all other schedulers.
 use super::{Advance, Operation, ThreadContext};
 use crate::adapt::core::access::{Access, Exclusive};
 use crate::adapt::core::context::Context;

@@ -1,7 +1,7 @@
-//! Several threads, each taking tasks of some items; what ends in a conflict is tried again at the end of its task, when the other thread
-//! has most likely moved on, and then in the next round (Tsolakis 2021, 3.4). The last round is one thread's, so no item is lost.
+//! Several threads take tasks of some items each. An item that ends in a conflict is tried again at the end of its task, when the other
+//! thread has most likely moved on, and then in the next round (Tsolakis 2021, 3.4). One thread does the last round, so no item is lost.
 //!
-//! One thread alone meets nobody, so it claims nothing: it is the sequential scheduler.
+//! One thread alone has no conflicts and claims nothing: that is the sequential scheduler.
 use super::{Advance, Operation, ThreadContext, sequential};
 use crate::adapt::core::access::{Access, Speculative};
 use crate::adapt::core::context::Context;
@@ -10,13 +10,13 @@ use crate::adapt::core::worker::Worker;
 use crate::tasks::{Plan, Pool};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Tasks a thread, at least: short lists are shared out too.
+/// Least tasks a thread, so that short lists are shared too.
 const SHARES: usize = 8;
 
-/// Rounds that all threads share; then one thread takes what is left.
+/// Rounds on all threads; then one thread does what is left.
 const ROUNDS: usize = 6;
 
-/// What a thread has in a round, and what comes of it.
+/// What a thread has in a round, and its results.
 struct RoundOf<'s, 't, 'm, O: Operation> {
     thread: &'s mut ThreadContext<'t, 'm, O>,
     counts: Counts,
@@ -45,7 +45,7 @@ pub fn run<'m, O: Operation>(
         let grain = plan.grain.min(work.len() / (SHARES * pool.threads())).max(1);
         let begin = |thread| RoundOf { thread, counts: Counts::default(), again: Vec::new() };
         let mut rounds: Vec<_> = threads.iter_mut().map(begin).collect();
-        // Each task takes what is next in the list, in whatever order tasks are run: lists have their most urgent items first.
+        // Each task takes the next items of the list, in whatever order tasks are run, since lists have their most urgent items first.
         let next = AtomicUsize::new(0);
         pool.task_for_with(
             Plan { grain: 1, ..plan },

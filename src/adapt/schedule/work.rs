@@ -1,4 +1,4 @@
-//! What the passes tell: kinds of operations, their times and counts, and who is told.
+//! What the passes report: kinds of operations with their times and counts, and the observer.
 use crate::adapt::core::refusal::Counts;
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ pub enum Kind {
     Smooth,
     /// Projection on the model.
     Project,
-    /// The end-game on the worst tetrahedra.
+    /// Repair of the worst tetrahedra.
     Repair,
 }
 
@@ -52,11 +52,11 @@ pub struct Work {
     pub time: Duration,
 }
 
-/// Is told what happens; called from several threads.
+/// Is told what happens. Called from several threads.
 pub trait Observer: Sync {
     /// A sweep begins.
     fn begin(&self, _kind: Kind, _pass: usize, _items: usize) {}
-    /// So many more items are done.
+    /// This many more items are done.
     fn advance(&self, _items: usize) {}
     /// The sweep is over.
     fn end(&self, _counts: &Counts) {}
@@ -66,7 +66,7 @@ pub trait Observer: Sync {
     }
 }
 
-/// Nobody is told, nobody stops it.
+/// An observer that does nothing.
 pub struct Silent;
 
 impl Observer for Silent {}

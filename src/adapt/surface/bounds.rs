@@ -1,11 +1,11 @@
-//! What the user bounds of the surface: triangles that deviate too far from the model are split, and nothing makes new ones.
+//! The user's bounds of the surface: triangles that deviate too far from the model are split, and no operation makes new ones.
 use super::deviation::SurfaceDeviation;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ids::{FACE, TetId};
 use crate::adapt::core::worker::Worker;
 
-/// Bounds of how far surface triangles may deviate from the model. Without them only what is there is kept from becoming worse than the
-/// defaults of the kernel.
+/// Bounds of how far surface triangles may deviate from the model. Without them operations only keep triangles from becoming worse than
+/// the kernel's own limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfaceBounds {
     /// Greatest angle in degrees between a triangle's normal and the model's at the point closest to its centroid, and half the greatest
@@ -21,7 +21,7 @@ impl SurfaceBounds {
         self.normal_deviation.is_some() || self.hausdorff.is_some()
     }
 
-    /// Least cosine of the angle, of those of the kernel and of the user.
+    /// The least cosine of the angle: the kernel's own or the user's, whichever is stricter.
     pub fn cosine(&self, default: f64) -> f64 {
         self.normal_deviation.map_or(default, |degrees| degrees.to_radians().cos().max(default))
     }
@@ -41,7 +41,7 @@ impl<A: Access> Worker<'_, '_, A> {
             || deviation.chord > limits.chord
     }
 
-    /// Surface triangles of a tetrahedron that deviate; those of an interface are counted on the side of the lesser tetrahedron.
+    /// How many surface triangles of a tetrahedron deviate. A triangle of an interface counts for the tetrahedron with the lesser id.
     pub fn count_deviating(&mut self, t: TetId) -> usize {
         let (vertices, tags) = (self.store.vertices(t), self.store.tags(t));
         let mut count = 0;

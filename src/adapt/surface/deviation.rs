@@ -1,4 +1,4 @@
-//! How far surface triangles deviate from the model, and that no operation makes it worse.
+//! How far surface triangles deviate from the model, and the checks that no operation makes that worse.
 use super::placement::MeanParameters;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ids::VertexId;
@@ -7,32 +7,32 @@ use crate::adapt::core::worker::Worker;
 use crate::geometry::{Entity, Evaluate, Geometry};
 use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, scale, unit};
 
-/// How a surface triangle looks to its model, as cosines.
+/// How far a surface triangle deviates from the model: two angles as cosines, and a distance.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceDeviation {
-    /// n_triangle · n_CAD at the closest point of the centroid: 1 − the normal deviation of METHOD.md §3.
+    /// n_triangle · n_CAD at the closest point of the centroid: one minus the normal deviation of METHOD.md §3.
     pub cos_deviation: f64,
-    /// Of half the greatest angle between the model's normals at the vertices. Without it a sphere could become a
-    /// tetrahedron: its faces are tangent to it.
+    /// Cosine of half the greatest angle between the model's normals at the vertices. Without it a sphere could become a
+    /// tetrahedron, whose faces are tangent to it.
     pub cos_variation: f64,
-    /// Distance of the centroid and of the middles of the edges from the model, where that is bounded; else 0.
+    /// Greatest distance from the model of the centroid and of the middles of the edges, where that is bounded; else 0.
     pub chord: f64,
 }
 
-/// How surface triangles deviation to their model.
+/// The worst deviation of several surface triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct WorstDeviation {
-    /// The worst of each cosine, without sign.
+    /// The worst of each measure; cosines without sign.
     worst: SurfaceDeviation,
     /// The side from which they are seen: −1 on an interface that is met from behind.
     side: f64,
 }
 
-/// A triangle that turns from another by less than this cosine lies as that one did.
+/// A triangle whose normal has a greater cosine than this with that of another lies as the other does.
 const STILL: f64 = 0.97;
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// How a triangle looks to its face; the cos_deviation is negative when it looks to the model's inside.
+    /// The deviation of a triangle from its face. The `cos_deviation` is negative when the triangle looks to the model's inside.
     pub fn surface_deviation(&mut self, triangle: [VertexId; 3], face: u32) -> SurfaceDeviation {
         let [a, b, c] = triangle.map(|v| self.store.position(v));
         let normal = unit(area2(a, b, c));
@@ -61,7 +61,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Greatest distance from the model of a triangle's centroid, which is given, and of the middles of its edges, where it is bounded.
+    /// The chord error of a triangle, where it is bounded; else 0. The distance of the `centroid` is given.
     fn chord(&mut self, [a, b, c]: [VertexId; 3], face: u32, centroid: f64) -> f64 {
         if self.context.limits.chord == f64::INFINITY {
             return 0.0;
@@ -69,7 +69,7 @@ impl<A: Access> Worker<'_, '_, A> {
         [[a, b], [b, c], [c, a]].into_iter().fold(centroid, |most, edge| self.chord_of(edge, face).max(most))
     }
 
-    /// Distance from the model of the middle of an edge of a triangle on a face: of an edge on the model's edge from that one.
+    /// Distance of the middle of a triangle's edge from the face, or from the model edge where it is a ridge.
     pub fn chord_of(&mut self, [a, b]: [VertexId; 2], face: u32) -> f64 {
         let middle = lerp(self.store.position(a), self.store.position(b), 0.5);
         let entity = self.store.ridge_curve(a, b).map_or(Entity::Face(face), Entity::Edge);
@@ -79,8 +79,8 @@ impl<A: Access> Worker<'_, '_, A> {
         distance(middle, self.place(entity, middle, &[a, b]).point)
     }
 
-    /// Normal at a vertex of a face, at its parameters if it knows them; at a pole or an apex, where there is none, a little towards
-    /// `inner`.
+    /// Normal of a face at a vertex, at the vertex' parameters if they are known. At a pole or an apex, where there is no normal, it is taken
+    /// a little towards `inner`.
     fn normal_near(&mut self, face: u32, p: Vec3, uv: Option<[f64; 2]>, inner: [f64; 2]) -> Vec3 {
         let evaluator = &mut self.state.evaluator;
         let uv = uv.unwrap_or_else(|| evaluator.closest_on_surface(face, p, inner).uv);
@@ -98,7 +98,7 @@ impl<A: Access> Worker<'_, '_, A> {
         (0.5 * (1.0 + dot(da, db))).max(0.0).sqrt()
     }
 
-    /// How the triangles that are there deviation to the model; with their tags.
+    /// The worst deviation of some triangles, given with their tags.
     pub fn worst_deviation(&mut self, triangles: &[([VertexId; 3], u32)]) -> WorstDeviation {
         let (mut worst, mut sum) = (SurfaceDeviation { cos_deviation: 1.0, cos_variation: 1.0, chord: 0.0 }, 0.0);
         for &(triangle, tag) in triangles {
@@ -113,7 +113,7 @@ impl<A: Access> Worker<'_, '_, A> {
         WorstDeviation { worst, side: if sum < 0.0 { -1.0 } else { 1.0 } }
     }
 
-    /// Refuses a star whose surface triangles turn from the model more than good ones may, and by `slack` more than those that go.
+    /// Refuses a star whose surface triangles deviate more than the limits and more than the triangles that go, by `slack`.
     pub fn check_normals(&mut self, slack: f64) -> Result<(), Refusal> {
         if self.state.star.surface.is_empty() {
             return Ok(());
@@ -124,7 +124,7 @@ impl<A: Access> Worker<'_, '_, A> {
         self.check_star_normals(before, slack)
     }
 
-    /// Whether each new surface triangle of the star lies nearly as one of its face that goes.
+    /// Whether each new surface triangle of the star has nearly the normal of an old one on the same face.
     pub fn turns_little(&self) -> bool {
         let normal = |triangle: [VertexId; 3]| {
             let [a, b, c] = triangle.map(|v| self.store.position(v));
@@ -136,7 +136,7 @@ impl<A: Access> Worker<'_, '_, A> {
         })
     }
 
-    /// As [`Worker::check_normals`], when the old triangles were looked at before.
+    /// As [`Worker::check_normals`], with the old triangles measured before.
     pub fn check_star_normals(&mut self, old: WorstDeviation, slack: f64) -> Result<(), Refusal> {
         let new = std::mem::take(&mut self.state.replacement.faces);
         let result = self.compare_normals(old, &new, slack);
@@ -144,7 +144,7 @@ impl<A: Access> Worker<'_, '_, A> {
         result
     }
 
-    /// Holds new triangles, with tags, against the old ones: `slack` is for the cos_deviation alone.
+    /// Compares new triangles, with their tags, with the old ones. `slack` is for `cos_deviation` alone.
     pub fn compare_normals(
         &mut self,
         old: WorstDeviation,
@@ -152,7 +152,7 @@ impl<A: Access> Worker<'_, '_, A> {
         slack: f64,
     ) -> Result<(), Refusal> {
         let limits = self.context.limits;
-        // A negative limit allows any: a vertex that must go, goes.
+        // A negative limit allows any deviation: the vertex has to go.
         let cos_deviation = if limits.cos_deviation < 0.0 {
             -1.0
         } else {

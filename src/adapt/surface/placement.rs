@@ -6,7 +6,7 @@ use crate::adapt::core::worker::Worker;
 use crate::geometry::{Entity, Evaluate, Geometry};
 use crate::mesh::vector::Vec3;
 
-/// The mean of parameters on a face, mind its periods.
+/// The mean of parameters on a face, across its periods.
 pub struct MeanParameters {
     period: [Option<f64>; 2],
     first: [f64; 2],
@@ -65,7 +65,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Mean parameter on a model edge of those of the vertices that know theirs.
+    /// The mean parameter, on a model edge, of the vertices whose parameter is known.
     fn guess_t(&self, curve: u32, near: &[VertexId]) -> Option<f64> {
         let edge = &self.context.model.topology().edges[curve as usize];
         let known = near.iter().filter(|&&v| self.store.entity(v) == Entity::Edge(curve));
@@ -92,7 +92,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Parameters of a vertex on a face, if it knows them.
+    /// Parameters of a vertex on a face, if they are known.
     pub fn uv_of(&mut self, v: VertexId, face: u32) -> Option<[f64; 2]> {
         let parameters = self.store.parameters(v);
         match self.store.entity(v) {
@@ -102,7 +102,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Mean parameters on a face of those of the vertices that know theirs.
+    /// The mean parameters, on a face, of the vertices whose parameters are known.
     fn guess_uv(&mut self, face: u32, near: &[VertexId]) -> Option<[f64; 2]> {
         let mut mean = MeanParameters::new(self.context.model.topology().faces[face as usize].period);
         for &v in near {
@@ -111,8 +111,8 @@ impl<A: Access> Worker<'_, '_, A> {
         mean.get()
     }
 
-    /// Parameter on a model edge of the first vertex, which is on it or one of its ends; on a closed edge of the end that is nearer to
-    /// the second vertex.
+    /// Parameter on a model edge of the first vertex, which lies on it or is one of its ends. On a closed edge it is that of the end which
+    /// is nearer to the second vertex.
     pub fn parameter_beside(&self, curve: u32, [v, beside]: [VertexId; 2]) -> f64 {
         let edge = &self.context.model.topology().edges[curve as usize];
         let Entity::Vertex(corner) = self.store.entity(v) else { return self.store.parameters(v)[0] };

@@ -142,8 +142,8 @@ pub struct Bench<'m> {
 }
 
 impl<'m> Bench<'m> {
-    /// A bench with so many threads. Limits are lax, so that much is done: edges of any length are split and collapsed, and bad
-    /// elements come of it.
+    /// A bench with so many threads. Limits are lax, so that much is done: edges of any length are split and collapsed, even if bad
+    /// elements come of that.
     pub fn new(sample: &'m Sample, threads: usize, seed: u64) -> Self {
         let Filled { store, unprojected, .. } =
             fill::fill(Team::alone(), &sample.mesh, &sample.place, &sample.source).unwrap();

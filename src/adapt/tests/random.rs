@@ -52,7 +52,7 @@ fn attempt(bench: &mut Bench<'_>, kind: u8, pick: usize) -> Result<(), Refusal> 
         5 => attempt_once(&Smooth, &mut worker, vertex),
         6 => attempt_once(&Repair, &mut worker, edge.tet),
         7 => {
-            // What went before was in another sweep.
+            // What was done before counts as another sweep.
             worker.store.tick();
             attempt_once(&Thin, &mut worker, vertex)
         }

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 /// Long enough on the slowest machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Random sweeps for so long, on a busy machine until something was seen, the check after each; returns attempts, successes and conflicts.
+/// Random sweeps for so long, on a busy machine until there were conflicts, with the check after each. Returns attempts, successes and
+/// conflicts.
 fn stress(shape: Shape, n: u32, threads: usize, scheduler: Scheduler, time: Duration) -> [u64; 3] {
     let sample = sample(shape, n, 0.5);
     let mut bench = Bench::new(&sample, threads, threads as u64);

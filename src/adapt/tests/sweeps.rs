@@ -43,7 +43,7 @@ fn thinning_leaves_what_the_model_holds_and_no_two_go_side_by_side() {
         let vertices = |bench: &Bench| bench.context.store.live_vertices().count();
         let before = vertices(&bench);
         let first = bench.sweep(Task::Thin).done as usize;
-        // Who goes takes its neighbours out of the sweep: those of an inner vertex are fourteen, and some share them.
+        // A vertex that goes takes its neighbours out of the sweep: an inner vertex has fourteen, some of which are another's too.
         assert!(20 * first > before && 4 * first < before, "{first} of {before}");
         let later: usize = (0..10).map(|_| bench.sweep(Task::Thin).done as usize).sum();
         // On the boundary a cavity may have grown over more.

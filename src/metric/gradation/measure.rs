@@ -1,4 +1,4 @@
-//! The gradation that a metric has: the ratio r that each edge would need.
+//! The gradation of a metric as it is: the ratio r that each edge would need.
 use super::super::Sym3;
 use super::super::frame::Frame;
 use super::super::summary::Percentiles;
@@ -8,17 +8,17 @@ use crate::mesh::adjacency::Edges;
 use crate::mesh::vector::sub;
 use crate::tasks::{GRAIN, Team};
 
-/// Edges that the percentiles are taken from, about.
+/// The percentiles are taken from about so many edges.
 const SAMPLES: usize = 1 << 18;
 
-/// Greatest ln r that is told apart.
+/// Greatest ln r that is measured.
 const FASTEST: f64 = 700.0;
 
 /// Ratios r of growth, 1 where nothing grows.
 pub type Growths = Percentiles;
 
-/// The least ratio r by which [`super::grade`] would leave an edge as it is: percentiles over the edges (of many, a sample), and the
-/// greatest over all of them, to 1e-4 of ln r.
+/// For each edge the least ratio r at which [`super::grade`] leaves it as it is. Percentiles over the edges (a sample, if there are many),
+/// and the greatest of all edges; ln r is right to 1e-4 of itself.
 pub fn measure(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Growths {
     let frames = team.map(GRAIN, logs.len(), |v| Frame::of_log(&logs[v]));
     let edges = Edges::of(team, &mesh.tets.nodes);
@@ -41,7 +41,7 @@ pub fn measure(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Growths {
     growths
 }
 
-/// The least pace from `least` on with which it is graded, to 1e-4 of it.
+/// The least pace, not below `least`, at which an edge is graded, to 1e-4 of it.
 fn needed(least: f64, is_graded: impl Fn(f64) -> bool) -> f64 {
     if is_graded(least) {
         return least;

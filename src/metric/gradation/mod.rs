@@ -1,12 +1,12 @@
-//! Gradation: no metric asks for sizes that its neighbours' have not grown to yet. Mixed-space homogeneous (Alauzet 2010, §6.2.1).
+//! Gradation: sizes grow from vertex to vertex at a bounded pace. Mixed-space homogeneous (Alauzet 2010, §6.2.1; METHOD.md §1.7).
 //!
 //! For an edge pq with vector e the metric of p grows to q: G has the eigenvectors of M_p and the eigenvalues
 //! λ_i · [(1 + √λ_i |e| ln r)^t (1 + L_p(e) ln r)^(1−t)]^(−2), t = 1/8; M_q ← M_q ∩ G, both ways, until nothing changes.
 //!
-//! A front does it: only edges of vertices that have changed are looked at, those first where what has changed are the smallest sizes,
-//! since sizes only grow on their way (as Δ-stepping does for shortest paths: Meyer & Sanders 2003). A round takes all whose news
-//! are within a class of sizes; each neighbour takes the intersection over those of them that it has an edge with, in the order of their numbers, from
-//! the values of the round before. So all is the same bit for bit on any number of threads.
+//! A front does it. Only vertices that have changed (that have *news*) tell their neighbours, those with the least changed size first, since
+//! sizes only grow on their way (as Δ-stepping does for shortest paths: Meyer & Sanders 2003). A round takes all vertices whose news are
+//! within a class of sizes. Each neighbour intersects its metric with the grown ones of the vertices that tell it, in the order of their
+//! numbers, from the values of the round before. So the result is the same bit for bit on any number of threads.
 mod growth;
 mod measure;
 #[cfg(test)]
@@ -22,17 +22,17 @@ pub use measure::{Growths, measure};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering::Relaxed};
 
-/// An intersection that raises no eigenvalue by more than this share, half of it in size, is no change. (With 1e-6 a field of strong and
-/// turning anisotropy takes half as many updates more, for sizes that no mesh can tell apart.)
+/// An intersection that raises no eigenvalue by more than this share (a size by half of it) is no change. With 1e-6 a field of strong and
+/// turning anisotropy takes half as many updates more, for sizes that no mesh can tell apart.
 const TOLERANCE: f64 = 1e-3;
 
-/// Sizes within this factor of the least that are news are one class.
+/// News within this factor of the least size that is news are one class.
 const CLASS: f64 = 1.25;
 
 /// Vertices a task: one takes a microsecond or two.
 const FEW: usize = 1 << 8;
 
-/// Words of 64 vertices a task that looks for those that are told: most are zero.
+/// Words of 64 vertices a task of the search for vertices that are told. Most words are zero.
 const WORDS: usize = 1 << 14;
 
 /// What grading did.
@@ -47,8 +47,8 @@ pub struct Graded {
 }
 
 /// Grades ln M at the vertices, shape (n,), by a ratio r > 1, along the edges of the
-/// tetrahedra, or of the triangles where there is no tetrahedron. Vertices without an edge stay as they are, and so does, bit for
-/// bit, every metric that is within bounds; what has been graded is.
+/// tetrahedra, or of the triangles where there is no tetrahedron. Vertices without an edge stay as they are. So does, bit for bit, every
+/// metric that is graded already.
 ///
 /// # Panics
 /// When there are not as many metrics as vertices.
@@ -71,12 +71,12 @@ pub fn grade_with(
     Grading::new(team, vertices, around, logs, ratio.ln()).run()
 }
 
-/// Where a vertex waits to tell its neighbours.
+/// The list in which a vertex waits to tell its neighbours.
 const NOWHERE: u8 = 0;
 const NEAR: u8 = 1;
 const FAR: u8 = 2;
 
-/// A vertex gets another metric.
+/// A new metric of a vertex.
 #[derive(Clone, Copy)]
 struct Update {
     vertex: u32,
@@ -91,13 +91,13 @@ struct Grading<'a> {
     vertices: &'a [Vec3],
     around: &'a VertexNeighbours,
     logs: &'a mut [Sym3],
-    /// Of `logs`, always as [`Frame::of_log`] has it: so a second grading sees what this one saw.
+    /// The frames of `logs`, always made by [`Frame::of_log`], so that a second grading starts from the same bits.
     frames: Vec<Frame>,
     /// ln r.
     pace: f64,
     /// [`NOWHERE`], [`NEAR`] or [`FAR`].
     places: Vec<AtomicU8>,
-    /// Of who waits, the least size that is news.
+    /// For each vertex that waits, the least size that is news.
     news: Vec<f64>,
     /// Who tells its neighbours in this round.
     telling: Vec<AtomicBool>,
@@ -140,7 +140,7 @@ impl<'a> Grading<'a> {
             if updates == 0 {
                 break;
             }
-            // Looking again at all edges where something may be otherwise makes sure of it, whatever the rounding.
+            // A last look at all edges that may have changed makes sure that the metric is graded, whatever the rounding.
             let mut is_open = self.changed.clone();
             waiting.iter().for_each(|&(p, _)| is_open[p as usize] = true);
             waiting = self.violators(|p, q| is_open[p as usize] || self.changed[q as usize]);
@@ -149,8 +149,8 @@ impl<'a> Grading<'a> {
         graded
     }
 
-    /// The vertices whose metrics, grown along an edge, are not within the one at its other end, and the least size that is news there. From p to
-    /// q it is looked where that `is_open`: of all others it is known that they are within.
+    /// The vertices whose metric, grown along an edge, is finer than that at the other end, with the least size that is news there. Only
+    /// edges from p to q that are `is_open` are looked at: all others are known to be graded.
     fn violators(&self, is_open: impl Fn(u32, u32) -> bool + Sync) -> Vec<(u32, f64)> {
         self.team.collect(FEW, self.logs.len(), |range, found| {
             for p in range.start as u32..range.end as u32 {
@@ -163,11 +163,11 @@ impl<'a> Grading<'a> {
         })
     }
 
-    /// The metric of p grown to q, relative to that of q, `of_q`; none when it is within that.
+    /// The metric of p grown to q, relative to `of_q`, the metric of q; none when it is nowhere finer.
     #[inline]
     fn excess(&self, p: u32, of_q: &Frame, q: u32) -> Option<Relative> {
         let of_p = &self.frames[p as usize];
-        // What is nowhere finer cannot ask for anything.
+        // A metric that is nowhere finer changes nothing.
         if of_p.roots[2] <= of_q.roots[0] {
             return None;
         }
@@ -180,7 +180,7 @@ impl<'a> Grading<'a> {
         (!relative.is_below(1.0 + TOLERANCE)).then_some(relative)
     }
 
-    /// Lets these tell their neighbours, and these theirs, until nothing changes; returns the rounds and the updates.
+    /// Lets these vertices tell their neighbours, and these theirs, until nothing changes. Returns the numbers of rounds and updates.
     fn settle(&mut self, waiting: &[(u32, f64)]) -> [usize; 2] {
         let (mut near, mut far) = (Vec::new(), Vec::with_capacity(waiting.len()));
         for &(v, news) in waiting {
@@ -205,7 +205,7 @@ impl<'a> Grading<'a> {
         }
     }
 
-    /// Of those that wait, who is near, and who stays far. Who was near meanwhile may be in the list twice, or no more be far.
+    /// Splits the vertices that wait into near and far ones. A vertex that has been near meanwhile may be in the list twice, or be far no more.
     fn split(&self, waiting: &[u32], limit: f64) -> [Vec<u32>; 2] {
         let parts = self.team.chunks(GRAIN, waiting.len(), |range| {
             let (mut near, mut far) = (Vec::new(), Vec::new());
@@ -214,7 +214,7 @@ impl<'a> Grading<'a> {
                 if self.news[v as usize] > limit {
                     far.extend((place.load(Relaxed) == FAR).then_some(v));
                 } else {
-                    // Of two only one sees that it was far.
+                    // Of two entries of a vertex only one finds it far.
                     near.extend(place.compare_exchange(FAR, NEAR, Relaxed, Relaxed).is_ok().then_some(v));
                 }
             }
@@ -228,9 +228,9 @@ impl<'a> Grading<'a> {
         [0, 1].map(|which| self.team.join_slices(parts.iter().map(|lists| lists[which].as_slice())))
     }
 
-    /// Takes over the metrics of these, ascending; returns who is now near, and who is now far.
+    /// Writes these updates, which ascend by vertex. Returns the vertices that are now near, and those that are now far.
     fn write_back(&mut self, updated: &[Update], limit: f64) -> [Vec<u32>; 2] {
-        // A task owns the vertices of a chunk, of all that is kept for them.
+        // A task owns the vertices of a chunk, with all that is kept for them.
         let tasks = if updated.len() < 2 * FEW || self.team.threads() == 1 { 1 } else { 4 * self.team.threads() };
         let own = self.logs.len().div_ceil(tasks).max(1);
         let kept = self.logs.chunks_mut(own).zip(self.frames.chunks_mut(own));
@@ -266,7 +266,7 @@ impl<'a> Grading<'a> {
         self.team.chunks(GRAIN, vertices.len(), least).into_iter().reduce(f64::min)
     }
 
-    /// The new metrics of the neighbours of `tellers`, where they change, in the order of the vertices.
+    /// The changed metrics of the neighbours of `tellers`, in the order of the vertices.
     fn round(&self, tellers: &[u32]) -> Vec<Update> {
         self.team.for_each(FEW, tellers.len(), |range| {
             for &p in &tellers[range] {
@@ -302,7 +302,7 @@ impl<'a> Grading<'a> {
         updated
     }
 
-    /// The intersection of the metric of q with what has grown from its neighbours that tell; none when that is no change.
+    /// The intersection of the metric of q with those grown from the neighbours that tell it; none when that is no change.
     fn updated(&self, q: u32) -> Option<Update> {
         let before = self.frames[q as usize];
         let (mut now, mut news) = (before, f64::INFINITY);
@@ -313,7 +313,7 @@ impl<'a> Grading<'a> {
             }
         }
         let log = (news < f64::INFINITY).then(|| now.log())?;
-        // An intersection raises ln det M; what does not is rounding, of sizes too different for their figures.
+        // An intersection raises ln det M. What does not is rounding, of sizes that differ too much for double precision.
         let rises = log.trace() - self.logs[q as usize].trace() > 0.5 * TOLERANCE;
         rises.then(|| Update { vertex: q, log, frame: Frame::of_log(&log), news })
     }

@@ -6,13 +6,13 @@ use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::{Limits, Sym3, gradation, intersect_all};
 use crate::tasks::{GRAIN, Team, stage};
 
-/// Logarithm of the scale with which a metric of the complexity wanted has it after gradation too, as a first guess.
+/// First guess of the logarithm of the scale at which a metric has the complexity wanted after gradation.
 const USUAL_SCALE: f64 = -0.2;
 
 /// The complexity of a metric, and what bounds its sizes.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds<'f> {
-    /// The complexity C that is met, to 1 %, with all that follows.
+    /// The complexity C that is met, to 1 %, within all bounds.
     pub complexity: f64,
     /// How C is measured from ln M at the vertices.
     pub measure: Measure,
@@ -25,7 +25,7 @@ pub struct Bounds<'f> {
 }
 
 impl Bounds<'_> {
-    /// Limits and intersects ln M at the vertices; returns at how many the limits changed it.
+    /// Limits ln M at the vertices and intersects it with what is fixed. Returns at how many vertices the limits changed it.
     pub fn apply(&self, team: Team<'_>, logs: &mut [Sym3]) -> usize {
         let limited = self.limits.apply(team, logs);
         if let Some(fixed) = self.fixed {
@@ -35,7 +35,7 @@ impl Bounds<'_> {
     }
 }
 
-/// The metric within bounds and graded, at the scale at which it has the complexity wanted, from ln M without them.
+/// The metric within its bounds and graded, at the scale at which it has the complexity wanted. `raw` is ln M before that.
 ///
 /// # Errors
 /// [`Error::Unreachable`] when there is no such scale.
@@ -88,12 +88,12 @@ pub(super) fn bounded_with(
     Ok((logs, summary))
 }
 
-/// ln M graded, of nearly the complexity wanted; the scale of the metric it was graded from; and how many gradings it took.
+/// ln M, graded, of nearly the complexity wanted; the scale of `raw` from which it was graded; and the number of gradings.
 ///
-/// Gradation costs most of all. So a metric whose complexity is nearly right is good enough, to be scaled afterwards. What was graded by a
-/// ratio r^k is graded by r when its sizes are multiplied by 1/k or less, for in the bound on growth ln r stands beside |e|/h only.
-/// For the same reason a metric that was graded at another scale, brought to a coarser one, has all that gradation there will ask
-/// for, or less: grading goes on from it instead of from the beginning. (Not with a least size, which does not scale.)
+/// Gradation costs most of all. So a metric whose complexity is nearly right will do; it is scaled afterwards. A metric that was graded by
+/// the ratio r^k is graded by r when its sizes are multiplied by 1/k or less, for in the bound on growth ln r stands beside |e|/h only.
+/// For the same reason a metric that was graded and then made coarser is nowhere finer than the graded one at the coarser scale. So
+/// grading goes on from it instead of from the beginning, unless there is a least size, which does not scale.
 fn graded(
     team: Team<'_>,
     mesh: &TetMesh,

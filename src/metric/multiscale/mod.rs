@@ -1,12 +1,12 @@
 //! The multiscale metric: from fields at the vertices to the metric whose mesh has the least interpolation error in an L^p norm for its
 //! number of vertices (METHOD.md §1; Loseille & Alauzet 2011).
 //!
-//! Fields → Hessians ([`Recovery`]) → |H|, meant over the steps of a sensor → L^p metric of each sensor at the complexity wanted → their
-//! intersection → limits, gradation, and the scale with which the complexity is met after these.
+//! Fields → Hessians ([`Recovery`]) → |H|, averaged over the steps of a sensor → L^p metric of each sensor at the complexity wanted →
+//! their intersection → limits, gradation, and the scale at which the complexity is met with these.
 //!
-//! Several sensors are intersected at the same complexity each: so every one has the sizes that it alone would have, up to a factor
-//! that is the same for all, and units do not count. Steps in time of one sensor are not: their |H| are averaged, which makes the
-//! error over the whole time least (Alauzet, Belme, Loseille: fixed-point iteration), for one mesh at all steps.
+//! The metrics of several sensors are intersected, each at the same complexity. So each has the sizes that it would have alone, up to one
+//! factor for all, and units do not matter. Steps in time of one sensor are not intersected: their |H| are averaged, which makes the error
+//! over the whole time least for one mesh at all steps (Alauzet, Belme, Loseille: fixed-point iteration).
 mod bounded;
 mod norm;
 mod optimal;
@@ -36,7 +36,7 @@ pub struct Options<'f> {
     pub recovery: Recovery,
     /// The norm of the error.
     pub norm: Norm,
-    /// Complexity, growth and bounds of the sizes; none is ever above the diameter of the mesh's box.
+    /// Complexity, growth and bounds of the sizes. No size is ever above the diameter of the mesh's box.
     pub bounds: Bounds<'f>,
 }
 
@@ -46,7 +46,7 @@ pub enum Measure {
     /// Σ_v √det(M_v)·V_v, as metrics are compared.
     #[default]
     AtVertices,
-    /// ∫ √det M of the interpolant, which tells the vertices of the mesh to come also where this mesh does not resolve its metric.
+    /// ∫ √det M of the interpolant. It predicts the vertices of the adapted mesh even where this mesh does not resolve its metric.
     Between,
 }
 
@@ -68,7 +68,7 @@ pub struct Summary {
     pub complexity: f64,
     /// Vertices whose sizes the limits changed, before gradation.
     pub limited: usize,
-    /// Vertices with the Hessian of their neighbours, since the points around them do not tell one.
+    /// Vertices that have the Hessian of their neighbours, since the points around them do not determine one.
     pub unfitted: usize,
     /// How often the metric was scaled, limited and graded.
     pub rounds: u32,
@@ -111,7 +111,8 @@ pub enum Error {
     },
 }
 
-/// ln M at the vertices, shape (n,), of the multiscale metric of some sensors. Each has one field, shape (n,), for each step in time, mostly one.
+/// ln M at the vertices, shape (n,), of the multiscale metric of some sensors. Each sensor has a field, shape (n,), for each step in
+/// time; mostly there is one.
 ///
 /// # Panics
 /// When a field has not one value a vertex.
@@ -156,7 +157,7 @@ fn optimal_logs(
 ) -> Result<Vec<Sym3>, Error> {
     let spectra = team.map(GRAIN, found.hessians.len(), |v| Spectrum::of(&found.hessians[v], found.floor));
     let mut logs = Vec::new();
-    // Without sizes at their bound the second round is right.
+    // Unless sizes are at their bound, the second round is right.
     let reached = reach(options.bounds.complexity, |scale| {
         let log = |v: usize| spectra[v].log_metric(options.norm, scale, hmax);
         team.remap(GRAIN, &mut logs, spectra.len(), log);

@@ -19,9 +19,9 @@ impl Spectrum {
 
     /// ln M of M = c det(|H|)^(-1/(2p+3)) |H|, ln c given.
     ///
-    /// That is |H|/e with the error e that is the same in all directions. Where a size would so exceed `hmax`, it is `hmax` whatever the
-    /// eigenvalue, and the others are those of the problem in fewer dimensions: e^(2p+3) = c^-(2p+3) Π e/h² over the directions
-    /// that are bounded, times Π λ over the others. (An eigenvalue near zero would else drag the other sizes down without a bound.)
+    /// That is |H|/e with an error e that is the same in all directions. A size that would exceed `hmax` is `hmax` whatever the eigenvalue,
+    /// and the others solve the problem in fewer dimensions: e^(2p+3) = c^-(2p+3) Π e/h² over the bounded directions, times Π λ over the
+    /// others (METHOD.md §1.9). Otherwise an eigenvalue near zero would make the other sizes small without a bound.
     pub fn log_metric(&self, norm: Norm, log_scale: f64, hmax: f64) -> Sym3 {
         Sym3::from_eigen(&Eigen { values: self.exponents(norm, log_scale, hmax), vectors: self.0.vectors })
     }

@@ -3,10 +3,10 @@
 /// Complexities that differ by less than this share are equal.
 const TOLERANCE: f64 = 2e-3;
 
-/// Where a metric may still be scaled after it was made, its complexity may differ from the target by this share.
+/// A metric that is scaled once more afterwards may differ from the target complexity by this share.
 pub const NEARLY: f64 = 0.09;
 
-/// ln C grows by 3/2 of ln M where nothing bounds the sizes.
+/// ln C grows by 3/2 of the logarithm of the scale where nothing bounds the sizes.
 const FREE_SLOPE: f64 = 1.5;
 
 /// The logarithm of the scale of M moves by no more than this in a step,
@@ -22,11 +22,11 @@ pub struct Unreachable {
     pub nearest: f64,
 }
 
-/// The logarithm of the scale at which `complexity`, which grows with it, is `target`, to [`TOLERANCE`]; and how often it was asked. The
-/// last call is at the scale that is returned.
+/// The logarithm of the scale at which `complexity`, which grows with the scale, is `target`, to [`TOLERANCE`]; and how often it was
+/// called. The last call is at the scale that is returned.
 ///
-/// Secants, since an evaluation with gradation costs much and the curve is nearly straight; and halves of the bracket when two of them
-/// did not halve it.
+/// By secants, since a call with gradation costs much and the curve is nearly straight. When two secants have not halved the bracket, it
+/// is bisected.
 pub fn reach(target: f64, complexity: impl FnMut(f64) -> f64) -> Result<(f64, u32), Unreachable> {
     reach_within(TOLERANCE, target, 0.0, complexity)
 }
@@ -62,7 +62,7 @@ pub fn reach_within(
         }
         last = Some((scale, miss));
         (width, patience) = if above - below <= 0.5 * width { (above - below, 2) } else { (width, patience - 1) };
-        // Where it is flat a long step tells whether a scale can still change it.
+        // Where the curve is flat, a long step tells whether the scale can still change the complexity.
         let step = if slope > 0.05 { -miss / slope } else { f64::INFINITY.copysign(-miss) };
         let next = scale + step.clamp(-LONGEST_STEP, LONGEST_STEP);
         let is_bracketed = below.is_finite() && above.is_finite();
@@ -71,7 +71,7 @@ pub fn reach_within(
         } else {
             next
         };
-        // Closed to rounding: a jump. Far away: a bound. Neither: a complexity that is no number.
+        // The bracket has closed (the complexity jumps), the scale is far away (a bound holds it), or the complexity is not a number.
         if above - below < 1e-9 || scale.is_nan() || scale.abs() > FARTHEST {
             break;
         }

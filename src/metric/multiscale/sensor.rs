@@ -1,4 +1,4 @@
-//! From the values of a field to |H|, and what is no field to adapt to.
+//! From the values of a field to |H|, and which fields cannot be adapted to.
 use super::Error;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::sub;
@@ -6,7 +6,7 @@ use crate::metric::Sym3;
 use crate::metric::recovery::{Recovery, Rings};
 use crate::tasks::{GRAIN, Team};
 
-/// Second differences that are this share of the greatest value are no more than its rounding, which a fit to points on one side multiplies.
+/// Second differences below this share of the greatest value are rounding, which a one-sided fit multiplies.
 const ROUNDING: f64 = 1e-12;
 
 /// What is found of a sensor.
@@ -71,8 +71,8 @@ fn bounds(team: Team<'_>, values: &[f64]) -> Result<(f64, f64), usize> {
         .try_fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), part| part.map(|(l, h)| (low.min(l), high.max(h))))
 }
 
-/// Whether eᵀ|H|e, the second difference along an edge e, is above rounding anywhere. Measured along edges, it does not matter
-/// how short those are that rounding is divided by in a Hessian.
+/// Whether eᵀ|H|e, the second difference along an edge e, is above rounding anywhere. A Hessian has the rounding divided by the square of
+/// the edges' lengths; measured along edges, these lengths do not matter.
 fn is_curved(team: Team<'_>, mesh: &TetMesh, rings: &Rings, hessians: &[Sym3], rounding: f64) -> bool {
     let curved = team.chunks(GRAIN, hessians.len(), |mut range| {
         range.any(|v| {

@@ -13,19 +13,20 @@ use std::ops::Range;
 /// Vertices a task: one takes some microseconds.
 const VERTICES: usize = GRAIN / 16;
 
-/// From so many neighbours on they are asked alone; with fewer of them, or a poor fit, theirs too. On meshes adapted to the scalars of
-/// cases/convergence (complexity 8000) that lowers the error by 1 to 4 % against two rings, and by 27 % at a jump, which then
-/// is in fewer layers.
+/// With so many neighbours they alone are fitted. With fewer of them, or a poor fit, their neighbours are taken too. On meshes adapted to
+/// the scalars of cases/convergence (complexity 8000) that lowers the error by 1 to 4 % against two rings always, and by 27 % at a jump,
+/// which is then in fewer layers.
 const ENOUGH: usize = 14;
 
-/// Below this quality of a fit another ring is asked.
+/// Below this quality of a fit another ring is taken.
 const GOOD: f64 = 0.05;
 
-/// Below this one a fit to three rings is not used.
+/// Below this quality a fit to three rings is not used.
 const USABLE: f64 = 1e-3;
 
-/// The Hessian of a field at the vertices, (n,) from values (n,), and how many took that of their neighbours. Quadratic functions are met to
-/// rounding at every vertex that has a usable fit: on the boundary as inside. With a limiter the vertices at jumps have |H| as it says.
+/// The Hessian of a field at the vertices, (n,) from values (n,), and at how many it is that of the neighbours. For quadratic functions it is
+/// right to rounding at every vertex with a usable fit, on the boundary as inside. With a limiter, vertices at jumps have the |H| that the
+/// limiter gives.
 pub fn hessians(
     team: Team<'_>,
     mesh: &TetMesh,

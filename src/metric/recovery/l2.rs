@@ -9,8 +9,8 @@ use crate::tasks::{GRAIN, Team};
 /// Items a task: a vertex has some twenty tetrahedra.
 const VERTICES: usize = GRAIN / 8;
 
-/// The Hessian of a field at the vertices, (n,) from values (n,). At vertices on the boundary the averages are one-sided, so that the
-/// second ones are off even for a quadratic function: they take the mean of |H| of their neighbours inside, where there are any.
+/// The Hessian of a field at the vertices, (n,) from values (n,). On the boundary the averages are one-sided, so that the second ones
+/// are wrong even for a quadratic function. Vertices there take the mean of |H| of their neighbours inside, if there are any.
 pub fn hessians(team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -> Vec<Sym3> {
     let gradients =
         team.map(VERTICES, values.len(), |v| gradient(mesh, rings, v as u32, |node| [values[node as usize]])[0]);

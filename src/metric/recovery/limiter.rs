@@ -1,11 +1,12 @@
-//! Hessians at jumps: what a quadratic fit says of a field that is none there, and what a mesh needs to be told.
+//! Hessians at jumps, where no quadratic function fits the field, and what a mesh needs there (METHOD.md §1.10).
 //!
-//! Across a jump J of u a linear element of thickness h is wrong by about J whatever its size: as if |H| were J/h² across it, and J·k/h along it
-//! with k the curvature of the jump's surface. A fit to a ring of points says less. It spreads the jump over all of them; its smaller
-//! second derivatives are noise; and vertices beside the jump whose second ring crosses it are taken into the layer. So where the fit
-//! leaves much unexplained of a step that is a part of the field's whole range:
-//! the smoother of two stencils is taken (as ENO schemes do: Harten, Engquist, Osher, Chakravarthy 1987), the strongest second
-//! derivative counts more, and |H| is averaged among neighbours that are at the jump too. All other vertices are left as they are.
+//! Across a jump J of u a linear element of thickness h is wrong by about J whatever its size: as if |H| were J/h² across the jump, and
+//! J·k/h along it, with k the curvature of the jump's surface. A fit gives less. It spreads the jump over its stencil, its smaller second
+//! derivatives are noise, and it takes vertices beside the jump into the layer when their second ring crosses it.
+//!
+//! So three things are done where the fit leaves much unexplained of a step that is a good part of the field's range. The smoother of two
+//! stencils is taken (as ENO schemes do: Harten, Engquist, Osher, Chakravarthy 1987). The strongest second derivative counts more. And |H|
+//! is averaged among neighbours that are at the jump too. All other vertices are left as they are.
 use super::quadratic::Fitted;
 use super::rings::Rings;
 use crate::metric::{Eigen, Sym3};
@@ -14,11 +15,11 @@ use crate::tasks::{GRAIN, Team};
 /// A fit that leaves this share of the variance unexplained may be across a jump.
 const ROUGH: f64 = 0.25;
 
-/// Shares of the field's range: a step that is less is none, one that is more is a jump altogether.
+/// Shares of the field's range. A step below the first is no jump; one above the second is a full jump.
 const STEPS: [f64; 2] = [0.1, 0.3];
 
-/// How much stronger the strongest second derivative is made at a jump of which the fit explains nothing; with the root of the roughness where it
-/// explains some. On sinatan3 (cases/convergence, complexity 16 000, cycles until nothing changes) the error times the root of the vertices is
+/// How much is added to the strongest second derivative, as a multiple of it, where the fit explains nothing of a jump. Where it explains
+/// some, this is multiplied by the root of the roughness. On sinatan3 (cases/convergence, complexity 16 000, cycles until nothing changes) the error times the root of the vertices is
 /// 4.75 with 6 and roughness itself, 4.30 with 9, 4.23 with 12; with 24 and more the rest of the mesh starves, from cycle to cycle.
 const SHARPER: f64 = 12.0;
 
@@ -31,7 +32,7 @@ const PASSES: usize = 2;
 /// Tells jumps from smooth fields.
 #[derive(Clone, Copy, Debug)]
 pub struct Limiter {
-    /// Greatest less least value of the field.
+    /// The greatest value of the field minus the least.
     range: f64,
 }
 
@@ -46,7 +47,7 @@ impl Limiter {
         Self { range: high - low }
     }
 
-    /// How much of a jump it is, in [0, 1], that a fit to points whose values differ by `step` leaves unexplained.
+    /// The roughness of a fit to points whose values differ by `step`: 0 where the field is smooth, 1 at a full jump that it does not explain.
     #[inline]
     fn roughness(self, fitted: &Fitted, step: f64) -> f64 {
         let [low, high] = STEPS.map(|share| share * self.range);
@@ -54,7 +55,7 @@ impl Limiter {
         unexplained * ((step - low) / (high - low)).clamp(0.0, 1.0)
     }
 
-    /// Whether the fit to the first ring, good but of few points, is better than that to two: these cross a jump that the first does not.
+    /// Whether the fit to the first ring, which has few points, is better than that to two rings, since only the second crosses a jump.
     #[inline]
     pub fn prefers(self, near: &Fitted, wide: &Fitted, step: f64) -> bool {
         let size = |fitted: &Fitted| fitted.hessian.0.iter().fold(0.0f64, |a, x| a.max(x.abs()));
@@ -75,8 +76,8 @@ impl Limiter {
     }
 }
 
-/// Replaces |H| of vertices at a jump by the log-Euclidean mean with those of their neighbours that are there too and alike: the noise of directions
-/// and of small eigenvalues goes.
+/// Replaces |H| of vertices at a jump by the log-Euclidean mean with those of similar neighbours at the jump. That removes the noise of
+/// directions and of small eigenvalues.
 pub fn average(team: Team<'_>, rings: &Rings, hessians: &mut [Option<Sym3>], is_jump: &[bool]) {
     for _ in 0..PASSES {
         let logs = team.map(GRAIN, hessians.len(), |v| hessians[v].filter(|_| is_jump[v]).map(|hessian| log(&hessian)));

@@ -1,4 +1,4 @@
-//! The removal of a vertex onto whichever neighbour leaves the best elements.
+//! The removal of a vertex: it goes onto the neighbour that leaves the best elements.
 use super::onto_end::CollapseScratch;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ball::Ball;

@@ -136,11 +136,11 @@ impl<A: Access> Worker<'_, '_, A> {
                 let [x, y] = self.store.ridge(v);
                 let other = if x == w { y } else { x };
                 if !other.is_some() {
-                    // The input's ridge ends here.
+                    // A ridge of the input ends here.
                     return Err(Refusal::Geometry);
                 }
                 self.claim(other)?;
-                // A closed edge keeps at least three mesh edges; two corners may be joined once only.
+                // A closed model edge keeps at least three mesh edges, and two corners may be joined by one mesh edge only.
                 match self.store.ridge_curve(other, w) {
                     Some(_) => Err(Refusal::Topology),
                     None => Ok(()),
@@ -158,14 +158,14 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Least variation, as a cosine, of the two ridge edges at a vertex on a model edge, 1 elsewhere.
+    /// The lesser cosine of variation of the two ridge edges at a vertex on a model edge; 1 elsewhere.
     pub fn ridge_variation_at(&mut self, v: VertexId) -> f64 {
         let Entity::Edge(curve) = self.store.entity(v) else { return 1.0 };
         let ends = self.store.ridge(v).into_iter().filter(|x| x.is_some());
         ends.fold(1.0, |least, x| self.ridge_variation(curve, v, x).min(least))
     }
 
-    /// The ridge edge that comes with a collapse may not let the model's tangent vary more than is good enough, or than one that goes.
+    /// Along the new ridge edge the model's tangent may not vary more than the limit, or than along the ridge edges that go.
     fn check_ridge_variation(&mut self, v: VertexId, w: VertexId) -> Result<(), Refusal> {
         let Entity::Edge(curve) = self.store.entity(v) else { return Ok(()) };
         let limit = self.ridge_variation_at(v).min(self.context.limits.cos_variation);
@@ -174,7 +174,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if self.ridge_variation(curve, other, w) < limit { Err(Refusal::Normal) } else { Ok(()) }
     }
 
-    /// The link condition on the surface: who neighbours both v and w there must share a triangle with both.
+    /// The link condition on the surface: a vertex that neighbours both v and w there must be in a triangle with both.
     pub fn check_surface_link(
         &mut self,
         scratch: &mut CollapseScratch,

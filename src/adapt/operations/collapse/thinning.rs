@@ -1,7 +1,7 @@
-//! ThinningScratch: where vertices are far too many, each that has a short edge goes onto a neighbour, no two near each other in one sweep.
+//! Thinning, where vertices are far too many: each vertex with a short edge goes onto a neighbour, no two near each other in one sweep.
 //!
-//! Before the sizes are brought about edge by edge: it gathers one ball for a vertex and changes records where they are. That a
-//! neighbourhood changes but once in a sweep makes the mesh coarser everywhere alike and lets no vertex get many neighbours.
+//! It comes before the passes, and is cheaper than collapse: it gathers one ball a vertex and changes records where they are. Since a
+//! neighbourhood changes only once in a sweep, the mesh gets coarser everywhere alike, and no vertex gets very many neighbours.
 use super::onto_end::CollapseScratch;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ball::Ball;
@@ -15,7 +15,7 @@ use crate::geometry::Entity;
 use crate::mesh::vector::sub;
 use crate::metric::lanes::LANES;
 
-/// Neighbours that a vertex is tried on, the nearest first.
+/// A vertex tries to go onto so many neighbours, the nearest first.
 const TARGETS: usize = 4;
 
 /// What thinning needs at hand. Allocated once.
@@ -95,7 +95,7 @@ impl<A: Access> Worker<'_, '_, A> {
         result
     }
 
-    /// The ends of the shortest of the edges at v that are too short; of a boundary vertex those on the boundary.
+    /// The other ends of the shortest edges at v, of those that are too short; for a boundary vertex only ends on the boundary.
     fn nearest(&self, v: VertexId, link: &[VertexId]) -> Nearest {
         let (p, metric, dimension) = (self.store.position(v), self.store.metric(v), self.store.dimension(v));
         let limit = self.context.limits.short;
@@ -103,7 +103,7 @@ impl<A: Access> Worker<'_, '_, A> {
         for &x in link {
             let e = sub(self.store.position(x), p);
             let at_v = metric.quadratic(e);
-            // Lengths in the metrics of both ends seldom differ by so much.
+            // The lengths in the metrics of both ends seldom differ by a factor of two: such an edge is not short.
             if at_v > 4.0 * limit * limit || (dimension < 3 && self.store.dimension(x) > dimension) {
                 continue;
             }
@@ -115,15 +115,15 @@ impl<A: Access> Worker<'_, '_, A> {
         nearest
     }
 
-    /// Replaces an inner vertex by a neighbour. Where all tetrahedra that stay are positive the mesh is as good as it was: they fill
-    /// the ball once.
+    /// Replaces an inner vertex by a neighbour. Where all tetrahedra that stay are positive the mesh stays valid, since they fill the ball
+    /// once.
     fn thin_onto(&mut self, split: &mut BallSplit, v: VertexId, w: VertexId, ball: &Ball) -> Result<(), Refusal> {
         self.check_new_lengths(v, w, &ball.link)?;
         self.split_ball(v, w, ball, split)?;
         self.replace_vertex(v, w, &ball.tets, split)
     }
 
-    /// Parts the ball of v into what goes with the edge v–w and what stays, with w in the place of v.
+    /// Splits the ball of v into the tetrahedra at the edge v–w, which go, and those that stay with w in place of v.
     fn split_ball(&mut self, v: VertexId, w: VertexId, ball: &Ball, split: &mut BallSplit) -> Result<(), Refusal> {
         split.kept.clear();
         split.gone.clear();

@@ -14,7 +14,7 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Removes v and moves its neighbour w, on the same entity of the model, to the middle of the edge between them.
     ///
     /// # Errors
-    /// As a collapse; the mesh is as it was then.
+    /// As a collapse. The mesh is unchanged then.
     pub fn merge(
         &mut self,
         scratch: &mut CollapseScratch,
@@ -62,7 +62,7 @@ impl<A: Access> Worker<'_, '_, A> {
         })
     }
 
-    /// Neither ridge edge that comes may let the model's tangent vary more than `limit` (a cosine); w has moved.
+    /// Along neither new ridge edge may the model's tangent vary more than `limit` (a cosine). w has moved already.
     fn check_merged_variation(&mut self, v: VertexId, w: VertexId, limit: f64) -> Result<(), Refusal> {
         let Entity::Edge(curve) = self.store.entity(w) else { return Ok(()) };
         let beyond = [(v, w), (w, v)].map(|(x, y)| self.store.ridge(x).into_iter().find(|&end| end != y));
@@ -71,7 +71,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if least < limit { Err(Refusal::Normal) } else { Ok(()) }
     }
 
-    /// How the surface triangles at both vertices look, before one of them moves.
+    /// The worst deviation of the surface triangles at both vertices, before one of them moves.
     fn deviation_of_both(&mut self, v: VertexId, w: VertexId, both: &[TetId]) -> WorstDeviation {
         let mut triangles = std::mem::take(&mut self.state.star.surface);
         triangles.clear();

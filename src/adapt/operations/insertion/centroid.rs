@@ -1,11 +1,11 @@
-//! Point creation at centroids (Tsolakis 2021, 3.2.1 and figure 8): a tetrahedron with an edge that is too long proposes its
-//! centroid, unless that encroaches upon its surface triangle or ridge; then these propose, as in constrained Delaunay refinement
+//! Point creation at centroids (Tsolakis 2021, 3.2.1 and figure 8). A tetrahedron with an edge that is too long proposes its
+//! centroid. If that encroaches upon a surface triangle or a ridge of it, these propose instead, as in constrained Delaunay refinement
 //! (Shewchuk 1998, Tetrahedral mesh generation by Delaunay refinement).
 //!
-//! The dissertation collects the candidates of all tetrahedra, drops those too near to each other, and then inserts. Here a
-//! tetrahedron's candidates are checked and inserted in one operation: the candidate lies in the tetrahedron that is claimed, so it
-//! needs no location, and the candidates before it are vertices of the mesh already, so one test of nearness serves for both. A tetrahedron
-//! made in this sweep proposes nothing: flips come first.
+//! The dissertation collects the candidates of all tetrahedra, drops those too near to each other, and then inserts. Here a candidate is
+//! checked and inserted in one operation. It lies in the tetrahedron that is claimed, so it needs no location; the candidates before it
+//! are vertices of the mesh by now, so one test of nearness serves for both. A tetrahedron made in this sweep proposes nothing: flips
+//! come first.
 use crate::adapt::core::access::Access;
 use crate::adapt::core::context::Context;
 use crate::adapt::core::edge_list::EdgeItem;
@@ -117,11 +117,11 @@ impl Operation for InsertCentroids {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Refines a tetrahedron that has an edge that is too long, at its centroid or where that leads.
+    /// Refines a tetrahedron that has an edge that is too long: at its centroid, or at a surface triangle or ridge that this encroaches upon.
     ///
     /// # Errors
-    /// `Stale` when no edge is too long or the tetrahedron is as new as this sweep, `Length` when all candidates are too near to
-    /// vertices, else the last candidate's refusal by the insertion.
+    /// `Stale` when no edge is too long or the tetrahedron was made in this sweep, `Length` when all candidates are too near to
+    /// vertices, else the refusal of the last insertion.
     pub fn refine_tet(&mut self, t: TetId) -> Result<(), Refusal> {
         let v = self.claim_moving_tet(t)?;
         if self.store.stamp(t) == self.store.clock() || !EDGE.iter().any(|&[i, j]| self.is_long(v[i], v[j])) {
@@ -162,7 +162,7 @@ impl<A: Access> Worker<'_, '_, A> {
                 .fold(None, |result, ([a, b], _)| better(result, Some(self.split_edge(EdgeItem { a, b, tet: t }))));
         }
         if edges.iter().all(|&[a, b]| self.context.required.has_edge(a, b)) {
-            // A required triangle has no say: it stays as it is.
+            // A required triangle proposes nothing: it stays as it is.
             return None;
         }
         let (point, metric) = (centroid(face.map(|x| self.store.position(x))), self.mean_metric(face));
@@ -175,7 +175,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }))
     }
 
-    /// Splits those of the edges that are ridges, too long, and encroached upon by the point; none when there are no such.
+    /// Splits the edges that are ridges, too long, and encroached upon by the point; none when there is no such edge.
     fn split_encroached(
         &mut self,
         metric: &Sym3,
@@ -205,7 +205,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let placed = self.place(entity, point, around);
         let result = self.insert(seed, seeds, placed, around[0]);
         if matches!(result, Err(Refusal::Inverted | Refusal::Topology)) && placed.point != point {
-            // As in split_edge: no room on the model yet.
+            // As in split_at: there is no room on the model yet.
             let v = self.insert(seed, seeds, Placed { point, ..placed }, around[0])?;
             self.state.unprojected.push(v);
             return Ok(());
@@ -213,8 +213,7 @@ impl<A: Access> Worker<'_, '_, A> {
         result.map(|_| ())
     }
 
-    /// Whether the candidate is nearer to a vertex of its tetrahedra or of their neighbours than an edge may be: collapse would
-    /// take it out again.
+    /// Whether the candidate is too near to a vertex of its tetrahedra or of their neighbours: collapse would remove it again.
     fn is_near(&mut self, candidate: &Candidate, tets: &[TetId]) -> Result<bool, Refusal> {
         for &t in tets {
             if self.is_near_any(candidate, &self.store.vertices(t)) {
@@ -247,7 +246,7 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 }
 
-/// Of several candidates one insertion is a success; a conflict before any makes the item come again.
+/// The result of several candidates: success if one was inserted; else a conflict, so that the item is tried again, if there was one.
 pub fn better(one: Option<Result<(), Refusal>>, other: Option<Result<(), Refusal>>) -> Option<Result<(), Refusal>> {
     match (one, other) {
         (Some(Ok(())), _) | (_, None) => one,

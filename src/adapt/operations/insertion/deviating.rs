@@ -1,4 +1,4 @@
-//! Surface triangles that deviate from the model by more than the user allows are split, whatever their lengths in the metric.
+//! Splits surface triangles that deviate from the model by more than the user allows, whatever the lengths of their edges in the metric.
 use crate::adapt::core::access::Access;
 use crate::adapt::core::edge_list::EdgeItem;
 use crate::adapt::core::ids::{FACE, TetId, VertexId};
@@ -25,7 +25,7 @@ impl Operation for SplitDeviating {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Splits the edge that is farthest from the model of a tetrahedron's surface triangle that deviates, the worst of them.
+    /// Splits one edge of a tetrahedron: of all edges of its surface triangles that deviate, the one whose middle is farthest from the model.
     pub fn split_deviating(&mut self, t: TetId) -> Result<(), Refusal> {
         let vertices = self.claim_moving_tet(t)?;
         let tags = self.store.tags(t);

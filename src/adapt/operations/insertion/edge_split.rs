@@ -11,15 +11,15 @@ use crate::geometry::Entity;
 use crate::mesh::vector::{Vec3, lerp, sub};
 use crate::metric::quality::mean_length;
 
-/// Where along a–b the metric length from a is this share of the whole, for sizes that change geometrically: la, lb are the lengths of
-/// the whole edge in the metrics of its ends.
+/// The place on a–b up to which the length in the metric is this share of the whole, where sizes change geometrically along it. la and
+/// lb are the lengths of the whole edge in the metrics of its ends.
 fn at_share(share: f64, la: f64, lb: f64) -> f64 {
     let growth = lb / la - 1.0;
     if growth.abs() < 1e-3 { share } else { ((share * growth).ln_1p() / growth.ln_1p()).clamp(0.1, 0.9) }
 }
 
-/// The share of an edge that is cut off: a third from √6, where three pieces come nearer to unit length than two, up to √18, where three
-/// would be too long; else half. Halves of edges of length three would be halved again, and be too short then.
+/// The share of an edge that is cut off. Between √6, from where on three pieces are nearer to unit length than two, and √18, where three
+/// pieces would be too long, it is a third; else half. Halves of an edge of length three would be halved again, and be too short then.
 fn cut_off(length: f64) -> f64 {
     if length * length > 6.0 && length * length < 18.0 { 1.0 / 3.0 } else { 0.5 }
 }
@@ -64,7 +64,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let seeds = std::mem::take(&mut self.state.shell.tets);
         let mut result = self.insert(Seed::Edge(a, b), &seeds, placed, a);
         if matches!(result, Err(Refusal::Inverted | Refusal::Topology)) && placed.point != straight {
-            // No room on the model: the point waits on the straight edge until there is (project.rs).
+            // No room on the model: until there is, the vertex stays on the straight edge (projection.rs).
             result = self.insert(Seed::Edge(a, b), &seeds, Placed { point: straight, ..placed }, a);
             if let Ok(v) = result {
                 self.state.unprojected.push(v);

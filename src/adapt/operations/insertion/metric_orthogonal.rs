@@ -1,9 +1,9 @@
 //! Point creation along eigenvectors: a vertex with an edge that is too long proposes the points at unit distance from it, both ways along
-//! each eigenvector of its metric (Loseille 2014, Metric-orthogonal anisotropic mesh generation; Marcum & Weatherill 1995 place points so
-//! from the faces of a front).
+//! each eigenvector of its metric (Loseille 2014, Metric-orthogonal anisotropic mesh generation; Marcum & Weatherill 1995 place points
+//! from the faces of a front in this way).
 //!
-//! A candidate must lie in the ball of its vertex: beyond it there are nearer vertices in that direction. It is dropped when it is too
-//! near to others, as in [`super::create`], so of two vertices that propose the same place the first gets it.
+//! A candidate must lie in the ball of its vertex: beyond the ball there are nearer vertices in that direction. It is dropped when it is
+//! too near to others, as in [`super::centroid`]. So of two vertices that propose the same place the first gets it.
 use super::centroid::{Candidate, better, encroaches_face};
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ball::Ball;
@@ -20,7 +20,7 @@ use crate::mesh::vector::{Vec3, add, scale, volume6};
 use crate::metric::quality::edge_length;
 use crate::tasks::Team;
 
-/// Edges longer than this factor times the limit are split in the middle: a point at unit distance from one end is far from the other.
+/// Edges longer than this times the limit are split in the middle instead: a point at unit distance from one end would be far from the other.
 pub const FAR: f64 = 2.0;
 
 /// The vertices of edges that are too long: those on the model first.
@@ -65,7 +65,7 @@ impl<A: Access> Worker<'_, '_, A> {
         for (value, axis) in axes.values.into_iter().zip(axes.vectors) {
             for along in [1.0, -1.0] {
                 let one = self.insert_along(v, scale(axis, along * (-0.5 * value).exp()), &mut ball, &mut gathered);
-                // The insertion has changed the ball.
+                // An insertion changes the ball.
                 gathered &= one.is_err();
                 result = better(result, Some(one));
             }
@@ -78,7 +78,7 @@ impl<A: Access> Worker<'_, '_, A> {
     fn insert_along(&mut self, v: VertexId, step: Vec3, ball: &mut Ball, gathered: &mut bool) -> Result<(), Refusal> {
         if !*gathered {
             if !self.store.is_vertex(v) {
-                // The cavity of the insertion before has grown over it.
+                // The cavity of the last insertion has grown over the vertex.
                 return Err(Refusal::Stale);
             }
             self.gather_ball(v, ball)?;
@@ -103,7 +103,7 @@ impl<A: Access> Worker<'_, '_, A> {
         self.insert_apart(&candidate, &[t])
     }
 
-    /// Whether the point lies in a tetrahedron of which all vertices are held, or on its boundary: from there the cavity grows.
+    /// Whether the point lies in a tetrahedron, or on its boundary. All its vertices are held; the cavity grows from it.
     fn holds(&self, t: TetId, point: Vec3) -> bool {
         let corners = self.store.vertices(t).map(|x| self.store.position(x));
         FACE.iter().all(|face| {

@@ -6,8 +6,8 @@ use crate::adapt::core::star::{Bounds, Seed};
 use crate::adapt::core::vertex_moves::Placed;
 use crate::adapt::core::worker::Worker;
 
-/// What is taken from the least length of a new edge where a much too long one is split: a power of how much too long it is. With more
-/// the short edges are collapsed again at great cost, with less edges of many unit lengths stay beside coarse boundaries.
+/// Where an edge too long by a factor x is split, the least length of new edges is multiplied by x to the power of minus this. With a
+/// greater power the short edges are collapsed again at great cost; with a lesser one, very long edges stay beside coarse boundaries.
 const SHORT_FOR_LONG: f64 = 0.7;
 
 impl<A: Access> Worker<'_, '_, A> {
@@ -26,7 +26,7 @@ impl<A: Access> Worker<'_, '_, A> {
 
     fn try_insert(&mut self, seed: Seed, seeds: &[TetId], v: VertexId) -> Result<(), Refusal> {
         let limits = self.context.limits;
-        // A much too long edge is worth a bad tetrahedron or a short edge: what comes after it finds better places for those.
+        // A much too long edge may be split at the price of a bad tetrahedron or a short edge, which later operations repair.
         let excess = match seed {
             Seed::Edge(a, b) if limits.long_first => (limits.long / self.length(a, b)).min(1.0),
             _ => 1.0,
@@ -35,7 +35,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if let Seed::Edge(..) = seed
             && self.state.shell.ring.iter().any(|&x| self.is_shorter(v, x, shortest_new))
         {
-            // It will be joined to the ring in any case.
+            // The vertex is joined to the ring in any case.
             return Err(Refusal::Length);
         }
         let allowed = |worker: &Self| excess.powi(3) * limits.insert_floor.min(limits.insert_loss * worker.worst_old());
@@ -50,8 +50,8 @@ impl<A: Access> Worker<'_, '_, A> {
         if shortest < shortest_new {
             return Err(Refusal::Length);
         }
-        // Where triangles stand across a round edge that the mesh does not resolve, the model's normal near their centroids may be any;
-        // cut into pieces that lie as they did they are no worse.
+        // Where triangles stand across a round edge that the mesh does not resolve, the model's normal near their centroids means little.
+        // Pieces that lie as the triangle did are no worse than it.
         self.check_normals(0.3).or_else(|refusal| if self.turns_little() { Ok(()) } else { Err(refusal) })
     }
 }

@@ -1,5 +1,5 @@
-//! The removal of a boundary tetrahedron: two of its faces are surface triangles of one model face; it goes, and its other two faces are
-//! the surface. On a curved wall long edges leave such tetrahedra, flat between four points of the wall.
+//! Removal of a boundary tetrahedron: one with two surface triangles of the same model face goes, and its other two faces become the
+//! surface. On a curved wall long edges leave such tetrahedra, flat between four points of the wall.
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ids::{FACE, TetId, VertexId};
 use crate::adapt::core::refusal::Refusal;
@@ -9,12 +9,12 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Removes a claimed tetrahedron at the surface edge a–b.
     ///
     /// # Errors
-    /// `Topology` when a–b is not the edge of just two surface triangles of one face, both of this tetrahedron, or the edge across is on the
-    /// surface already; `Geometry` when the edge must stay; `Normal` when the surface would turn from its model;
+    /// `Topology` when a–b is not an edge of exactly two surface triangles, both of this tetrahedron and of one face, or the opposite edge is
+    /// on the surface already; `Geometry` when the edge must stay; `Normal` when the surface would turn from its model;
     /// `Crossing` when it would pass through itself.
     pub fn remove_boundary_tet(&mut self, t: TetId, a: VertexId, b: VertexId) -> Result<(), Refusal> {
         let (v, n, tags) = (self.store.vertices(t), self.store.neighbours(t), self.store.tags(t));
-        // The faces with the edge a–b lie opposite c and d, those that will be the surface opposite a and b.
+        // The two faces at the edge a–b lie opposite c and d. Those opposite a and b become the surface.
         let mut across = (0..4).filter(|&i| v[i] != a && v[i] != b);
         let (Some(c), Some(d)) = (across.next(), across.next()) else { return Err(Refusal::Topology) };
         let own = |x: VertexId| v.iter().position(|&y| y == x).ok_or(Refusal::Topology);
@@ -34,7 +34,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if !self.state.shell.closed || self.state.shell.surface_tags().next().is_some() {
             return Err(Refusal::Topology);
         }
-        // Outward: as they were, and the new ones turned over.
+        // Outward: the old triangles as they are, the new ones reversed.
         let outward = |k: usize| {
             let [x, y, z] = FACE[k].map(|l| v[l]);
             ([x, z, y], tag)
@@ -62,8 +62,8 @@ mod tests {
     use crate::tasks::Team;
     use std::collections::BTreeMap;
 
-    /// A shallow roof with the ridge a–b over the edge c–d, about which two more tetrahedra reach down to a fifth point; what shedding
-    /// the tetrahedron under the roof comes to, and the tetrahedra that are left.
+    /// A shallow roof with the ridge a–b over the edge c–d, about which two more tetrahedra reach down to a fifth point. Returns the
+    /// result of removing the tetrahedron under the roof, and the number of tetrahedra that are left.
     fn shed_roof(height: f64) -> (Result<(), Refusal>, usize, Result<(), String>) {
         let vertices =
             vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, height], [0.0, 1.0, height], [0.0, 0.0, -2.0]];

@@ -15,7 +15,7 @@ pub enum Criterion {
     Delaunay,
     /// Least greatest Laplacian edge weight (max-min).
     EdgeWeight,
-    /// Least Σ (1/Q − 1) of the mean ratios Q: the worst tetrahedra count most, and the others count.
+    /// Least Σ (1/Q − 1) of the mean ratios Q: all tetrahedra count, the worst most.
     MeanRatio,
 }
 
@@ -32,13 +32,13 @@ impl Criterion {
         }
     }
 
-    /// The score of a triangulation of two parts, each with its own.
+    /// The score of a triangulation, from those of its two parts.
     #[inline(always)]
     pub fn join(self, x: f64, y: f64) -> f64 {
         if self == Self::MeanRatio { x + y } else { x.min(y) }
     }
 
-    /// The score of nothing.
+    /// The score of no tetrahedra.
     #[inline(always)]
     pub fn nothing(self) -> f64 {
         if self == Self::MeanRatio { 0.0 } else { f64::INFINITY }
@@ -51,17 +51,17 @@ pub fn mean_ratio_score(quality: f64) -> f64 {
     if quality > 0.0 { 1.0 - 1.0 / quality } else { f64::NEG_INFINITY }
 }
 
-/// How much better, in part, a triangulation must be to be taken: no flipping back and forth by rounding.
+/// A triangulation must be better by this share of its score. So rounding does not make flips go back and forth.
 const GAIN: f64 = 1e-3;
 
-/// What a triangulation must score to take the place of one that scores `old`: any score will do where the old one has none.
+/// What a triangulation must score to replace one that scores `old`. Any score will do where the old one is infinite.
 pub fn wanted_score(old: f64) -> f64 {
     if old.is_finite() { old + GAIN * old.abs().max(GAIN) } else { f64::MIN }
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Score of one tetrahedron in a cavity with these vertices, to be joined with the others' by [`Criterion::join`]; the
-    /// greater is the better. −∞ when the tetrahedron is not positive.
+    /// Score of one tetrahedron in a cavity with these vertices, to be joined with the others' by [`Criterion::join`]. Greater is better;
+    /// −∞ when the tetrahedron is not positive.
     pub fn score(&self, criterion: Criterion, tet: [VertexId; 4], cavity: &[VertexId]) -> f64 {
         let points = tet.map(|v| self.store.position(v));
         match criterion {

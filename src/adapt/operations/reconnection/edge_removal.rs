@@ -12,10 +12,10 @@ use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::shell::Shell;
 use crate::adapt::core::worker::Worker;
 
-/// Tetrahedra below this mean ratio are worth the longest rings, which cost most and seldom gain.
+/// Tetrahedra below this mean ratio try the longest rings, which cost most and seldom gain.
 const LONG_RINGS_BELOW: f64 = 0.5;
 
-/// Tetrahedra below this mean ratio try rings of five: of 30 that are measured one gains.
+/// Tetrahedra below this mean ratio try rings of five. Of 30 that are measured one gains.
 const RINGS_OF_FIVE_BELOW: f64 = 0.75;
 
 /// A 2-2 flip of surface triangles, with their tags.
@@ -99,8 +99,8 @@ impl<A: Access> Worker<'_, '_, A> {
         self.commit()
     }
 
-    /// What becomes of the two triangles at an edge on the boundary or on an interface, where the shell is turned so that it begins at one of
-    /// them; none inside.
+    /// What becomes of the two surface triangles at an edge on the boundary or on an interface; none for an edge inside. The shell is turned
+    /// so that it begins at one of them.
     fn surface_flip(&self, a: VertexId, b: VertexId, shell: &mut Shell) -> Result<Option<SurfaceFlip>, Refusal> {
         let count = shell.surface_tags().count();
         if shell.closed && count == 0 {
@@ -114,7 +114,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if shell.closed {
             shell.begin_at_tag();
             across = shell.tags[1..].iter().position(|&tag| tag != 0).map_or(0, |at| at + 1);
-            // A side of one tetrahedron would lose it, and the interface go to where other tetrahedra stand.
+            // A side with a single tetrahedron would lose it, and the interface would move into other tetrahedra.
             if n >= LONGEST_RING || across < 2 || n - across < 2 {
                 return Err(Refusal::Topology);
             }
@@ -134,7 +134,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if joined { Err(Refusal::Topology) } else { Ok(()) }
     }
 
-    /// The second side of an interface, if it is one, begins at the tetrahedron `second`.
+    /// Writes the triangulation as a replacement. On an interface its second side begins at the tetrahedron `second`.
     fn write_triangulation(&mut self, [a, b]: [VertexId; 2], shell: &Shell, ring: &Ring, second: usize) {
         let regions = [0, second].map(|side| self.store.region(shell.tets[side]));
         self.state.replacement.clear();

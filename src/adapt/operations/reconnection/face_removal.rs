@@ -1,4 +1,5 @@
-//! The 2-3 flip: a face goes, the edge between the two vertices opposite to it comes; where one face is not enough, several go (multi_face).
+//! The 2-3 flip: a face goes, and the edge between the two vertices opposite to it comes. Where one face is not enough, several go
+//! ([`super::multi_face_removal`]).
 use super::criteria::{Criterion, mean_ratio_score, wanted_score};
 use crate::adapt::core::access::Access;
 use crate::adapt::core::commit::NewTet;
@@ -9,8 +10,7 @@ use crate::mesh::vector::volume6;
 use crate::metric::lanes::LANES;
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Removes the face opposite to local vertex i of a tetrahedron that is owned, alone or with others about it, when the criterion gains
-    /// by it.
+    /// Removes the face opposite to local vertex i of a claimed tetrahedron, alone or with faces beside it, when the criterion gains by it.
     pub fn remove_face(&mut self, t: TetId, i: usize, criterion: Criterion) -> Result<(), Refusal> {
         let other = self.store.neighbour(t, i);
         if !other.is_some() || self.store.tags(t)[i] != 0 {
@@ -32,7 +32,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Removes the face between two claimed tetrahedra, that above first, when the criterion gains by it.
+    /// Removes the face between two claimed tetrahedra, the upper one first, when the criterion gains by it.
     pub fn flip_face(
         &mut self,
         tets: [TetId; 2],
@@ -62,7 +62,7 @@ impl<A: Access> Worker<'_, '_, A> {
         self.commit()
     }
 
-    /// Mean ratios of the three tetrahedra, at once; `None` when one is surely not positive.
+    /// Mean ratios of the three tetrahedra; `None` when one of them is not positive in floating point.
     fn qualities_of(&mut self, new: &[[VertexId; 4]; 3]) -> Option<[f64; 3]> {
         let points = new.map(|tet| tet.map(|v| self.store.position(v)));
         if points.iter().any(|&[a, b, c, d]| volume6(a, b, c, d) <= 0.0) {

@@ -1,13 +1,13 @@
-//! Multi-face removal, the inverse of edge removal: faces side by side, all of them between the same two vertices, go, and the edge
-//! between these two comes.
+//! Multi-face removal, the inverse of edge removal: several faces side by side, all between the same two vertices, go, and the edge
+//! between these two vertices comes.
 //!
-//! Of m faces 2m tetrahedra are replaced by m + 2 about the new edge. One face is the 2-3 flip, two are the 4-4 flip that removes the edge
-//! between them; from three on no single flip does the same, and what lies on the way is often worse. The faces make a tree that grows
-//! from one of them; dynamic programming over the tree finds the best part of it with that face (Shewchuk 2002, Two discrete optimization
-//! algorithms for the topological improvement of tetrahedral meshes).
+//! With m faces, 2m tetrahedra are replaced by m + 2 about the new edge. One face is the 2-3 flip, two are the 4-4 flip. From three on no
+//! single flip does the same, and the steps between are often worse. The faces make a tree that grows from one of them, its root; dynamic
+//! programming finds the best part of the tree with that root (Shewchuk 2002, Two discrete optimization algorithms for the topological
+//! improvement of tetrahedral meshes).
 //!
 //! The two ends cannot be joined already: where all new tetrahedra are positive they fill the cavity, and the segment between the ends
-//! runs inside it, where there are only old faces. What is tagged is never crossed, so all is of one region.
+//! runs inside it, where there are only old faces. Tagged faces are never crossed, so all is in one region.
 use super::criteria::{Criterion, mean_ratio_score, wanted_score};
 use crate::adapt::core::access::Access;
 use crate::adapt::core::commit::NewTet;
@@ -20,16 +20,16 @@ use crate::metric::lanes::LANES;
 /// Most faces in a tree: more are hardly ever taken.
 const MOST_FACES: usize = 4;
 
-/// Least faces in a tree: what two can do, edge removal does.
+/// Least faces in a tree: edge removal does all that two can do.
 const LEAST_FACES: usize = 3;
 
-/// Score of a tetrahedron that has none: sums with it must stay numbers.
+/// Stands for a score of −∞, so that sums stay numbers.
 const FLAT: f64 = -1e9;
 
 /// A face between the two ends of the edge that would come.
 #[derive(Clone, Copy)]
 struct Sandwiched {
-    /// With the upper end after them positive. All faces but the first were reached over the edge from 0 to 1.
+    /// In positive order with the upper end after them. All faces but the root were reached over the edge from 0 to 1.
     vertices: [VertexId; 3],
     /// Its tetrahedra, the one with the upper end first.
     tets: [TetId; 2],
@@ -38,7 +38,7 @@ struct Sandwiched {
     /// Whether each edge and both ends make a positive tetrahedron (in floating point), and its mean ratio.
     fits: [bool; 3],
     quality: [f64; 3],
-    /// Whether it is better gone.
+    /// Whether it is better removed.
     goes: bool,
 }
 
@@ -54,12 +54,12 @@ struct Tree {
 }
 
 impl Tree {
-    /// The edges of a face, but not that over which it was reached.
+    /// The edges of a face but the one over which it was reached.
     fn edges(face: usize) -> std::ops::Range<usize> {
         if face == 0 { 0..3 } else { 1..3 }
     }
 
-    /// What an edge and both ends make.
+    /// The tetrahedron of an edge of a face and both ends.
     fn tet(&self, (face, k): FaceEdge) -> [VertexId; 4] {
         let v = self.faces[face].vertices;
         let [upper, lower] = self.ends;
@@ -80,7 +80,7 @@ impl Tree {
     /// Whether some part of the tree with its root leaves positive tetrahedra only.
     fn has_room(&self) -> bool {
         let mut fits = [true; MOST_FACES];
-        // Faces come after the one that they were reached from.
+        // A face comes after the one that it was reached from.
         for at in (0..self.count).rev() {
             let Sandwiched { beyond, fits: alone, .. } = self.faces[at];
             fits[at] = Self::edges(at).all(|k| alone[k] || (beyond[k] > 0 && fits[beyond[k]]));
@@ -110,8 +110,8 @@ impl Tree {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Removes the face between two claimed tetrahedra together with some about it that lie between the same two vertices, the upper
-    /// end, which the first of the tetrahedra has, and the lower one, when the criterion gains by it. With the upper end the face is positive.
+    /// Removes the face between two claimed tetrahedra, together with faces beside it that lie between the same two ends, when the
+    /// criterion gains by it. The first tetrahedron has the upper end, with which the face is in positive order.
     pub fn remove_faces(
         &mut self,
         face: [VertexId; 3],
@@ -146,10 +146,10 @@ impl<A: Access> Worker<'_, '_, A> {
         self.commit()
     }
 
-    /// Adds the faces that lie between the same ends, nearest first; claims their vertices.
+    /// Adds the faces that lie between the same ends, the nearest first, and claims their vertices.
     fn grow_tree(&mut self, tree: &mut Tree) -> Result<(), Refusal> {
         self.find_fits(tree, 0);
-        // The root goes in any case, so that where no tetrahedron fits on its edge there must be another face: mostly there is none.
+        // The root goes in any case. Where no tetrahedron fits on an edge of it, there must be another face beyond; mostly there is none.
         let fits = tree.faces[0].fits;
         for must in [true, false] {
             for k in (0..3).filter(|&k| fits[k] != must) {
@@ -169,7 +169,7 @@ impl<A: Access> Worker<'_, '_, A> {
         Ok(())
     }
 
-    /// Finds on which edges of a face a tetrahedron fits.
+    /// Finds the edges of a face on which a new tetrahedron would be positive.
     fn find_fits(&self, tree: &mut Tree, at: usize) {
         for k in Tree::edges(at) {
             let [a, b, c, d] = tree.tet((at, k)).map(|v| self.store.position(v));
@@ -177,7 +177,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Adds the face beyond an edge, if it lies between the same ends and there is room for it; whether it does.
+    /// Adds the face beyond an edge, if it lies between the same ends and there is room in the tree. Returns whether it did.
     fn step_over(&mut self, tree: &mut Tree, (at, k): FaceEdge) -> Result<bool, Refusal> {
         if tree.count == MOST_FACES {
             return Ok(false);
@@ -222,7 +222,7 @@ impl<A: Access> Worker<'_, '_, A> {
         })
     }
 
-    /// Finds the mean ratios of all that may come, four at once.
+    /// Finds the mean ratios of all tetrahedra that may come.
     fn measure_tree(&mut self, tree: &mut Tree) {
         let [upper, lower] = tree.ends;
         let (apex, log) = (self.store.position(upper), self.store.log(upper));
@@ -247,7 +247,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Finds which faces are better gone.
+    /// Finds which faces are better removed.
     ///
     /// # Errors
     /// `Shape` when the criterion does not gain.
@@ -264,8 +264,8 @@ impl<A: Access> Worker<'_, '_, A> {
             (quality, _) if quality <= 0.0 => f64::NEG_INFINITY,
             _ => self.score(criterion, tree.tet((at, k)), cavity),
         };
-        // Two ways are compared by a sum without what both have, or by the least of all that would be there. Faces come after the one that
-        // they were reached from.
+        // By mean ratio two ways are compared by their sums, without the terms that both have; else by the least score that would be there.
+        // A face comes after the one that it was reached from.
         let mut gone = [0.0; MOST_FACES];
         for at in (0..tree.count).rev() {
             let mut joined = criterion.nothing();

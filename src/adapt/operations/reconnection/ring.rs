@@ -55,7 +55,7 @@ impl Ring {
     }
 
     /// Reads the ends of the edge and the ring. With an interface from the first vertex of the ring to the `across`-th, the polygons on both
-    /// sides of it are filled, of which the second comes back to the first vertex: a ring of [`LONGEST_RING`] less one at most.
+    /// sides of it are filled. The second ends at the first vertex again, so the ring has at most [`LONGEST_RING`] − 1 vertices.
     pub fn fill(&mut self, store: &Store, ends: [VertexId; 2], ring: &[VertexId], across: Option<usize>) {
         self.cavity.clear();
         self.cavity.extend(ends);
@@ -104,7 +104,7 @@ impl Ring {
         &self.polygons[..self.sides]
     }
 
-    /// Lists the triangles that some triangulation of the whole ring has.
+    /// Lists the triangles that are in some triangulation of the whole ring.
     fn list_wanted(&mut self) {
         self.wanted.clear();
         let n = self.len();
@@ -156,7 +156,7 @@ impl Ring {
         }
     }
 
-    /// Finds the best triangulation of scored triangles; whether it scores more than `wanted`.
+    /// Finds the best triangulation of scored triangles. Returns whether it scores more than `wanted`.
     pub fn triangulate(&mut self, criterion: Criterion, wanted: f64) -> bool {
         let n = self.len();
         for i in 0..n - 1 {

@@ -26,7 +26,7 @@ impl Operation for Reconnect {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Of the tetrahedra about an edge or face that are looked at in this sweep, the worst tries to remove it: once is enough.
+    /// Whether a tetrahedron tries an edge or face before another one at it: only the worst does, so each is tried once in a sweep.
     #[inline]
     pub fn goes_first(&self, t: TetId, other: TetId) -> bool {
         other == t || self.store.stamp(other) < self.context.limits.since || {
@@ -35,14 +35,14 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Flips what the criterion gains by at one tetrahedron: the first edge, else face, whose removal gains.
+    /// Removes the first edge of a tetrahedron, else the first face, by whose removal the criterion gains.
     pub fn reconnect(&mut self, ring: &mut Ring, t: TetId, criterion: Criterion) -> Result<(), Refusal> {
         let v = self.claim_moving_tet(t)?;
         if self.store.quality(t) >= self.context.limits.flip_below {
             return Err(Refusal::Stale);
         }
         if A::IS_LASTING {
-            // Its edges and faces need these sooner or later.
+            // Its edges and faces need these vertices in any case.
             for n in self.store.neighbours(t).into_iter().filter(|n| n.is_some()) {
                 self.claim_tet(n)?;
             }

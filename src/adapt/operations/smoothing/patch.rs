@@ -1,4 +1,4 @@
-//! The ball of a vertex laid out for trying other places for it: the energy that smoothing lowers.
+//! The ball of a vertex, laid out so that other places for the vertex are tried quickly, and the energy that smoothing lowers.
 //!
 //! E = Σ 1/Q³ over the tetrahedra + Σ ((L − 1/L)/2)² over the edges at the vertex. The second is sinh² ln L: 0 at unit length, the same for
 //! twice and for half of it.
@@ -9,7 +9,7 @@ use crate::metric::Sym3;
 use crate::metric::batch::{Batch, IncidentEdges, QuadraticModel, Shapes};
 use crate::metric::lanes::{LANES, Lanes};
 
-/// Q³ at least, where a tetrahedron that is nearly flat would make the energy blind for all others.
+/// Q³ counts as at least this. A tetrahedron that is nearly flat would else hide all others in the energy.
 const LEAST_CUBE: f64 = 1e-18;
 
 /// A vertex with the triangles opposite to it and the vertices joined to it. Allocated once.
@@ -21,7 +21,7 @@ pub struct SmoothingPatch {
     ends: usize,
     /// Q³ at the place that was tried last.
     cubes: Vec<Lanes>,
-    /// Part of the energy of the shapes there.
+    /// The part of the energy that comes of the tetrahedra, there.
     energy: f64,
 }
 
@@ -69,7 +69,7 @@ impl SmoothingPatch {
             for lane in 0..LANES.min(self.ends - first) {
                 let length = lengths[lane].max(0.1);
                 sum.energy += misfit(length);
-                // φ = ((L − 1/L)/2)²; ∇L = M(p − x)/L. Of the Hessian the part that is never negative.
+                // φ = ((L − 1/L)/2)²; ∇L = M(p − x)/L. Of the Hessian only the part that is never negative.
                 let inverse = 1.0 / length;
                 let slope = 0.5 * (length - inverse) * (1.0 + inverse * inverse);
                 let curvature = 0.5 * (1.0 + 3.0 * inverse.powi(4));
@@ -81,7 +81,7 @@ impl SmoothingPatch {
         Some(sum)
     }
 
-    /// The mean of the points that have unit distance from the neighbours, in the direction of p (pliant).
+    /// The mean, over the neighbours, of the point at unit distance from each in the direction of p (pliant smoothing).
     pub fn pliant(&self, p: Vec3, metric: &Sym3) -> Vec3 {
         let mut sum = [0.0; 3];
         for (first, incident) in (0..self.ends).step_by(LANES).zip(&self.incident) {
@@ -93,14 +93,14 @@ impl SmoothingPatch {
         scale(sum, 1.0 / self.ends as f64)
     }
 
-    /// The energy with the vertex at p; flat tetrahedra count as all but flat.
+    /// The energy with the vertex at p. Flat tetrahedra count as nearly flat.
     pub fn energy(&mut self, p: Vec3, log: &Sym3, metric: &Sym3) -> f64 {
         self.falls_below(f64::INFINITY, p, log);
         self.with_lengths(p, metric)
     }
 
-    /// Whether the shapes' part of the energy is below the limit with the vertex at p: no tetrahedron is inverted then (exact).
-    /// Without a limit flat tetrahedra count as all but flat.
+    /// Whether the tetrahedra's part of the energy is below the limit with the vertex at p. If so, no tetrahedron is inverted (exact).
+    /// With an infinite limit flat tetrahedra count as nearly flat.
     pub fn falls_below(&mut self, limit: f64, p: Vec3, log: &Sym3) -> bool {
         self.cubes.clear();
         self.energy = 0.0;

@@ -1,8 +1,8 @@
 //! Smoothing: a vertex moves, within its entity of the model, to where its tetrahedra and edges are better.
 //!
-//! The energy of [`super::patch`] is convex about a vertex as long as the metric is held, so Newton's step finds its minimum at
-//! once; how much a step can save is known before anything is tried. A step counts only if the energy falls
-//! with the metric of the new place, no tetrahedron is inverted (exact), and the surface does not turn from its model.
+//! The energy of [`super::patch`] is convex about a vertex as long as the metric is held, so one Newton step comes near its minimum, and
+//! how much the step would save is known before anything is tried. A step is taken only if the energy falls with the metric
+//! of the new place, no tetrahedron is inverted (exact), and the surface does not deviate more from its model.
 use super::patch::SmoothingPatch;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ball::Ball;
@@ -16,7 +16,7 @@ use crate::mesh::vector::{Vec3, add, dot, lerp, scale, unit};
 use crate::metric::batch::QuadraticModel;
 use crate::metric::plane_basis;
 
-/// Part of the energy that a step must promise to save, and of which it must keep half.
+/// A step must promise to save this share of the energy, and must really save half of it.
 const GAIN: f64 = 0.001;
 
 /// Longest step in the metric.
@@ -70,7 +70,7 @@ impl<A: Access> Worker<'_, '_, A> {
         moved
     }
 
-    /// Newton's step, whole and shortened; where a tetrahedron is flat, the pliant direction instead.
+    /// Tries Newton's step, whole and shortened; where a tetrahedron is flat, steps towards the pliant point instead.
     fn descend(
         &mut self,
         v: VertexId,
@@ -88,8 +88,8 @@ impl<A: Access> Worker<'_, '_, A> {
         };
         let step = self.newton_step(&held.placed, &model);
         let limit = model.energy * (1.0 - 0.5 * GAIN);
-        // What the whole step would save is known; if that is too little, nothing is tried.
-        // No number comes where the surface has no normal, as at a pole: the vertex stays.
+        // If the whole step would save too little, nothing is tried. It is NaN where the surface has no normal, as at a pole: there the
+        // vertex stays.
         let saved = -0.5 * dot(model.gradient, step);
         if saved.is_nan() || saved < GAIN * model.energy {
             return Err(Refusal::Shape);
@@ -146,7 +146,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Moves the vertex to the closest point of its entity when the energy falls below `limit` there and the surface stays.
+    /// Moves the vertex to the closest point of its entity, if the energy is below `limit` there and the surface deviates no more than before.
     #[allow(clippy::too_many_arguments)]
     fn move_to(
         &mut self,

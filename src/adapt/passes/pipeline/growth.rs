@@ -10,7 +10,7 @@ use crate::mesh::vector::{area2, norm, volume6};
 use crate::metric::Sym3;
 use crate::tasks::GRAIN;
 
-/// Vertices a unit of complexity that no mesh of a metric that can be met has.
+/// No mesh of a metric that can be met has so many vertices a unit of complexity.
 const MOST_A_COMPLEXITY: f64 = 8.0;
 
 /// Vertices a unit of area, in the two greatest sizes: a domain thinner than its cells has more surface than complexity. A surface
@@ -24,7 +24,7 @@ const ALWAYS_ALLOWED: f64 = 1_000.0;
 const FOR_THE_SURFACE: f64 = 20_000.0;
 
 impl Pipeline<'_, '_> {
-    /// Complexity of the metric on the mesh as it is: Σ √det M |k| over the tetrahedra, the metric the mean of the vertices'.
+    /// Complexity of the metric on the mesh as it is: Σ √det M̄ |k| over the tetrahedra, M̄ the mean of their vertices.
     fn complexity(&self) -> f64 {
         let store = &self.context.store;
         self.team().sum(GRAIN, store.tet_bound(), |range| {
@@ -79,7 +79,7 @@ impl Pipeline<'_, '_> {
         parts.into_iter().sum()
     }
 
-    /// Whether the mesh may still grow; once it may not, it may no more in this run.
+    /// Whether the mesh may still grow. Once the answer is no, it stays no in this run.
     pub(super) fn may_grow(&mut self) -> bool {
         self.overgrown = self.overgrown || !self.is_accounted_for(self.live());
         !self.overgrown

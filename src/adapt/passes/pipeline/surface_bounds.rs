@@ -1,4 +1,4 @@
-//! The bounds that the user sets to the surface: within the passes, and what is left beyond them.
+//! The user's bounds of the surface in the passes, and the count of triangles that are still beyond them at the end.
 use super::Pipeline;
 use crate::adapt::core::access::Exclusive;
 use crate::adapt::core::context::Limits;
@@ -7,7 +7,7 @@ use crate::adapt::core::worker::Worker;
 use crate::adapt::operations::insertion::deviating::SplitDeviating;
 use crate::adapt::schedule::work::Kind;
 
-/// Sweeps in a row that split what deviates: each halves edges.
+/// Most sweeps in a row that split deviating triangles; each halves edges.
 const SWEEPS: usize = 4;
 
 impl Pipeline<'_, '_> {
@@ -42,7 +42,7 @@ impl Pipeline<'_, '_> {
         self.context.limits = limits;
     }
 
-    /// Surface triangles that deviate farther from the model than the user allows.
+    /// How many surface triangles deviate farther from the model than the user allows.
     pub fn deviating(&mut self) -> usize {
         if !self.surface.is_some() {
             return 0;

@@ -1,10 +1,10 @@
-//! What coarsening left of a crowded mesh is thinned before the passes: they would list and measure each of its edges again and again.
+//! Thinning of what coarsening left of a crowded mesh. It comes before the passes, which would list and measure all edges again and again.
 use super::{LITTLE, Pipeline, size_limits};
 use crate::adapt::core::context::Limits;
 use crate::adapt::operations::collapse::thinning::Thin;
 use crate::adapt::schedule::work::Kind;
 
-/// The store is renumbered when it has shrunk by this factor: by 2 costs as much as it saves.
+/// The store is renumbered when it has shrunk by this factor. With 2 that costs as much as it saves.
 const SHRUNK: usize = 4;
 
 /// Rounds of thinning, with flips between them.
@@ -16,7 +16,7 @@ fn thin_limits() -> Limits {
 }
 
 impl Pipeline<'_, '_> {
-    /// Removes vertices that are too near to others, with flips where that gets stuck.
+    /// Removes vertices that are too near to others, with flips between the rounds.
     pub(super) fn thin(&mut self) {
         self.limit(thin_limits());
         for round in 0..THINNINGS {
@@ -42,7 +42,7 @@ impl Pipeline<'_, '_> {
             }
             if SHRUNK * (live - done) < self.context.store.vertex_bound() {
                 self.reorder();
-                // A vertex no longer knows the tetrahedron that changed last.
+                // After that a vertex' own tetrahedron need not be the one that changed last.
                 since = 0;
             }
         }
