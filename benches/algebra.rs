@@ -1,7 +1,8 @@
-//! The kernel's own tensor algebra beside nalgebra's: what docs/decisions/linear-algebra.md says comes from here.
+//! The kernel's own tensor algebra beside nalgebra's: what docs/decisions/linear-algebra.md says comes from here. Times are the thread's own CPU
+//! time, so that other programs disturb them little.
 //!
 //!     cargo bench --bench algebra -- --quick
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::samples::cube;
 use geo_adapt::mesh::vector::{Vec3, cross, sub, unit};
@@ -13,6 +14,7 @@ use geo_adapt::metric::recovery::{Recovery, Rings};
 use geo_adapt::tasks::Team;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::hint::black_box;
+use std::time::Duration;
 
 /// Inputs of a kernel.
 const INPUTS: usize = 1024;
@@ -45,15 +47,33 @@ impl Numbers {
     }
 }
 
-/// Times `kernel` over the inputs in turn.
+/// Nanoseconds that this thread has run.
+fn ran() -> u64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    text.split(' ').next().and_then(|word| word.parse().ok()).unwrap_or(0)
+}
+
+/// CPU time of so many calls.
+fn timed<R>(times: u64, mut call: impl FnMut() -> R) -> Duration {
+    let from = ran();
+    for _ in 0..times {
+        black_box(call());
+    }
+    // The clock is kept at the scheduler's ticks: nothing would look like no time at all.
+    Duration::from_nanos((ran() - from).max(1))
+}
+
+/// Times `kernel` over the inputs: an iteration is all of them.
 fn over<T, R>(c: &mut Criterion, name: &str, inputs: &[T], kernel: impl Fn(&T) -> R) {
-    let mut i = 0;
-    c.bench_function(name, |b| {
-        b.iter(|| {
-            i = (i + 1) % inputs.len();
-            kernel(black_box(&inputs[i]))
+    let all = || {
+        inputs.iter().for_each(|input| {
+            black_box(kernel(black_box(input)));
         });
-    });
+    };
+    let mut group = c.benchmark_group("algebra");
+    group.throughput(Throughput::Elements(inputs.len() as u64));
+    group.bench_function(name, |b| b.iter_custom(|times| timed(times, all)));
+    group.finish();
 }
 
 /// P f(D) Pᵀ.
@@ -179,11 +199,11 @@ fn recovery(c: &mut Criterion) {
     let rings = Rings::of(Team::alone(), &mesh);
     println!("fits of a quadratic function: {} vertices an iteration", mesh.vertices.len());
     let mut group = c.benchmark_group("fit of a quadratic function");
-    group.throughput(criterion::Throughput::Elements(mesh.vertices.len() as u64)).sample_size(10);
-    group.bench_function("ours", |b| b.iter(|| Recovery::Fit.hessians(Team::alone(), &mesh, &rings, &values)));
-    group.bench_function("nalgebra", |b| {
-        b.iter(|| (0..values.len() as u32).map(|v| fit_by_nalgebra(&mesh, &rings, &values, v)).collect::<Vec<_>>());
-    });
+    group.throughput(Throughput::Elements(mesh.vertices.len() as u64)).sample_size(10);
+    let ours = || Recovery::Fit.hessians(Team::alone(), &mesh, &rings, &values);
+    group.bench_function("ours", |b| b.iter_custom(|times| timed(times, ours)));
+    let theirs = || (0..values.len() as u32).map(|v| fit_by_nalgebra(&mesh, &rings, &values, v)).collect::<Vec<_>>();
+    group.bench_function("nalgebra", |b| b.iter_custom(|times| timed(times, theirs)));
     group.finish();
 }
 

@@ -57,7 +57,7 @@ fn sorted_as_by_one_thread() {
 }
 
 #[test]
-fn buckets_hold_the_entries_of_their_keys() {
+fn rows_hold_the_entries_of_their_keys() {
     const KEYS: usize = 37;
     let key = scattered(u32::MAX, KEYS as u32 + 3);
     // Every third entry, and a few keys too high, go nowhere.
@@ -75,6 +75,15 @@ fn buckets_hold_the_entries_of_their_keys() {
                 assert!(rows.row(of) == of_key(of), "key {of}");
             }
             assert!(rows.into_entries().into_iter().eq((0..KEYS).flat_map(of_key)));
+            // The same by the elements of nodes: each entry is an element.
+            let nodes: Vec<[u32; 2]> =
+                (0..items).map(|item| [key(2 * item), key(2 * item + 1)].map(|k| k % KEYS as u32)).collect();
+            let rows = Rows::at_nodes(team, &nodes, KEYS);
+            for of in 0..KEYS as u32 {
+                let expected =
+                    nodes.iter().zip(0..).flat_map(|(pair, i)| pair.iter().filter(move |&&n| n == of).map(move |_| i));
+                assert!(rows.row(of as usize).iter().copied().eq(expected), "node {of}");
+            }
         });
     }
 }
