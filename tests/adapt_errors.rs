@@ -103,7 +103,11 @@ fn missing_and_foreign_files_are_named() {
 #[test]
 fn a_metric_that_is_none_is_named_with_its_vertex() {
     let (work, mesh, input, metric) = prepared();
-    let write = |metrics: Vec<Sym3>| Field { metrics }.write(Path::new(&metric)).unwrap();
+    // `Field` itself writes no such tensors.
+    let write = |metrics: Vec<Sym3>| {
+        let tensors: Vec<_> = metrics.iter().map(|metric| metric.0).collect();
+        io::write_solution(Path::new(&metric), &io::Solution::metric(&tensors)).unwrap();
+    };
     let field = ["--metric", metric.as_str()];
     write(vec![Sym3::IDENTITY; 63]);
     assert_says(&work.refusal(&input, &field), &["size.solb", "63 vertices", "64", "made for this mesh"]);

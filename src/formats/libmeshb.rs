@@ -14,7 +14,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
 /// Reads the names and the fields that lie beside a mesh; a solution of another number of vertices is not its own.
 pub(super) fn read_beside(path: &Path, read: &mut Read<Dataset>) -> Result<(), Error> {
     read.content.names = names::read(path)?;
-    let Some(beside) = ["solb", "sol"].map(|end| path.with_extension(end)).into_iter().find(|path| path.is_file())
+    let Some(beside) = ["solb", "sol"].map(|end| path.with_extension(end)).into_iter().find(|path| path.exists())
     else {
         return Ok(());
     };

@@ -195,7 +195,7 @@ fn rows(path: &Path, bytes: &[u8]) -> Result<Vec<(i32, i64, String)>, Error> {
 /// Reads the names that lie beside.
 pub(super) fn read_beside(path: &Path, names: &mut Names) -> Result<(), Error> {
     let beside = names_path(path);
-    if !beside.is_file() {
+    if !beside.exists() {
         return Ok(());
     }
     for (reference, _, name) in rows(&beside, &error::read(&beside)?)? {

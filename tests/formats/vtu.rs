@@ -248,3 +248,40 @@ fn pieces_are_joined() {
         found.notices
     );
 }
+
+/// A grid of four points whose array of points or, if `wide`, of values at them claims so many bytes; the compressed data is none.
+fn claiming(bytes: u32, wide: Option<u32>) -> String {
+    let header: Vec<u8> = [1, bytes, 0, 7].iter().flat_map(|number: &u32| number.to_le_bytes()).collect();
+    let data = BASE64_STANDARD.encode([&header[..], b"no zlib"].concat());
+    let lying = |name: &str, width: u32| {
+        format!(
+            "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"{width}\" format=\"binary\">{data}</DataArray>"
+        )
+    };
+    let points = match wide {
+        None => lying("xyz", 3),
+        Some(_) => {
+            "<DataArray type=\"Float64\" Name=\"xyz\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray>"
+                .into()
+        }
+    };
+    let values = wide.map_or(String::new(), |width| lying("u", width));
+    format!(
+        "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid>\
+         <Piece NumberOfPoints=\"4\" NumberOfCells=\"0\"><PointData>{values}</PointData><Points>{points}</Points></Piece>\
+         </UnstructuredGrid></VTKFile>"
+    )
+}
+
+#[test]
+fn four_points_that_claim_half_a_gigabyte_are_refused_before_it_is_unpacked() {
+    // Unpacking would find that the data is none.
+    let told = refusal("a.vtu", claiming(512 << 20, None));
+    assert_eq!(told, "array xyz: 67108864 values; 3 at each of 4 are expected");
+    assert!(refusal("a.vtu", claiming(96, None)).contains("damaged"));
+    // Values that fit the points, and are too many for a field: it is left out as it is.
+    let place = Place::new();
+    let found = geo_adapt::formats::read(&place.text("a.vtu", claiming(512 << 20, Some(16 << 20)))).unwrap();
+    assert_eq!((found.content.mesh.vertices.len(), found.content.fields.len()), (4, 0));
+    assert_eq!(found.notices, ["the array u has 16777216 values an item and is left out"]);
+}

@@ -45,6 +45,9 @@ pub fn read(path: &Path, header: &Header, behind: &[u8]) -> Result<Vec<u8>, Erro
     decode(other, "voxels", header, &file)
 }
 
+/// What a byte of deflate can hold at most.
+const DEFLATE: usize = 1032;
+
 fn decode(path: &Path, place: &str, header: &Header, file: &[u8]) -> Result<Vec<u8>, Error> {
     let voxels: usize = header.sizes.iter().product();
     let needed = voxels * header.kind.size();
@@ -65,6 +68,16 @@ fn decode(path: &Path, place: &str, header: &Header, file: &[u8]) -> Result<Vec<
         }
         Encoding::Gzip => {
             let skip = header.byte_skip.unwrap_or(0);
+            if needed / DEFLATE > file.len() {
+                return Err(content(
+                    path,
+                    place,
+                    format!(
+                        "has {} bytes, which cannot hold the {needed} that the sizes ask for; is the file cut?",
+                        file.len()
+                    ),
+                ));
+            }
             let mut bytes = Vec::new();
             let mut decoder = MultiGzDecoder::new(file).take(needed.saturating_add(skip) as u64);
             decoder.read_to_end(&mut bytes).map_err(|error| {
