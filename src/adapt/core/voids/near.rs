@@ -42,13 +42,15 @@ impl Voids {
     /// The narrow voids of a mesh. Between sweeps only.
     pub fn of(team: Team<'_>, context: &Context<'_>) -> Self {
         let walls = walls(team, &context.store);
-        let reaches = reaches(team, context, &walls);
+        let normals = normals(team, context, &walls);
+        let reaches = reaches(team, context, &walls, &normals);
         if reaches.iter().all(|reach| *reach == 0.0) {
             return Self::default();
         }
         let boxes: Vec<Bounds> =
             walls.iter().zip(&reaches).map(|(wall, reach)| bounds(&wall.corners, *reach)).collect();
-        let zone: Vec<Bounds> = near_others(team, &walls, &reaches, &boxes).into_iter().map(|i| boxes[i]).collect();
+        let zone: Vec<Bounds> =
+            near_others(team, &walls, &normals, &reaches, &boxes).into_iter().map(|i| boxes[i]).collect();
         if zone.is_empty() {
             return Self::default();
         }
@@ -85,8 +87,7 @@ fn walls(team: Team<'_>, store: &Store) -> Vec<Wall> {
 }
 
 /// How far the surface may move at each triangle: as the chords rise at its vertices.
-fn reaches(team: Team<'_>, context: &Context<'_>, walls: &[Wall]) -> Vec<f64> {
-    let normals = normals(team, context, walls);
+fn reaches(team: Team<'_>, context: &Context<'_>, walls: &[Wall], normals: &[[Vec3; 3]]) -> Vec<f64> {
     let rises = team.map(GRAIN, walls.len(), |i| rise(context, &walls[i], &normals[i]));
     let mut at = vec![0.0f64; context.store.vertex_bound()];
     for (wall, rise) in walls.iter().zip(rises) {
@@ -156,7 +157,13 @@ fn ridge_angle(store: &Store, a: VertexId, b: VertexId) -> f64 {
 }
 
 /// The triangles that are nearer to another, across a void, than both may move.
-fn near_others(team: Team<'_>, walls: &[Wall], reaches: &[f64], boxes: &[Bounds]) -> Vec<usize> {
+fn near_others(
+    team: Team<'_>,
+    walls: &[Wall],
+    mean_normals: &[[Vec3; 3]],
+    reaches: &[f64],
+    boxes: &[Bounds],
+) -> Vec<usize> {
     let tree = BoxTree::new(walls.len(), |i| boxes[i as usize]);
     let normal = |i: usize| {
         let [a, b, c] = walls[i].corners;
@@ -165,11 +172,15 @@ fn near_others(team: Team<'_>, walls: &[Wall], reaches: &[f64], boxes: &[Bounds]
     let normals = team.map(GRAIN, walls.len(), normal);
     let is_above =
         |i: usize, j: usize| walls[j].corners.iter().any(|p| dot(sub(*p, walls[i].corners[0]), normals[i]) > 0.0);
+    // Long thin triangles across a curved wall may tilt towards each other, and yet it is one wall: there its mean normals tell.
+    let side = |i: usize| mean_normals[i].into_iter().fold([0.0; 3], add);
+    let is_one_wall = |i: usize, j: usize| walls[i].face == walls[j].face && dot(side(i), side(j)) > 0.0;
     let are_near = |i: usize, j: usize| {
         reaches[i] + reaches[j] > 0.0
             && dot(normals[i], normals[j]) < FACING
             && overlap(&boxes[i], &boxes[j])
             && !walls[i].vertices.iter().any(|v| walls[j].vertices.contains(v))
+            && !is_one_wall(i, j)
             && is_above(i, j)
             && is_above(j, i)
             && {
