@@ -29,7 +29,7 @@ pub struct Crossings {
 }
 
 /// Where the boundary of a mesh of positive tetrahedra passes through itself; triangles are numbered in the order of the tetrahedra that
-/// they bound. So many are told.
+/// they bound. At most `told` pairs are named.
 pub fn of_boundary(team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, told: usize) -> Crossings {
     let triangles = team.collect(1 << 12, mesh.tets.len(), |range, found| {
         for t in range {
