@@ -40,8 +40,8 @@ pub fn of_boundary(team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, told: u
     crossings(team, &triangles, |v| mesh.vertices[v as usize], told)
 }
 
-/// Pairs of triangles, all looking outward, that pass through each other ([`crossing`]); of these so many are told. The result does not
-/// depend on the threads.
+/// Pairs of triangles, all looking outward, that pass through each other ([`crossing`]). At most `told` of them are named. The result does
+/// not depend on the threads.
 pub fn crossings<I: Copy + PartialEq + Sync>(
     team: Team<'_>,
     triangles: &[[I; 3]],

@@ -32,7 +32,8 @@ pub enum FlawKind {
     PinchedVertex,
     /// A vertex of no tetrahedron.
     HangingVertex,
-    /// Two triangles of the boundary pass through each other: the mesh overlaps itself. Looked for where all tetrahedra are positive.
+    /// Two triangles of the boundary pass through each other: the mesh overlaps itself. Only looked for where all tetrahedra are
+    /// positive.
     CrossingTriangles,
 }
 

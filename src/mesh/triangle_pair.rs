@@ -1,8 +1,8 @@
 //! Whether two triangles of a boundary pass through each other: exact.
 //!
-//! Bodies may touch, in whatever way: a mesh that was taken apart at an edge or a vertex ([`super::split_nonmanifold`]) does, and so does one of parts in
-//! contact. Nor is it a crossing where rounding brings a corner through what it touches. So before they are held against each other, triangles
-//! draw back into their bodies by next to nothing.
+//! Bodies may touch, in any way: those of a mesh that was split at an edge or a vertex ([`super::split_nonmanifold`]) do, and so do parts in
+//! contact. It is no crossing either where rounding brings a corner through what it touches. So before two triangles are compared, both
+//! draw back into their bodies by a very small distance.
 use super::locate::nearest_on_triangle;
 use super::predicate::orientation;
 use super::vector::{Vec3, add, area2, dot, lerp, norm, scale, sub, unit};

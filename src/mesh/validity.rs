@@ -181,8 +181,8 @@ fn check_faces(found: &mut Findings, faces: &[FaceKey], triangles: &[([u32; 3], 
     boundary
 }
 
-/// The boundary does not pass through itself. (Positive tetrahedra on both sides look after triangles inside. What the tetrahedra are
-/// inverted or flat at has no outside.)
+/// The boundary does not pass through itself. (Triangles inside cannot cross, since the tetrahedra on both sides are positive. Where
+/// tetrahedra are inverted or flat there is no outside, and nothing is checked.)
 fn check_crossings(found: &mut Findings, team: Team<'_>, mut boundary: Vec<BoundaryFace>) {
     let hinders = [FlawKind::RepeatedNodes, FlawKind::InvertedTet, FlawKind::FlatTet];
     if hinders.into_iter().any(|kind| found.validity.count(kind) > 0) {

@@ -259,8 +259,8 @@ impl<'a> Near<'a> {
     }
 }
 
-/// No size such that the curvature leaves a cell as thin as `across`: the middle of an edge of this size is that far from its arc. Cells
-/// along a sliver of a face on a curved wall would stand out of it else, and no mesh follows them.
+/// Bounds all sizes so that an edge along a wall of this curvature has its middle no farther from the wall than `across`. Otherwise thin
+/// cells on a sliver of a curved face would stand out of the wall, and no mesh could follow them.
 fn chord_limited(metric: Sym3, across: f64, curvature: f64) -> Sym3 {
     let along = (8.0 * across / curvature).sqrt();
     let reaches = along.is_finite() && metric.eigen().values[0] * along * along < 1.0;
