@@ -212,8 +212,8 @@ fn parameters_on(
     }
 }
 
-/// For each triangle +1 when its normal points out of its only tetrahedron, −1 when into it, 0 between two tetrahedra; none when it is no
-/// face of a tetrahedron.
+/// For each triangle its sign, +1 when its normal points out of its only tetrahedron and −1 when into it; no sign between two tetrahedra.
+/// None when it is no face of a tetrahedron.
 fn sides(team: Team<'_>, mesh: &TetMesh) -> Vec<Option<Option<f64>>> {
     let mut sides = vec![None; mesh.triangles.len()];
     let index = TriangleIndex::new(team, &mesh.triangles.nodes, mesh.vertices.len());
