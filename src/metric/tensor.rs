@@ -1,4 +1,4 @@
-//! Symmetric 3×3 tensors: the algebra, and the maps through eigenvalues (METHOD.md §1).
+//! Symmetric 3×3 tensors: the algebra, and the maps through eigenvalues (METHOD.md §1.1).
 use super::eigen::Eigen;
 use crate::mesh::vector::Vec3;
 

@@ -1,6 +1,6 @@
 //! A mesh may have so many vertices as its metric can account for, and some beside; then it stops growing.
 //!
-//! A unit mesh has about two vertices a unit of complexity (METHOD.md §1), near walls three. Some metrics can be met by no mesh, and
+//! A unit mesh has about two vertices a unit of complexity (METHOD.md §1.5), near walls three. Some metrics can be met by no mesh, and
 //! would let it grow until memory ends: on a curved wall cells so flat that the wall rises by many of them within one edge (edges are cut
 //! until the wall is flat between their ends, whatever their length, and each cut asks for more); sizes that differ by many orders
 //! within a cell, or that are many times the domain in some directions.
