@@ -1,4 +1,4 @@
-"""The analytic scalars of the study (METHOD.md §1; Tsolakis 2021, equations 21 to 23), on the unit cube: values (n,) from points (n, 3)."""
+"""The analytic scalars of the study (docs/METHOD.md 1.14; Tsolakis 2021, equations 21 to 23), on the unit cube: values (n,) from points (n, 3)."""
 
 import numpy as np
 

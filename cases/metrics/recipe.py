@@ -108,7 +108,7 @@ def roots(metrics):
 
 
 def intersection(first, second):
-    """By simultaneous reduction (METHOD.md 1)."""
+    """By simultaneous reduction (docs/METHOD.md 1.6)."""
     root, inverse = roots(first)
     values, vectors = np.linalg.eigh(inverse @ second @ inverse)
     found = root @ composed(np.maximum(values, 1), vectors) @ root

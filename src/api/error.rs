@@ -1,7 +1,7 @@
 //! What is wrong with the input of the library's adapter.
 use crate::{adapt, geometry, tasks};
 
-/// Why nothing was adapted: what, where, and the remedy. Numbers count from 0, as in the slices.
+/// Why nothing was adapted, with place and remedy. Numbers count from 0, as in the slices.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Two slices do not belong together.
@@ -26,7 +26,7 @@ pub enum Error {
         /// How many there are.
         count: usize,
     },
-    /// A coordinate is infinite or no number.
+    /// A coordinate is infinite or NaN.
     #[error("vertex {vertex} has a coordinate that is not finite")]
     NotFinite {
         /// The vertex.

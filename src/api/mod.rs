@@ -1,5 +1,5 @@
 //! The adapter in memory, for a solver that calls it between its steps: mesh and metric as slices in, mesh, metric and parents out. No
-//! file is read or written but the CAD model, once; model and threads stay between the calls.
+//! file is read or written but the CAD model, which is read once. Model and threads are kept between the calls.
 //!
 //! ```
 //! use geo_adapt::api::{Adapter, MeshView, Settings};
@@ -72,7 +72,7 @@ use crate::tasks::{Pool, Team};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Twelve tetrahedra for each unit of complexity, numbered with 32 bits; some numbers lie idle.
+/// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
 const GREATEST_COMPLEXITY: f64 = 2e8;
 
 /// How to adapt: what the program's options say.
@@ -251,7 +251,7 @@ fn scale(team: Team<'_>, mesh: &TetMesh, source: &mut Source, wanted: Option<f64
         source.scale(team, field::complexity_factor(own, target).ln());
     }
     let complexity = wanted.unwrap_or(own);
-    // One that is no number is refused, too.
+    // NaN is refused, too.
     if complexity <= GREATEST_COMPLEXITY {
         Ok(())
     } else {

@@ -97,7 +97,7 @@ impl AdaptedMesh {
     }
 }
 
-/// Gives the vertices that found no room on the model their closest points there: the next call tries again.
+/// Sets the projected places of the vertices without room on the model to their closest points there, so that the next call tries again.
 fn settle(place: &mut Classification, off_model: &[u32], model: &Model) {
     let mut evaluator = model.evaluator();
     for v in off_model.iter().map(|&v| v as usize) {

@@ -38,7 +38,7 @@ pub struct MeshView<'a> {
     pub required_edges: &'a [u32],
     /// Triangles that must stay, as indices into `triangles`.
     pub required_triangles: &'a [u32],
-    /// What a CAD model's vertices, edges and faces hold of the mesh, as a file would list it: a help for finding its place.
+    /// Which mesh vertices lie on which vertices, edges and faces of a CAD model, as a file would list it. It helps to find the mesh's place.
     pub association: Option<&'a Association>,
     /// Where the boundary lies on the model, of a mesh that came out of the same adapter: then nothing is looked for.
     pub place: Option<&'a Classification>,

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Names that are listed; of more only the number is given.
+/// Most names that are listed; of more only the number is given.
 const LISTED: usize = 16;
 
 /// Arguments of `geo-adapt convert`.

@@ -171,7 +171,7 @@ fn interval(range: [f64; 2], period: Option<f64>) -> String {
     format!("{low}..{high}{period}")
 }
 
-/// The number, or 0 where it is nothing beside `size`.
+/// The number, or 0 where it is negligible beside `size`.
 fn number_beside(x: f64, size: f64) -> String {
     number(if x.abs() < 1e-6 * size { 0.0 } else { x })
 }

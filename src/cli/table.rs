@@ -73,7 +73,7 @@ impl Table {
         self.distribution("mean ratio", &statistics.mean_ratios);
     }
 
-    /// How true the mesh is to its model.
+    /// The fidelity of the mesh to its model.
     pub fn fidelity(&mut self, fidelity: &Fidelity) {
         self.row("vertices on the model", fidelity.vertices);
         let farthest = [

@@ -1,4 +1,4 @@
-//! What is said on standard output and on standard error.
+//! Standard output and standard error.
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 
@@ -24,7 +24,7 @@ pub fn check(done: io::Result<()>) -> Result<(), PrintError> {
     }
 }
 
-/// Writes a line to standard error; where that cannot be written there is nobody to tell.
+/// Writes a line to standard error. A failure is ignored: there is nobody to tell.
 pub fn tell(line: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{line}");
 }

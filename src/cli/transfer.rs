@@ -169,7 +169,7 @@ impl Arguments {
     /// Reads the fields, of a mesh of so many vertices.
     fn fields(&self, team: Team<'_>, vertices: usize) -> Result<Solution, Failure> {
         if self.metric {
-            // Read as a metric to refuse what is none, in the words of all commands that read one; the notes come below.
+            // Read as a metric, so that other files are refused with the same message as in all commands; the notices come below.
             Field::read_logs(team, &self.old_fields, vertices)?;
         }
         common::fields(&self.run, team, &self.old_fields, &self.old_mesh, vertices)

@@ -4,7 +4,7 @@ use crate::mesh::Elements;
 use crate::mesh::io::Error;
 use std::path::Path;
 
-/// Every index in range, every number finite, every field as long as the mesh; nothing but the shape of the data is asked.
+/// Checks that every index is in range, every number finite, every field as long as the mesh. Nothing else is checked.
 ///
 /// # Errors
 /// [`Error::Content`], with the element, vertex or field and the remedy.
@@ -42,7 +42,7 @@ pub(super) fn check(path: &Path, data: &Dataset) -> Result<(), Error> {
     Ok(())
 }
 
-/// Takes fields out that have a value that is not finite, with a notice each: those of a solver that has failed, or of no meaning there.
+/// Removes fields with a value that is not finite, with a notice each: a solver has failed, or the field has no meaning somewhere.
 pub(super) fn drop_endless(path: &Path, fields: &mut Vec<NamedField>, notices: &mut Vec<String>) {
     fields.retain(|field| {
         let at = field.values.iter().position(|x| !x.is_finite());

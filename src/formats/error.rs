@@ -1,4 +1,4 @@
-//! Errors of files, shortly.
+//! Short forms for the errors of files.
 use crate::mesh::io::{Error, read_file};
 use std::path::Path;
 
@@ -7,7 +7,7 @@ pub(super) fn at(path: &Path, place: impl Into<String>, message: impl Into<Strin
     Error::Content { path: path.to_owned(), place: place.into(), message: message.into() }
 }
 
-/// A name of a file as an error shows it: damaged ones can be very long, and of any characters.
+/// A name in a file as an error shows it. In a damaged file it can be very long, and of any characters.
 pub(super) fn short(name: &str) -> String {
     name.chars().take(40).flat_map(char::escape_debug).collect()
 }

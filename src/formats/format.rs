@@ -35,7 +35,7 @@ const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .msh, .msh2, .ugrid, .b8.ugrid, 
      a new one is named with a / at its end); fields alone .sol, .solb, .csv, .dat";
 
 impl Format {
-    /// By the extension; a folder is a case of OpenFOAM.
+    /// The format by the extension; a folder is a case of OpenFOAM.
     ///
     /// # Errors
     /// When it is none that is known.
@@ -67,7 +67,7 @@ impl Format {
         })
     }
 
-    /// By the extension; where that is none that is known, by the first bytes.
+    /// The format by the extension; where that is unknown, by the first bytes.
     ///
     /// # Errors
     /// When neither tells.

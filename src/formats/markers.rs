@@ -1,4 +1,4 @@
-//! Boundaries that a format knows by name alone: from references to names and back.
+//! Boundaries of formats that have names alone: from references to names and back.
 use crate::geometry::Label;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,8 +1,10 @@
 //! Meshes and fields in the files of other programs.
 //!
 //! Reading goes bytes → a reader a format (`su2`, `vtu`, `msh`, `ugrid`; `libmeshb` hands over to [`crate::mesh::io`]) → [`Dataset`] →
-//! `check` (indices, numbers) → `turn` (tetrahedra numbered the other way). Writing goes the way back, and says what the format cannot carry.
-//! Cases of OpenFOAM (`foam`) are folders, with fields at cells. Columns of fields alone (`columns`: SU2's restarts) come onto a mesh that is there.
+//! `check` (indices, numbers) → `orientation` (tetrahedra numbered the other way). Writing goes the way back; `unsupported` says what the
+//! format cannot carry.
+//! Cases of OpenFOAM (`foam`) are folders, with fields at cells. Columns of fields alone (`columns`: SU2's restarts) are read onto a given
+//! mesh.
 mod cells;
 mod check;
 mod columns;

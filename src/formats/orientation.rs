@@ -2,7 +2,8 @@
 use crate::mesh::TetMesh;
 use crate::mesh::vector::volume6;
 
-/// Turns all tetrahedra where most are negative: programs number them either way. Returns what was done, or that some stay negative.
+/// Reverses all tetrahedra where most are negative, since programs number them either way. Returns a notice of that, or that some stay
+/// negative.
 pub(super) fn unify(mesh: &mut TetMesh) -> Option<String> {
     let points = &mesh.vertices;
     let is_negative = |nodes: &&[u32; 4]| {

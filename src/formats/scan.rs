@@ -116,7 +116,7 @@ impl<'a> Scan<'a> {
         usize::try_from(count).map_err(|_| self.fail(format!("the count says {count}; 0 or more is expected")))
     }
 
-    /// Items to make room for: what a count says, but no more than the bytes that are left can hold of `bytes` at least each.
+    /// How many items to make room for: what a count says, but no more than fit into the bytes that are left, at `bytes` or more each.
     pub fn room(&self, count: usize, bytes: usize) -> usize {
         count.min(self.left() / bytes + 1)
     }

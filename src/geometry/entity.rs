@@ -104,9 +104,9 @@ pub struct EdgeEntity {
     pub range: [f64; 2],
     /// Period of the curve, if periodic.
     pub period: Option<f64>,
-    /// A degenerate edge is a point in space (a sphere's pole): nothing is classified on it.
+    /// Whether it is degenerate: a point in space (a sphere's pole). Nothing is classified on it.
     pub degenerate: bool,
-    /// A seam closes a periodic face on itself: no ridge, nothing is classified on it.
+    /// Whether it is a seam, where a periodic face closes on itself. It is no ridge, and nothing is classified on it.
     pub seam: bool,
     /// Tolerance the model states for it.
     pub tolerance: f64,

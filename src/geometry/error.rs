@@ -1,7 +1,7 @@
 //! Errors of models and classification.
 use std::path::PathBuf;
 
-/// What was wrong with a model or with a mesh on it: what, where, and the remedy.
+/// What is wrong with a model or with a mesh on it, where, and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The file cannot be opened.

@@ -1,4 +1,4 @@
-//! How true a mesh's boundary is to its model: distances, and the deviation of the normals.
+//! Fidelity of a mesh's boundary to its model: distances, and the deviation of the normals.
 use super::classify::Classification;
 use super::{Entity, Evaluate, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
@@ -36,7 +36,7 @@ pub struct Deviation {
     pub at: Vec3,
 }
 
-/// How true a mesh's boundary is to its model.
+/// The fidelity of a mesh's boundary to its model.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Fidelity {
     /// Vertices on the model.
@@ -45,7 +45,7 @@ pub struct Fidelity {
     pub from_model: Option<Farthest>,
     /// The vertex farthest from its own entity.
     pub from_entity: Option<Farthest>,
-    /// Of the vertices that had to stay where the input has them the one farthest from its own entity: they count with neither of those.
+    /// The vertex farthest from its own entity of those that had to stay where the input has them. These do not count above.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held: Option<Farthest>,
     /// The triangle of the worst normal.
@@ -104,7 +104,7 @@ fn measure_vertices(
         found.retain(|found| !is_held(found));
     }
     fidelity.from_entity = found.first().copied();
-    // The model is no farther than the own entity: most vertices need no search.
+    // The model is no farther than the vertex' own entity. So most vertices need no search.
     let mut evaluator = model.evaluator();
     for near in found {
         if fidelity.from_model.is_some_and(|known| near.distance <= known.distance) {
@@ -212,8 +212,8 @@ fn parameters_on(
     }
 }
 
-/// For each triangle +1 when its normal points out of its only tetrahedron, −1 when into it, no sign between two
-/// tetrahedra; none when it is no face of any.
+/// For each triangle its sign, +1 when its normal points out of its only tetrahedron and −1 when into it; no sign between two tetrahedra.
+/// None when it is no face of a tetrahedron.
 fn sides(team: Team<'_>, mesh: &TetMesh) -> Vec<Option<Option<f64>>> {
     let mut sides = vec![None; mesh.triangles.len()];
     let index = TriangleIndex::new(team, &mesh.triangles.nodes, mesh.vertices.len());

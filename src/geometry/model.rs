@@ -78,7 +78,7 @@ impl Model {
         }
     }
 
-    /// The far field without the body that this is.
+    /// The far field without this body.
     ///
     /// # Errors
     /// [`super::Error::Model`] when it is no CAD model or OpenCASCADE cannot subtract it.
@@ -94,7 +94,7 @@ impl Model {
         }
     }
 
-    /// What the CAD kernel's own check finds wrong with faces, in words. Slow on large models.
+    /// What OpenCASCADE's own check finds wrong with faces, in words. Slow on large models.
     pub fn flaws(&self) -> Vec<(u32, String)> {
         match self {
             #[cfg(feature = "occt")]

@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What a CAD program calls a part, and how it paints it.
+/// The name and the colour of a part in a CAD program.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Label {
     /// The name.
@@ -57,7 +57,7 @@ fn colour<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error
     }
 }
 
-/// The names file of a mesh or model, whether it is there or not: the one that is read, and so the one that is written.
+/// The path of the names file of a mesh or model, whether it exists or not. It is the one that is read, and so the one that is written.
 pub fn beside(of: &Path) -> PathBuf {
     let mut long = of.as_os_str().to_owned();
     long.push(".names.json");

@@ -1,4 +1,4 @@
-//! Circumscribed spheres and circles, and the exact test of who lies inside.
+//! Circumscribed spheres and circles, and the exact test whether a point lies inside.
 use crate::mesh::vector::{Vec3, add, cross, distance, dot, scale, sub};
 use robust::Coord3D;
 
@@ -28,7 +28,7 @@ pub fn shortest_edge(points: &[Vec3]) -> f64 {
     pairs.map(|(i, j)| distance(points[i], points[j])).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether p lies inside the circumsphere of a positive tetrahedron: exact, and not so on the sphere itself.
+/// Whether p lies inside the circumsphere of a positive tetrahedron. It is exact; a point on the sphere is not inside.
 #[inline]
 pub fn contains([a, b, c, d]: [Vec3; 4], p: Vec3) -> bool {
     let point = |p: Vec3| Coord3D { x: p[0], y: p[1], z: p[2] };

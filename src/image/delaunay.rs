@@ -1,4 +1,4 @@
-//! The Delaunay kernel: a point goes in, the tetrahedra whose circumspheres hold it come out (Bowyer, Watson 1981).
+//! The Delaunay kernel: a point is inserted, and replaces the tetrahedra whose circumspheres hold it (Bowyer, Watson 1981).
 //!
 //! With exact predicates, and points on a sphere counted as not inside, the cavity is a star about the point, so all new tetrahedra
 //! are positive: the part of a circumsphere beyond a face is within that of the neighbour.
@@ -43,7 +43,7 @@ pub struct Worker<'w, A: Access> {
 }
 
 impl<A: Access> Worker<'_, A> {
-    /// Claims a tetrahedron that may be changing; stale when it is not that one any more.
+    /// Claims a tetrahedron that may be changing; `Stale` when it is another one by now.
     pub fn claim_tet(&mut self, t: u32, nodes: [u32; 4]) -> Result<(), Refusal> {
         if self.store.nodes(t) != nodes {
             return Err(Refusal::Stale);
@@ -163,7 +163,7 @@ impl<A: Access> Worker<'_, A> {
     }
 }
 
-/// Six tetrahedra about the domain, far enough from it for all that comes.
+/// Six tetrahedra about the domain, large enough for all points that come.
 pub fn enclose(domain: &Domain, scratch: &mut Scratch) -> Store {
     let mut store = Store::default();
     assert!(store.grow(1 << 16), "ids reach so far");

@@ -1,7 +1,8 @@
 //! The oracle: in which region of the image a point lies, and where a segment crosses a surface.
 //!
 //! Voxels stand for points at their centres. Between them a grey image is trilinear; of labels each has the trilinear weight of its
-//! voxels, and the greatest wins (the lower at a tie). Around the image lies a layer outside, so that a region which touches the border ends there.
+//! voxels, and the greatest wins (at a tie the lower label). Around the image lies a layer of outside, so that a region which touches the
+//! border ends there.
 use super::frame::Frame;
 use super::nrrd::Image;
 use crate::mesh::vector::{Vec3, distance, lerp};
@@ -115,7 +116,7 @@ impl Domain {
         let (mut first, mut part) = ([0usize; 3], [0.0; 3]);
         for i in 0..3 {
             let at = index[i] + 1.0;
-            // The negation catches what is no number.
+            // The negation catches NaN.
             if !(at >= 0.0 && at < (self.padded[i] - 1) as f64) {
                 return 0;
             }
@@ -136,10 +137,10 @@ impl Domain {
         }
     }
 
-    /// Where a segment leaves the region of `from`, which is another than that of `to`.
+    /// Where a segment leaves the region of `from`; that of `to` is another one.
     pub fn crossing(&self, (from, region): (Vec3, u16), (to, other): (Vec3, u16)) -> Vec3 {
         debug_assert_ne!(region, other);
-        // From the greater region, which is not outside: the same point whichever end comes first.
+        // The search starts in the greater region, which is not outside. So the point is the same whichever end comes first.
         let (inside, region, outside) = if region > other { (from, region, to) } else { (to, other, from) };
         let mut ends = [inside, self.clip(inside, outside)];
         let resolution = RESOLUTION * self.least_spacing();
@@ -260,7 +261,7 @@ fn grey(image: &Image, padded: [usize; 3], isovalue: f64) -> Result<Field, Domai
     if greatest <= isovalue {
         return Err(DomainError::NothingAbove(greatest));
     }
-    // Far beyond anything that could matter, and no sum of eight overflows.
+    // Beyond any value that matters, and no sum of eight overflows.
     let most = f64::from(f32::MAX) / 16.0;
     let above = |at: [usize; 3]| {
         let [x, y, _] = image.sizes;
@@ -272,7 +273,7 @@ fn grey(image: &Image, padded: [usize; 3], isovalue: f64) -> Result<Field, Domai
         let index = [voxel % x, voxel / x % y, voxel / (x * y)];
         let inside: [usize; 3] = std::array::from_fn(|i| index[i].clamp(1, image.sizes[i]));
         let value = above(inside.map(|i| i - 1));
-        // What is inside at the border is as much outside a voxel further: the surface is where the voxel ends.
+        // A voxel beyond the border is as far outside as the border's is inside, so the surface is where the voxel ends.
         values.push(if inside == index { value } else { -value.abs() });
     }
     Ok(Field::Grey(values))

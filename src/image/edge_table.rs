@@ -26,7 +26,7 @@ impl EdgeTable {
         }
     }
 
-    /// The side that was given with the edge before; the first time none, and this one is kept.
+    /// The side that was given when the edge came before. The first time there is none, and this side is kept.
     pub fn meet(&mut self, a: u32, b: u32, side: u32) -> Option<u32> {
         let ends = [a.min(b), a.max(b)];
         let key = (u64::from(ends[0]) << 32 | u64::from(ends[1])).wrapping_mul(0x9E37_79B9_7F4A_7C15);

@@ -37,8 +37,8 @@ pub struct RadiusEdge {
     pub greatest: f64,
     /// The greatest of those without a vertex on a surface.
     pub greatest_inside: f64,
-    /// How many are above the limit: with a vertex on a surface, where a better one would need vertices nearer to each other than the
-    /// limits allow.
+    /// How many with a vertex on a surface are above the limit. Better ones there would need vertices nearer to each other than the limits
+    /// allow.
     pub above_at_surfaces: usize,
     /// How many are above the limit without a vertex on a surface.
     pub above_inside: usize,
@@ -94,7 +94,7 @@ impl Extracted {
     }
 }
 
-/// The faces of a kept tetrahedron whose triangle it is to give, with the regions beside: those with the lower region beyond.
+/// The faces of a kept tetrahedron that become triangles, with the regions beside them: those with a lower region beyond.
 fn sides(tets: &Tets, t: usize, mut found: impl FnMut(usize, [u16; 2])) {
     let region = tets.regions[t];
     for i in 0..4 {
@@ -113,7 +113,7 @@ fn collect(store: &Store) -> Tets {
         numbers[t as usize] = number;
     }
     let numbered = |n: u32| numbers.get(n as usize).copied().unwrap_or(NONE);
-    // Beyond the corners of the box nothing is inside, whatever the centre of a circumsphere says.
+    // Tetrahedra at the corners of the box are outside, wherever their circumcentre lies.
     let region =
         |&t: &u32| if store.nodes(t).iter().any(|&v| store.role(v) == Role::Corner) { 0 } else { store.region(t) };
     Tets {

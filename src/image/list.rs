@@ -29,7 +29,7 @@ impl List {
         self.faces.pop_front().or_else(|| self.tets.pop_front())
     }
 
-    /// Cuts both by a plane through the middle: who works on one half is seldom in the way of who works on the other. The order stays.
+    /// Cuts the list in two by a plane through the middle, so that the threads of both halves are seldom in each other's way. The order stays.
     pub fn split(&mut self) -> Self {
         let places = || self.faces.iter().chain(&self.tets).map(|item| item.at);
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -61,15 +61,15 @@ impl List {
 pub struct Counts {
     /// Items that were tried.
     pub attempts: usize,
-    /// Of these, ended by another thread's claim, and tried again.
+    /// How many of these ended in a conflict, and were tried again.
     pub conflicts: usize,
-    /// What they were about had gone.
+    /// How many were gone already.
     pub stale: usize,
-    /// Put off: the point was within the surface ball of a face, which was refined first.
+    /// How many were put off, since their point was within the surface ball of a face, which was refined first.
     pub put_off: usize,
-    /// Given up: no room beside the surface's vertices.
+    /// How many were given up, since there was no room beside the surface's vertices.
     pub crowded: usize,
-    /// Given up at the limit of the numbers.
+    /// How many were given up at the limit of floating point.
     pub lost: usize,
     /// Vertices on surfaces.
     pub surface_points: usize,

@@ -1,9 +1,9 @@
-//! The outer boundary becomes a surface: where it touches itself in a vertex or an edge, the smaller side goes.
+//! Makes the outer boundary a manifold surface: where it touches itself in a vertex or an edge, the smaller side is left out.
 use super::extract::Tets;
 use crate::mesh::adjacency::FACES;
 use crate::mesh::vector::volume6;
 
-/// Puts tetrahedra outside until those that stay hang together by faces at every vertex and every edge. How many went.
+/// Leaves tetrahedra out until the others are connected by faces at every vertex and every edge. Returns how many were left out.
 pub fn repair(tets: &mut Tets) -> usize {
     let before = tets.regions.iter().filter(|&&region| region != 0).count();
     loop {

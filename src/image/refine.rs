@@ -1,4 +1,5 @@
-//! The refinement: lists of items that are tasks' own, cut in two for whoever has nothing to do; what it could not get is tried again.
+//! The refinement. Each task has a list of items of its own, and gives half of it away when another thread has nothing to do. Items that
+//! ended in a conflict are tried again.
 //!
 //! A new tetrahedron is judged by the thread that made it, which puts it into the list it works on. Faces of surfaces go first.
 use super::delaunay::{Scratch, Worker, enclose};
@@ -14,10 +15,10 @@ use crate::tasks::{Backend, Pool, Task};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-/// Items between two looks at whether another thread has nothing to do.
+/// After so many items a task looks whether another thread has nothing to do.
 const BATCH: usize = 32;
 
-/// Conflicts one after the other that end a task: the mesh is too small for so many threads, and another takes its list.
+/// After so many conflicts in a row a task ends, and another takes its list: the mesh is too small for so many threads.
 const IN_THE_WAY: usize = 8;
 
 /// What a thread has in hand.
@@ -224,7 +225,7 @@ impl<'a> Shared<'a> {
         Ok(role)
     }
 
-    /// Looks for faces of surfaces that the point inside would spoil: they are listed, to be refined first.
+    /// Lists the faces of surfaces whose balls the new point inside would lie in: these are refined first.
     fn make_way<A: Access>(
         &self,
         worker: &Worker<'_, A>,

@@ -1,7 +1,7 @@
 //! What is refined, and where: faces of the surfaces first, then tetrahedra.
 //!
-//! A face is on a surface where the edge between the centres of the circumspheres beside it, its dual, crosses from a region to another. The
-//! point of crossing is the centre of its surface ball, the empty ball through its vertices, and is where the face is refined.
+//! A face is on a surface where its dual edge, between the circumcentres of the two tetrahedra beside it, crosses from one region to another.
+//! The crossing is the centre of its surface ball, the empty ball through its vertices. There the face is refined.
 use super::circumsphere::{circle_centre, shortest_edge};
 use super::domain::Domain;
 use super::store::{NONE, Role, Store};
@@ -12,16 +12,16 @@ use serde::Serialize;
 /// The least angle of a surface triangle is 30°: its circumscribed circle has the radius of its shortest edge.
 const CIRCLE_EDGE: f64 = 1.0;
 
-/// No two vertices come nearer than this part of the surface distance, of the size or of the least spacing, whichever is least; so it ends.
+/// No two vertices come nearer than this share of the least of surface distance, size and voxel spacing. So refinement ends.
 const NEAREST: f64 = 0.25;
 
-/// How often an item is put off; then it is given up.
+/// An item that has been put off so often is given up.
 const PATIENCE: u8 = 30;
 
 /// The least size and surface distance, in distances between voxels.
 const FINEST: f64 = 0.01;
 
-/// Tetrahedra in a mesh, at most: their ids have 32 bits, and so have the corners of the output.
+/// Most tetrahedra in a mesh: ids have 32 bits, and so have the corners of the output.
 const MOST_TETS: f64 = 2e8;
 
 /// Why there is no mesh.
@@ -40,7 +40,7 @@ pub enum Error {
     Full,
 }
 
-/// What is asked for; each none: as it suits the image.
+/// What the user asks for. Where a value is none, one is chosen by the image.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wish {
     /// Greatest circumradius.
@@ -51,16 +51,16 @@ pub struct Wish {
     pub radius_edge: Option<f64>,
 }
 
-/// What every tetrahedron and surface triangle is held to, in units of the image.
+/// The limits for every tetrahedron and surface triangle, in units of the image.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Limits {
     /// Greatest radius of a circumsphere, or of a surface ball.
     pub size: f64,
-    /// Greatest distance from a surface triangle's circumscribed circle's centre to the surface.
+    /// Greatest distance from the surface of the centre of a surface triangle's circumscribed circle.
     pub surface_distance: f64,
     /// Greatest ratio of circumradius to shortest edge.
     pub radius_edge: f64,
-    /// Vertices come no nearer to each other.
+    /// Least distance between vertices.
     pub nearest: f64,
 }
 

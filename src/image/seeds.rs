@@ -73,7 +73,7 @@ pub fn plant(worker: &mut Worker<'_, Alone>, centre: Vec3, nearest: f64, start: 
         }
         let t = worker.locate(p, *start);
         *start = t;
-        // A vertex is in no open circumsphere: there is nothing to dig at one.
+        // A point at a vertex lies inside no circumsphere, so it cannot be inserted.
         if worker.in_conflict(t, p) {
             worker.dig(p, t)?;
             if worker.room(p) >= nearest {

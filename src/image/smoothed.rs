@@ -5,13 +5,13 @@ use crate::mesh::vector::Vec3;
 use crate::tasks::Team;
 use nalgebra::Matrix3;
 
-/// The weights of the Gauss filter end at so many standard deviations.
+/// The Gauss filter is cut off at so many standard deviations.
 const REACH: f64 = 3.0;
 
 /// Voxels a task.
 const FEW: usize = 1 << 14;
 
-/// The values of an image convolved with a Gaussian; beyond the border each value goes on.
+/// The values of an image convolved with a Gaussian. Beyond the border the values of the border go on.
 pub struct Smoothed {
     frame: Frame,
     sizes: [usize; 3],

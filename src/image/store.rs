@@ -46,10 +46,10 @@ impl Default for Record {
     }
 }
 
-/// Why an item was not done.
+/// Why an item was not carried out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// What it was about has gone.
+    /// Its tetrahedron or face is gone.
     Stale,
     /// Another thread holds a vertex that is needed.
     Conflict,
@@ -59,7 +59,7 @@ pub enum Refusal {
     Encroaching,
     /// The point would be too near to others.
     Crowded,
-    /// The point is in neither tetrahedron's circumsphere: rounding, at the limit of the numbers.
+    /// The point is in neither tetrahedron's circumsphere: the rounding of floating point.
     Lost,
 }
 

@@ -67,14 +67,14 @@ impl TriangleIndex {
         index
     }
 
-    /// The triangles of these nodes, in whichever order.
+    /// The triangles of these nodes, in any order.
     pub fn find(&self, nodes: [u32; 3]) -> impl Iterator<Item = u32> + '_ {
         let key = sorted3(nodes);
         let first = self.triangles.partition_point(|triangle| triangle.0 < key);
         self.triangles[first..].iter().take_while(move |triangle| triangle.0 == key).map(|triangle| triangle.1)
     }
 
-    /// The sides of the triangles, in the order of the tetrahedra.
+    /// The faces of tetrahedra that are triangles, in the order of the tetrahedra.
     pub fn sides(&self, team: Team<'_>, tets: &[[u32; 4]]) -> Vec<Side> {
         team.collect(GRAIN, tets.len(), |range, sides| {
             for tet in range {

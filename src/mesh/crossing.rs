@@ -29,7 +29,7 @@ pub struct Crossings {
 }
 
 /// Where the boundary of a mesh of positive tetrahedra passes through itself; triangles are numbered in the order of the tetrahedra that
-/// they bound. So many are told.
+/// they bound. At most `told` pairs are named.
 pub fn of_boundary(team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, told: usize) -> Crossings {
     let triangles = team.collect(1 << 12, mesh.tets.len(), |range, found| {
         for t in range {
@@ -40,8 +40,8 @@ pub fn of_boundary(team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, told: u
     crossings(team, &triangles, |v| mesh.vertices[v as usize], told)
 }
 
-/// Pairs of triangles, all looking outward, that pass through each other ([`crossing`]); of these so many are told. The result does not
-/// depend on the threads.
+/// Pairs of triangles, all looking outward, that pass through each other ([`crossing`]). At most `told` of them are named. The result does
+/// not depend on the threads.
 pub fn crossings<I: Copy + PartialEq + Sync>(
     team: Team<'_>,
     triangles: &[[I; 3]],

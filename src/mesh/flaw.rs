@@ -24,15 +24,16 @@ pub enum FlawKind {
     LooseTriangle,
     /// Two triangles have the same nodes.
     DuplicateTriangle,
-    /// The boundary is no surface along an edge: other than two of its triangles meet there, and the edge is not tagged.
+    /// The boundary is no surface along an edge: not exactly two of its triangles meet there, and the edge is not tagged.
     NonManifoldEdge,
     /// A tagged edge is no edge of a tetrahedron.
     LooseEdge,
-    /// The tetrahedra at a vertex hang together at no more than the vertex or an edge.
+    /// The tetrahedra at a vertex are in parts that share no face: they meet only in the vertex or in an edge.
     PinchedVertex,
     /// A vertex of no tetrahedron.
     HangingVertex,
-    /// Two triangles of the boundary pass through each other: the mesh overlaps itself. Looked for where all tetrahedra are positive.
+    /// Two triangles of the boundary pass through each other: the mesh overlaps itself. Only looked for where all tetrahedra are
+    /// positive.
     CrossingTriangles,
 }
 
@@ -61,7 +62,7 @@ impl FlawKind {
 /// One of the offenders. Indices count from 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Offender {
-    /// Index of the element or vertex; of a face that is no element, of its tetrahedron; none for an edge of no element.
+    /// Index of the element or vertex. For a face that is no element it is that of its tetrahedron; for an edge that is none, there is none.
     pub index: Option<usize>,
     /// Index of the other one, of two that cross.
     #[serde(skip_serializing_if = "Option::is_none")]

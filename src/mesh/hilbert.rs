@@ -13,8 +13,8 @@ pub fn key(p: Vec3, low: Vec3, high: Vec3) -> u64 {
         let extent = high[i] - low[i];
         if extent > 0.0 { ((p[i] - low[i]) / extent * cells).clamp(0.0, cells) as u32 } else { 0 }
     });
-    // Undo excess work of the curve's turns, from the highest bit down. Which way is even chance, so there are no branches: where the
-    // bit is set the lower bits of x[0] are inverted, else those of x[0] and x[i] are exchanged.
+    // Undo the curve's turns, from the highest bit down: where the bit is set, the lower bits of x[0] are inverted, else those of x[0] and
+    // x[i] are exchanged. Both cases are as frequent, so it is done without branches.
     for bit in (1..BITS).rev() {
         let lower = (1u32 << bit) - 1;
         for i in 0..3 {
@@ -51,7 +51,7 @@ fn spread(bits: u32) -> u64 {
     x
 }
 
-/// So many points in the order of the Hilbert curve through their box; those of one cell in the order given.
+/// The numbers of points in the order of the Hilbert curve through their box. Points of one cell keep their order.
 pub fn order(team: Team<'_>, count: usize, point: impl Fn(usize) -> Vec3 + Sync) -> Vec<u32> {
     let [low, high] = box_of(team, count, &point);
     let mut keys = team.map(GRAIN, count, |i| (key(point(i), low, high), i as u32));

@@ -1,5 +1,5 @@
-//! Point location in a tetrahedral mesh: a walk from a hint, and trees of boxes for where the walk cannot go: a small one of the faces on
-//! the boundary for points outside, and one of all tetrahedra.
+//! Point location in a tetrahedral mesh: a walk from a hint. Where a walk cannot go there are two trees of boxes: a small one of the faces
+//! on the boundary, for points outside, and one of all tetrahedra.
 use super::adjacency::{FACES, MatchedFaces, NONE};
 use super::box_tree::{Bounds, BoxTree};
 use super::starts::Starts;
@@ -12,10 +12,10 @@ use std::sync::{Arc, OnceLock};
 /// A barycentric coordinate down to this counts as inside.
 const INSIDE: f64 = -1e-12;
 
-/// Distances that differ by this share are equal.
+/// Distances that differ by no more than this share are equal.
 const SLACK: f64 = 1e-12;
 
-/// Steps after which a walk gives up; a tree search costs about as much as so many steps.
+/// After so many steps a walk gives up. A search in the tree costs about as much.
 const STEPS: u32 = 200;
 
 /// Where a point is.
@@ -33,10 +33,10 @@ pub struct Location {
 pub struct Locator {
     mesh: Arc<TetMesh>,
     faces: MatchedFaces,
-    /// Sides 4·tet + face on the boundary, and the tree over them.
+    /// The faces on the boundary, as 4·tet + face, and the tree over them.
     boundary: OnceLock<Box<(Vec<u32>, BoxTree)>>,
     tree: OnceLock<Box<BoxTree>>,
-    /// Where long walks are cut short.
+    /// Better starts for long walks.
     starts: OnceLock<Box<Starts>>,
 }
 
@@ -109,7 +109,7 @@ impl Locator {
         found
     }
 
-    /// Visits tetrahedra with a face on the boundary, at least those whose face's box touches this box; one with two such faces twice.
+    /// Visits tetrahedra with a face on the boundary, at least all whose face's box touches this box. One with two such faces comes twice.
     pub fn at_boundary(&self, within: &Bounds, mut visit: impl FnMut(u32)) {
         let (sides, tree) = &**self.boundary.get_or_init(|| Box::new(self.boundary_tree()));
         tree.overlapping(within, |item| visit(sides[item as usize] / 4));
@@ -155,15 +155,15 @@ impl Locator {
         Walk::Lost(tet)
     }
 
-    /// A tetrahedron that is likely nearer to p than one that is given.
+    /// A tetrahedron that is likely nearer to p than a given one.
     fn nearer_start(&self, p: Vec3, tet: u32) -> Option<u32> {
         let starts = self.starts.get_or_init(|| Box::new(Starts::of(self.vertices(), self.tets())));
         let away = |tet: u32| distance(self.vertices()[self.tets()[tet as usize][0] as usize], p);
         starts.near(p).filter(|&start| away(start) < away(tet))
     }
 
-    /// The nearest tetrahedron, given one that bounds the distance: where all faces of the boundary that are nearest to p have it
-    /// on their outer side, p is outside, and nothing is nearer.
+    /// The nearest tetrahedron, given one that bounds the distance. Where p is on the outer side of all boundary faces that are nearest to
+    /// it, p is outside, and nothing is nearer.
     fn search_boundary(&self, p: Vec3, bound: Location) -> Location {
         let (sides, tree) = &**self.boundary.get_or_init(|| Box::new(self.boundary_tree()));
         // Faces that meet where the nearest point is are equally near but for rounding.
@@ -175,7 +175,7 @@ impl Locator {
             let (_, away) = nearest_on_face(&corners, face, p);
             if away <= slack(least) {
                 let is_outer = sub_volumes(&corners, p)[face] < 0.0;
-                // Clearly nearer than all before, those do not count.
+                // This face is clearly nearer than all before, which no longer count.
                 outer = is_outer && (outer || slack(away) < least);
                 if away < least {
                     (nearest, least) = (Some(tet), away);
@@ -238,7 +238,7 @@ impl Locator {
         }
         let mut best = Location { tet, weights: [0.25; 4], distance: f64::INFINITY };
         for (face, nodes) in FACES.iter().enumerate() {
-            // The nearest point of a convex body lies on a face that p sees; all faces of a flat or inverted one count.
+            // The nearest point of a convex body lies on a face that p sees. For a flat or inverted one all faces are tried.
             if total > 0.0 && volumes[face] >= 0.0 {
                 continue;
             }
@@ -263,7 +263,7 @@ fn nearest_on_face(corners: &[Vec3; 4], face: usize, p: Vec3) -> ([f64; 3], f64)
     (weights, distance(p, foot))
 }
 
-/// Six times the volumes with p in the place of each corner: p's barycentric coordinates times the whole.
+/// Six times the volumes with p in place of each corner: p's barycentric coordinates times six times the volume.
 #[inline(always)]
 fn sub_volumes(c: &[Vec3; 4], p: Vec3) -> [f64; 4] {
     [

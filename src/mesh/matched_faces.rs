@@ -23,15 +23,15 @@ pub struct MatchedFaces {
 }
 
 impl MatchedFaces {
-    /// Of tetrahedra, fewer than 2³⁰. Faces are gathered at their least node and matched there in a small table: time and memory
-    /// (16 bytes a tetrahedron beside the result) grow with the number of tetrahedra only, and little memory is
-    /// walked at random where the numbers of near nodes are near.
+    /// Matches the faces of fewer than 2³⁰ tetrahedra. Faces are gathered at their least node and matched there in a small table. Time and
+    /// memory (16 bytes a tetrahedron beside the result) grow in proportion to the tetrahedra, and memory is read nearly in order where
+    /// nodes that are near each other have near numbers.
     pub fn of(team: Team<'_>, tets: &[[u32; 4]]) -> Self {
         let sides = sides_by_least_node(team, tets);
         let neighbours: Vec<_> = (0..tets.len()).map(|_| [NONE; 4].map(AtomicU32::new)).collect();
         let crowds = team.chunks(GRAIN, sides.len(), |range| {
             let mut table = Table::default();
-            // All are matched, whether or not one is crowded.
+            // All faces are matched, even when one has too many tetrahedra.
             let crowds = range.filter_map(|v| table.match_at(v as u32, &sides, tets, &neighbours));
             crowds.reduce(|first, _| first)
         });

@@ -1,4 +1,4 @@
-//! Tetrahedral meshes as plain arrays: what goes in and what comes out.
+//! Tetrahedral meshes as plain arrays: the input and the output of everything.
 pub mod adjacency;
 pub mod box_tree;
 pub mod crossing;

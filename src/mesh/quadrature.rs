@@ -1,6 +1,6 @@
 //! Rules of integration over a tetrahedron.
 
-/// A rule: weights of sum 1 with barycentric coordinates, the points of an orbit having one weight.
+/// A rule: points by barycentric coordinates, each with its weight; the weights have the sum 1.
 pub type Rule = [([f64; 4], f64)];
 
 const A1: f64 = 0.310_885_919_263_300_6;

@@ -34,7 +34,7 @@ pub fn cube(n: u32) -> TetMesh {
     with_boundary(vertices, tets)
 }
 
-/// A mesh of these tetrahedra with a triangle on every face that has but one of them.
+/// A mesh of these tetrahedra with a triangle on every face of only one of them.
 pub fn with_boundary(vertices: Vec<Vec3>, tets: Vec<[u32; 4]>) -> TetMesh {
     let mut triangles = Elements::default();
     for (tet, around) in tets.iter().zip(neighbours(&tets)) {

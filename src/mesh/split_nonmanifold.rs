@@ -1,10 +1,10 @@
-//! Takes a mesh apart where it hangs together in edges or vertices alone.
+//! Splits a mesh where parts of it meet only in edges or vertices.
 use super::adjacency::{sorted_faces, sorted3};
 use super::disjoint_sets::DisjointSets;
 use super::{Association, Elements, TetMesh};
 
-/// Gives each part of the tetrahedra at a vertex that hang together by faces a vertex of its own: then no edge has four triangles of the
-/// surface, and no vertex two umbrellas of them. Returns how many vertices are new; where there are such, what was said of edges and of
+/// Where the tetrahedra at a vertex are in several parts that share no face, gives each part a vertex of its own. Then no edge has four
+/// triangles of the surface, and no vertex two umbrellas of them. Returns how many vertices are new; where there are such, what was said of edges and of
 /// vertices (tagged edges, corners, the association) is dropped, since it is no longer clear whose it is.
 pub fn split_nonmanifold(mesh: &mut TetMesh) -> usize {
     let tets = &mesh.tets.nodes;

@@ -1,11 +1,11 @@
-//! A set of 32-bit numbers that is emptied at no cost: for the few hundred around a vertex, again and again.
+//! A set of 32-bit numbers that is emptied at no cost, for sets of a few hundred that are made again and again.
 
 /// Slots at first: they fit into the first cache, and hold what is around most vertices.
 const ROOM: usize = 256;
 
-/// The set, with open addressing. It keeps its memory; room grows with what is put in.
+/// The set, with open addressing. It grows as needed and keeps its memory.
 pub struct StampedSet {
-    /// The stamp of the last emptying above the number: one comparison tells whether a slot holds a number now.
+    /// In each slot the stamp of an emptying in the upper half, the number in the lower half. One comparison tells whether a slot holds a number now.
     slots: Vec<u64>,
     stamp: u64,
     len: usize,
@@ -35,7 +35,7 @@ impl StampedSet {
         }
     }
 
-    /// Adds a number; whether it was new.
+    /// Adds a number. Returns whether it was new.
     #[inline]
     pub fn insert(&mut self, number: u32) -> bool {
         if self.len * 2 >= self.slots.len() {

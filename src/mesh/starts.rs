@@ -1,11 +1,11 @@
-//! A grid that knows a tetrahedron in each of its cells: where a search begins that comes from far.
+//! A grid with a tetrahedron in each cell, where searches from far away begin.
 use super::adjacency::NONE;
 use super::vector::Vec3;
 
-/// Tetrahedra a cell, about.
+/// About so many tetrahedra a cell.
 const SHARE: usize = 8;
 
-/// Cells along an axis at most.
+/// Most cells along an axis.
 const MOST: f64 = 1024.0;
 
 /// For each cell of a grid over the mesh a tetrahedron with a corner there.
@@ -42,7 +42,7 @@ impl Starts {
 
     /// The cell of a point, or the one nearest to it.
     fn cell(&self, p: Vec3) -> usize {
-        // A number that is none, and one below 0, become 0.
+        // NaN and numbers below 0 become 0.
         let [i, j, k] = [0, 1, 2].map(|i| (((p[i] - self.low[i]) * self.per_unit[i]) as usize).min(self.counts[i] - 1));
         (i * self.counts[1] + j) * self.counts[2] + k
     }

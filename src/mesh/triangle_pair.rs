@@ -1,8 +1,8 @@
 //! Whether two triangles of a boundary pass through each other: exact.
 //!
-//! Bodies may touch, in whatever way: a mesh that was taken apart at an edge or a vertex ([`super::split_nonmanifold`]) does, and so does one of parts in
-//! contact. Nor is it a crossing where rounding brings a corner through what it touches. So before they are held against each other, triangles
-//! draw back into their bodies by next to nothing.
+//! Bodies may touch, in any way: those of a mesh that was split at an edge or a vertex ([`super::split_nonmanifold`]) do, and so do parts in
+//! contact. It is no crossing either where rounding brings a corner through what it touches. So before two triangles are compared, both
+//! draw back into their bodies by a very small distance.
 use super::locate::nearest_on_triangle;
 use super::predicate::orientation;
 use super::vector::{Vec3, add, area2, dot, lerp, norm, scale, sub, unit};
@@ -73,7 +73,7 @@ fn middle(a: &Corners) -> Vec3 {
     scale(add(add(a[0], a[1]), a[2]), 1.0 / 3.0)
 }
 
-/// A quick test: whether a plane that is guessed separates two triangles, up to the corner that they share. Says no in doubt.
+/// A quick test: whether a guessed plane separates two triangles, up to the corner that they share. When in doubt it says no.
 fn are_apart(a: &Corners, b: &Corners) -> bool {
     let shared = a.iter().find(|p| b.contains(p));
     let (from, direction) = match shared {
@@ -191,7 +191,7 @@ fn way_between([p, q]: [Vec3; 2], [r, s]: [Vec3; 2]) -> Option<Vec3> {
 struct Plane([usize; 2]);
 
 impl Plane {
-    /// A plane where the triangle is none of zero area; none for a degenerate one.
+    /// A coordinate plane in which the triangle's shadow has an area; none for a degenerate triangle.
     fn of(b: &Corners) -> Option<Self> {
         let [u, v] = [sub(b[1], b[0]), sub(b[2], b[0])];
         let area = |[i, j]: [usize; 2]| (u[i] * v[j] - u[j] * v[i]).abs();

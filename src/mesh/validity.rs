@@ -1,4 +1,4 @@
-//! Whether a mesh is one: positive tetrahedra, a closed manifold boundary that its triangles tell, nothing twice, nothing loose.
+//! Whether a mesh is valid: positive tetrahedra, a closed manifold boundary that has its triangles, nothing twice, nothing loose.
 use super::adjacency::{FACES, FaceKey, NONE, sorted_faces, sorted3, unique_edges};
 use super::disjoint_sets::DisjointSets;
 use super::flaw::{Flaw, FlawKind, Offender};
@@ -8,7 +8,7 @@ use super::{Elements, TetMesh, crossing};
 use crate::tasks::Team;
 use serde::Serialize;
 
-/// Offenders that are named.
+/// Most flaws of a kind that are named.
 const NAMED: usize = 3;
 
 /// The result of [`check`].
@@ -77,7 +77,7 @@ impl Findings<'_> {
         &mut flaws[at]
     }
 
-    /// Counts all but the first of equal elements.
+    /// Counts all equal elements but the first of each.
     fn add_duplicates<const N: usize>(&mut self, kind: FlawKind, elements: &[[u32; N]]) {
         let mut keys: Vec<([u32; N], usize)> = elements.iter().copied().zip(0..).collect();
         for (key, _) in &mut keys {
@@ -181,8 +181,8 @@ fn check_faces(found: &mut Findings, faces: &[FaceKey], triangles: &[([u32; 3], 
     boundary
 }
 
-/// The boundary does not pass through itself. (Positive tetrahedra on both sides look after triangles inside. What the tetrahedra are
-/// inverted or flat at has no outside.)
+/// The boundary does not pass through itself. (Triangles inside cannot cross, since the tetrahedra on both sides are positive. Where
+/// tetrahedra are inverted or flat there is no outside, and nothing is checked.)
 fn check_crossings(found: &mut Findings, team: Team<'_>, mut boundary: Vec<BoundaryFace>) {
     let hinders = [FlawKind::RepeatedNodes, FlawKind::InvertedTet, FlawKind::FlatTet];
     if hinders.into_iter().any(|kind| found.validity.count(kind) > 0) {
@@ -243,7 +243,7 @@ fn check_tagged_edges(found: &mut Findings) {
     }
 }
 
-/// Every vertex has tetrahedra, and they hang together by faces.
+/// Every vertex has tetrahedra, and they are connected by faces.
 fn check_vertices(found: &mut Findings, faces: &[FaceKey]) {
     let mesh = found.mesh;
     // A corner is a pair (tetrahedron, node): 4t + i. Corners of one vertex are joined across common faces.

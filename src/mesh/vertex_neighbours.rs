@@ -3,7 +3,7 @@ use super::TetMesh;
 use super::stamped_set::StampedSet;
 use crate::tasks::{GRAIN, Rows, Team};
 
-/// For each vertex those it has an edge with, ascending; 60 bytes a vertex.
+/// For each vertex the vertices that it has an edge with, ascending; 60 bytes a vertex.
 pub struct VertexNeighbours(Rows);
 
 impl VertexNeighbours {

@@ -1,4 +1,4 @@
-//! The analytic metric fields of the UGAWG's cube-cylinder (METHOD.md §1).
+//! The analytic metric fields of the UGAWG's cube-cylinder (METHOD.md §1.14).
 use super::Sym3;
 use crate::mesh::vector::Vec3;
 

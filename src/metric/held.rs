@@ -1,5 +1,5 @@
-//! What doubles hold of a metric: it is kept and written as the six terms of M, and those of sizes that are too small, too large, or too
-//! different make no positive-definite tensor any more.
+//! Which metrics doubles can hold. A metric is kept and written as the six terms of M. For sizes that are too small, too large, or too
+//! different these make no positive-definite tensor any more.
 use super::{Error, Sym3};
 use crate::tasks::{GRAIN, Team};
 use std::ops::RangeInclusive;
@@ -14,13 +14,13 @@ pub const GREATEST_RATIO: f64 = 1e7;
 /// ln of the ratio of eigenvalues that belongs to [`GREATEST_RATIO`].
 const SPREAD: f64 = 32.236_191_301_916_64;
 
-/// How far √det M may be from what ln M says, as a factor.
+/// √det M may differ from that of ln M by a factor in this range.
 const FACTOR: RangeInclusive<f64> = 0.5..=2.0;
 
 /// Eigenvalues of ln M up to this belong to sizes within [`SIZES`].
 const SURELY: f64 = 460.0;
 
-/// Checks that so many ln M are of sizes that can be computed with.
+/// Checks that doubles hold M for each of so many ln M.
 ///
 /// # Errors
 /// [`Error::Sizes`] of the first that is not.
@@ -39,7 +39,7 @@ pub fn check(team: Team<'_>, count: usize, log: impl Fn(usize) -> Sym3 + Sync) -
 }
 
 impl Sym3 {
-    /// Whether the eigenvalues of ln M lie so close together that M is held: most do, and this costs few operations.
+    /// Whether the eigenvalues of ln M are so close that doubles hold M. For most they are, and this test is cheap.
     #[inline]
     pub(super) fn is_narrow_log(&self) -> bool {
         // For eigenvalues of sum 0, (s₃ − s₁)² ≤ 2 Σ s².
@@ -47,7 +47,7 @@ impl Sym3 {
         2.0 * s.contract(&s) <= SPREAD * SPREAD
     }
 
-    /// M = exp L of this L, if six doubles hold it: sizes within [`SIZES`], positive definite, of the determinant that L has.
+    /// M = exp L, if six doubles hold it: its sizes are within [`SIZES`], it is positive definite, and it has the determinant of exp L.
     pub fn held_exp(&self) -> Option<Self> {
         if !self.sizes_of_log().iter().all(|h| SIZES.contains(h)) {
             return None;
@@ -63,7 +63,7 @@ impl Sym3 {
         self.pivots().iter().all(|x| x.is_normal() && *x > 0.0)
     }
 
-    /// ln M with sizes cut to [`GREATEST_RATIO`] times the least, where M would not be held else.
+    /// ln M; where doubles do not hold M, with sizes cut to [`GREATEST_RATIO`] times the least.
     #[inline]
     pub(super) fn held_log(self) -> Self {
         if self.is_narrow_log() { self } else { self.cut_log() }

@@ -1,4 +1,4 @@
-//! Edge length, mean ratio and volume in a metric (METHOD.md §1). The hottest code of the program: no allocation, no
+//! Edge length, mean ratio and volume in a metric (METHOD.md §1.3, 1.4). The hottest code of the program: no allocation, no
 //! eigenvectors.
 use super::Sym3;
 use crate::mesh::vector::{Vec3, sub, volume6};
@@ -9,7 +9,7 @@ const FACTOR: f64 = 7.559_526_299_369_24;
 /// When the lengths in the metrics of both ends differ by no more than this, the length is their mean.
 const EQUAL_LENGTHS: f64 = 1e-3;
 
-/// Length of the edge vector v between vertices of metrics ma and mb: the log law of METHOD.md §1.
+/// Length of the edge vector v between vertices of metrics ma and mb: the log law of METHOD.md §1.3.
 #[inline]
 pub fn edge_length(v: Vec3, ma: &Sym3, mb: &Sym3) -> f64 {
     let la = ma.quadratic(v).sqrt();

@@ -1,4 +1,4 @@
-//! Analytic scalar fields to try adaptation on, and how far their linear interpolation on a mesh is from them.
+//! Analytic scalar fields to try adaptation on, and the error of their linear interpolation on a mesh.
 //!
 //! The three functions of Tsolakis 2021 (equations 21 to 23), on the unit cube.
 use crate::mesh::TetMesh;
@@ -53,8 +53,8 @@ impl Scalar {
 
     /// The L2 norm of the difference between this function and the piecewise linear one with these values at the vertices, shape (n,).
     ///
-    /// Each tetrahedron is integrated by two rules of degree 5, which differ from degree 6 on. One whose rules differ by more than a tenth of
-    /// its integral (or of the mean integral, where that is more) is halved in all directions, [`HALVINGS`] times at most.
+    /// Each tetrahedron is integrated by two rules of degree 5, which agree up to that degree. Where they differ by more than a tenth of the
+    /// integral (or of the mean integral, where that is more) the tetrahedron is cut into eight, [`HALVINGS`] times at most.
     pub fn error(self, team: Team<'_>, mesh: &TetMesh, values: &[f64]) -> f64 {
         let tets = &mesh.tets.nodes;
         let piece = |tet: [u32; 4]| Piece {
@@ -74,10 +74,10 @@ impl Scalar {
 /// Tetrahedra a task: each takes some microseconds.
 const GRAIN: usize = 256;
 
-/// Halvings of a tetrahedron at most; a jump is within a 32nd of it then.
+/// Most halvings of a tetrahedron. A jump is then within a 32nd of it.
 const HALVINGS: u32 = 5;
 
-/// Part of an integral that its rules may differ by.
+/// The two rules may differ by this share of the integral.
 const DOUBT: f64 = 0.1;
 
 /// The pairs of corners whose middles are the corners of the eight halves: four at the corners, four about a diagonal of the octahedron between.

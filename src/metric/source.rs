@@ -6,7 +6,7 @@ use crate::mesh::adjacency::{EDGES, MatchedFaces};
 use crate::mesh::vector::{Vec3, add, distance, lerp, scale, volume6};
 use crate::tasks::{GRAIN, Team};
 
-/// Samples of an analytic field when its complexity is measured, about.
+/// About how many samples of an analytic field are taken for its complexity.
 const SAMPLES: usize = 1 << 20;
 
 /// The source of the metric at any point. Shared by all threads.
@@ -32,12 +32,12 @@ impl Source {
         }
     }
 
-    /// ln M at the vertices of a mesh, when it is the very mesh of the background.
+    /// ln M at the vertices of a mesh, if the background is on this very mesh.
     pub fn logs_on(&self, mesh: &TetMesh) -> Option<&[Sym3]> {
         self.background_on(mesh).map(Background::logs)
     }
 
-    /// The matched faces of a mesh, when it is the very mesh of the background.
+    /// The matched faces of a mesh, if the background is on this very mesh.
     pub fn faces_of(&self, mesh: &TetMesh) -> Option<&MatchedFaces> {
         self.background_on(mesh).map(|background| background.locator().faces())
     }
@@ -47,8 +47,8 @@ impl Source {
         std::ptr::eq(background.locator().mesh(), mesh).then_some(background)
     }
 
-    /// Complexity ∫ √det M of the field on a mesh, for the background the mesh it came with. An analytic field is integrated by the
-    /// midpoint rule over bisected tetrahedra, since a coarse mesh's vertices do not resolve it.
+    /// Complexity ∫ √det M of the field on a mesh; of a background on its own mesh. An analytic field is integrated by the midpoint
+    /// rule over bisected tetrahedra, since the vertices of a coarse mesh do not resolve it.
     pub fn complexity(&self, team: Team<'_>, mesh: &TetMesh) -> f64 {
         let corners = |t: usize| Some(mesh.tets.nodes[t].map(|v| mesh.vertices[v as usize]));
         match self {
@@ -83,8 +83,8 @@ impl Source {
         })
     }
 
-    /// No less than the complexity, and quickly found, where the field lies on the mesh itself: the exponential function is convex,
-    /// so the mean over a tetrahedron is at most that of its vertices.
+    /// An upper bound of the complexity, found quickly where the field lies on the mesh itself: the exponential function is convex,
+    /// so its mean over a tetrahedron is at most that of the vertices.
     pub fn complexity_bound(&self, team: Team<'_>, mesh: &TetMesh) -> f64 {
         match self {
             Self::Background(background) => complexity_of_logs(team, mesh, background.logs()),

@@ -89,7 +89,7 @@ impl<'b> Gathering<'b> {
         }
     }
 
-    /// Of what this one and then the other have seen.
+    /// Joins what this one and then the other have gathered.
     fn and(mut self, other: Self) -> Self {
         if other.found.min < self.found.min {
             (self.found.min, self.found.argmin) = (other.found.min, self.found.count + other.found.argmin);

@@ -4,7 +4,7 @@ use crate::mesh::TetMesh;
 use crate::tasks::{GRAIN, Team};
 use serde::Serialize;
 
-/// Least and greatest of values, and what so many percent of them are below.
+/// Percentiles of values, with the least and the greatest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Percentiles {
     /// The least; 0 without values.
@@ -28,7 +28,7 @@ impl Percentiles {
     pub fn of(mut values: Vec<f64>) -> Self {
         let Some(last) = values.len().checked_sub(1) else { return Self::default() };
         let [p1, p10, p50, p90, p99] = [0.01, 0.1, 0.5, 0.9, 0.99].map(|share| (share * last as f64).round() as usize);
-        // Each is looked for among those below, or above, the one before: much less work than to sort them all.
+        // Each is selected among the values below, or above, the last one. That is much less work than to sort all.
         let select = |values: &mut [f64], place: usize| *values.select_nth_unstable_by(place, f64::total_cmp).1;
         Self {
             median: select(&mut values, p50),

@@ -1,9 +1,9 @@
-//! Symmetric 3×3 tensors: the algebra, and the maps through eigenvalues (METHOD.md §1).
+//! Symmetric 3×3 tensors: the algebra, and the maps through eigenvalues (METHOD.md §1.1).
 use super::eigen::Eigen;
 use crate::mesh::vector::Vec3;
 
 /// A symmetric 3×3 tensor; the six terms are in the order of .sol files: 11 12 22 13 23 33.
-/// The order is part of the type: conversions from other customs are named functions.
+/// The order is part of the type. Conversions from other orders are named functions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sym3(pub [f64; 6]);
 

@@ -18,7 +18,7 @@ pub struct Transferred {
     pub farthest: f64,
 }
 
-/// ln M at points, log-Euclidean in the tetrahedron of `mesh` that each lies in, from ln M at its vertices (METHOD.md §1). Nearer to
+/// ln M at points, log-Euclidean in the tetrahedron of `mesh` that each lies in, from ln M at its vertices (METHOD.md §1.2). Nearer to
 /// the mesh than 1e-9 of its size is not outside.
 ///
 /// # Panics

@@ -1,4 +1,4 @@
-//! Which entities lie on the same body: a part of the mesh that hangs together.
+//! Which entities lie on the same body: a connected part of the mesh.
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Topology};
 use crate::mesh::TetMesh;
@@ -7,7 +7,7 @@ use crate::mesh::disjoint_sets::DisjointSets;
 /// The bodies of a mesh, by the entities of its model.
 pub struct Bodies<'a> {
     topology: &'a Topology,
-    /// A vertex that stands for the body of each face; none where the mesh has no triangles of it.
+    /// For each face a vertex that stands for its body; none where the mesh has no triangles of the face.
     of_face: Vec<Option<u32>>,
 }
 

@@ -1,4 +1,4 @@
-//! Bounds, from the boxes of its pieces, on what another entity may ask of a place: they spare most closest points.
+//! Bounds on how another entity may limit the metric at a place, from the boxes of its pieces. They save most searches for closest points.
 use super::curvature::Local;
 use super::feature::{ACROSS, ALONG, Place};
 use super::tree::Box3;
@@ -11,7 +11,7 @@ pub fn away(point: Vec3, piece: &Box3) -> f64 {
     norm(std::array::from_fn(|i| (piece[0][i] - point[i]).max(point[i] - piece[1][i]).max(0.0)))
 }
 
-/// What a gap must be like to limit a metric: with w the part across of the way there, |w|/cells < √(gᵀM⁻¹g), g = w/|w|.
+/// When a gap limits a metric: |w|/cells < √(gᵀM⁻¹g), with w the way there, on an edge its part across the edge, and g = w/|w|.
 pub struct Bound<'a> {
     at: &'a Place,
     local: &'a Local,
@@ -30,13 +30,14 @@ impl<'a> Bound<'a> {
         Self { at, local, inverse, cells, greatest: eigen.values[0].sqrt().recip() }
     }
 
-    /// How long a gap that limits it may be: on an edge it leans along that by 45° at most.
+    /// The greatest length of a gap that limits the metric. On an edge its direction makes at least 45° with the tangent.
     pub fn reach(&self) -> f64 {
         let share = if matches!(self.at.entity, Entity::Edge(_)) { ALONG } else { 1.0 };
         self.cells * self.greatest / share * (1.0 + SLACK)
     }
 
-    /// Whether a gap to a point of this box may limit it: |w|² < cells √(wᵀM⁻¹w) for no w within the box's radius of its middle's.
+    /// Whether a gap to a point of this box may limit the metric: |w|² < cells √(wᵀM⁻¹w) for some w that is within the box's radius of the
+    /// way to its middle.
     pub fn may_limit(&self, piece: &Box3) -> bool {
         let middle = across(sub(lerp(piece[0], piece[1], 0.5), self.at.point), self.at, self.local);
         let radius = 0.5 * distance(piece[0], piece[1]);
@@ -49,8 +50,8 @@ impl<'a> Bound<'a> {
 /// Rounding of bounds.
 const SLACK: f64 = 1e-9;
 
-/// Whether a gap to a point of this box may go across what lies at the place: if not for any piece of an entity, its closest point
-/// need not be looked for. Of an edge (not `is_face`) its tangent alone counts.
+/// Whether a gap to a point of this box may go across the faces or the edge at the place. If that holds for no piece of an entity, its
+/// closest point is not needed. For a box of an edge (not `is_face`) only the tangent at the place counts.
 pub fn may_face(at: &Place, local: &Local, piece: &Box3, is_face: bool) -> bool {
     let middle = sub(lerp(piece[0], piece[1], 0.5), at.point);
     let (radius, away) = (0.5 * distance(piece[0], piece[1]), norm(middle));
@@ -72,8 +73,8 @@ pub fn may_face(at: &Place, local: &Local, piece: &Box3, is_face: bool) -> bool 
     beside && (!is_face || faces())
 }
 
-/// What of a direction goes across the edge that a place lies on: near its end the way to another edge leans along it, and sizes along it
-/// are not the gap's.
+/// The part of a direction across the edge that the place lies on. Near the edge's end the way to another edge leans along it, and the
+/// size along it is not the gap's to limit.
 pub fn across(direction: Vec3, at: &Place, local: &Local) -> Vec3 {
     match (at.entity, &local.tangents[..]) {
         (Entity::Edge(_), &[tangent, ..]) => sub(direction, scale(tangent, dot(direction, tangent))),

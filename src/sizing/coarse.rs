@@ -1,7 +1,7 @@
 //! What the geometry asks for between the vertices of a mesh that is coarser than half the greatest size.
 //!
-//! Only coarse triangles and ridges are sampled, at about half the greatest size, so the samples are as many as the surface is large,
-//! whatever the mesh. What is found grows with the distance to the vertices as a gradation lets it.
+//! Only coarse triangles and ridges are sampled, at about half the greatest size, so the number of samples depends on the surface and not
+//! on the mesh. The sizes that are found grow with the distance to the vertices as gradation allows.
 use super::curvature::cut;
 use super::feature::{Gap, Place};
 use super::field::{Asked, Sizing};
@@ -17,7 +17,7 @@ const MOST: f64 = 24.0;
 /// Triangles or ridges a task.
 const TASK: usize = 1 << 6;
 
-/// A metric for a vertex that comes from between.
+/// A metric for a vertex, from a sample between vertices.
 #[derive(Clone, Copy)]
 struct Sent {
     vertex: u32,
@@ -32,7 +32,7 @@ struct Found {
     gap: Option<Gap>,
 }
 
-/// Intersects the metrics at the vertices with what was found between; returns the number of samples and the nearest gap.
+/// Intersects the metrics at the vertices with those of the samples. Returns the number of samples and the nearest gap.
 pub fn add_between(team: Team<'_>, sizing: &Sizing, metrics: &mut [Sym3]) -> (usize, Option<Gap>) {
     let (triangles, ridges) = (sizing.mesh.triangles.len(), sizing.place.ridges.len());
     let parts = team.chunks(TASK, triangles + ridges, |range| {
@@ -55,8 +55,8 @@ pub fn add_between(team: Team<'_>, sizing: &Sizing, metrics: &mut [Sym3]) -> (us
     (samples, nearest)
 }
 
-/// Limits a metric by others, the finest size of all first, each in its own directions and only as far as it is not yet granted: the
-/// intersection of many ellipsoids that point a little apart, one after the other, would be finer than any of them asks for.
+/// Limits a metric by others, direction by direction, the finest size of all first, and only as far as it is not fine enough yet. (To
+/// intersect many ellipsoids of slightly different directions one after the other would give sizes finer than any of them asks for.)
 fn combine(metric: &mut Sym3, others: impl Iterator<Item = Sym3>) {
     let mut slabs: Vec<(f64, Vec3)> = others
         .flat_map(|other| {

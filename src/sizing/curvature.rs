@@ -4,17 +4,17 @@ use crate::geometry::{Entity, Evaluate, SurfaceFrame, SurfaceKind, Topology};
 use crate::mesh::vector::{Vec3, dot, norm, scale};
 use crate::metric::Sym3;
 
-/// Where S_u (or S_v) is shorter than this share of what it is in the middle of the face, the parameters are at a pole or an apex:
-/// the curvatures there would be differences of rounding, or are none.
+/// Where S_u (or S_v) is shorter than this share of its length in the middle of the face, the parameters are at a pole or an apex. There
+/// the curvatures would be rounding, or do not exist.
 const COLLAPSED: f64 = 1e-3;
-/// Only where one derivative is shorter than this share of the other, over the face's range, is it worth to look.
+/// A pole or apex is looked for only where one derivative is shorter than this share of the other, both times the face's range.
 const SUSPICIOUS: f64 = 0.03;
 /// Places around a pole or an apex at which the limit is taken.
 const AROUND: usize = 8;
 /// How far towards the middle of its range the limit is taken, at first.
 const NUDGE: f64 = 2e-3;
 
-/// What the entities at a point ask of the sizes there, and how they lie. Keep one a thread.
+/// The metric that the entities at a point ask for, with their directions there. Keep one a thread.
 #[derive(Default)]
 pub struct Local {
     /// The metric; set by [`Curvature::at`].
@@ -25,9 +25,9 @@ pub struct Local {
     pub tangents: Vec<Vec3>,
     /// Whether the point is a pole, an apex or an end at which a curve stands still: its metric is a limit.
     pub is_limit: bool,
-    /// Greatest curvature of the faces and edges, 1/length; of a pole or an apex nothing is counted.
+    /// Greatest curvature of the faces and edges, 1/length. Poles and apices do not count.
     pub greatest_curvature: f64,
-    /// Faces that were asked at a vertex, and where.
+    /// Faces that are in the metric already, with their parameters.
     asked: Vec<(u32, [f64; 2])>,
 }
 
@@ -47,8 +47,8 @@ impl Local {
     }
 }
 
-/// M ∩ the metric of size h along the unit vector g that leaves the other directions free: the unit ball of M, cut to the slab
-/// |g·x| ≤ h. With M^(-1/2) g/h the one eigenvector of the other metric, the intersection of METHOD.md §1 is
+/// M ∩ a metric that has the size h along the unit vector g and leaves all other directions free: the unit ball of M is cut to the slab
+/// |g·x| ≤ h. The other metric, relative to M, has the one eigenvector M^(-1/2) g/h, so the intersection of METHOD.md §1.6 is
 /// M + (1 − 1/μ) ggᵀ/h², μ = gᵀM⁻¹g/h².
 pub(super) fn cut(metric: Sym3, g: Vec3, h: f64) -> Sym3 {
     let excess = dot(g, metric.solve(g)) / (h * h);
@@ -67,9 +67,9 @@ impl<'a> Curvature<'a> {
         Self { options, topology }
     }
 
-    /// The metric of an entity at parameters, (t, 0) on an edge, (u, v) on a face: on a face by its principal curvatures; on an edge
-    /// that of all its faces and of its own curvature along the tangent; at a vertex that of all edges and faces there. It is finite
-    /// everywhere: at a pole it is the limit of the curvatures, at an apex the least size near it in all directions.
+    /// The metric of an entity at parameters, (t, 0) on an edge, (u, v) on a face. On a face it comes of the principal curvatures, on an edge
+    /// of all its faces and of its own curvature along the tangent, at a vertex of all edges and faces there. It is finite everywhere:
+    /// at a pole it is a limit, at an apex it has the least size near it in all directions.
     pub fn at(&self, evaluator: &mut impl Evaluate, entity: Entity, parameters: [f64; 2], local: &mut Local) {
         local.clear();
         match entity {
@@ -83,7 +83,7 @@ impl<'a> Curvature<'a> {
         self.add_edges(evaluator, entity, parameters[0], local);
     }
 
-    /// What has no limit yet takes the greatest size.
+    /// The metric so far; the greatest size where there is none.
     pub(super) fn metric_of(&self, local: &Local) -> Sym3 {
         local.metric.unwrap_or_else(|| Sym3::IDENTITY.times(self.options.greatest.powi(-2)))
     }
@@ -130,7 +130,7 @@ impl<'a> Curvature<'a> {
         let mut frame = evaluator.edge_frame(edge, t);
         let typical = norm(evaluator.edge_frame(edge, middle).d1);
         if norm(frame.d1) <= COLLAPSED * typical || !norm(frame.d1).is_finite() {
-            // The curve stands still at its end: a little inside.
+            // The curve stands still at its end: its frame is taken a little inside.
             local.is_limit = true;
             frame = evaluator.edge_frame(edge, t + NUDGE * (middle - t));
         }
@@ -200,7 +200,7 @@ impl<'a> Curvature<'a> {
         if lengths[free] > SUSPICIOUS * lengths[1 - free] {
             return None;
         }
-        // A long face is as narrow in the middle; one that collapses is not.
+        // A long face is as narrow in its middle; a face that collapses here is not.
         let [low, high] = entity.range[1 - free];
         let mut inside = uv;
         inside[1 - free] = 0.5 * (low + high);

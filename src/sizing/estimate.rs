@@ -1,4 +1,4 @@
-//! Curvature at the vertices of a mesh that is its own model: estimated, as honestly as triangles allow.
+//! Estimated curvature at the vertices of a mesh that is its own model.
 use super::curvature::{Curvature, Local};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Evaluate, Geometry, Model, SurfaceFrame, principal};
@@ -11,8 +11,8 @@ use nalgebra::Matrix2;
 /// Triangles a task.
 const TRIANGLES: usize = 1 << 10;
 
-/// The shape operators of the triangles (Rusinkiewicz 2004, as the discrete model fits them), whose means over the triangles of a face
-/// at a vertex are taken for the vertex.
+/// The shape operators of the triangles (Rusinkiewicz 2004, as the discrete model fits them). A vertex takes their mean over the triangles
+/// of each face there.
 pub struct Estimate<'a> {
     faces: &'a [u32],
     /// 3·triangle + corner at each vertex.

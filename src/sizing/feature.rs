@@ -1,9 +1,9 @@
 //! Thin parts and gaps: entities that come near each other and do not touch.
 //!
-//! Each point of the boundary asks the other entities for their closest points, by the model itself and not by the mesh, so that a
-//! coarse mesh sees a gap as it is. Bodies that do not hang together do not see each other: nothing is meshed between them, and where they
-//! touch (a ball in its race) a gap has no end. Which entities may be near tells a tree of boxes over pieces of the model. The size is limited along
-//! the direction of the gap alone.
+//! For each point of the boundary the closest points of the other entities are found, on the model itself and not on the mesh, so that a
+//! coarse mesh gets a gap as it is. Entities of bodies that are not connected do not count: nothing is meshed between them, and where they
+//! touch (a ball in its race) a gap has no end. A tree of boxes over pieces of the model tells which entities may be near. The size is
+//! limited only along the direction of the gap (METHOD.md §1.13).
 use super::bodies::Bodies;
 use super::bound::{Bound, across, away, may_face};
 use super::curvature::{Local, cut};
@@ -27,7 +27,7 @@ pub(super) const ACROSS: f64 = 0.5;
 const AWAY: f64 = 0.25;
 /// A gap goes across an edge if its direction makes at least 45° with the tangent.
 pub(super) const ALONG: f64 = 0.707;
-/// What is nearer than this share of the diagonal touches, whether the model says so or not.
+/// Entities nearer than this share of the diagonal touch, whether the model says so or not.
 const TOUCHING: f64 = 1e-7;
 
 /// Two entities that come near.
@@ -64,7 +64,7 @@ pub struct Pad {
     others: BinaryHeap<Other>,
 }
 
-/// The entities of a model and who is near whom.
+/// The entities of a model, for finding those near a place.
 pub struct Near<'a> {
     topology: &'a Topology,
     mesh: &'a TetMesh,
@@ -112,11 +112,11 @@ impl<'a> Near<'a> {
         }
     }
 
-    /// The metric at a place, limited across the gaps there; and the nearest of those that limit it. `local` tells how the entities at
-    /// the place lie.
+    /// The metric at a place, limited across the gaps there, and the nearest gap that limits it. `local` has the directions of the entities
+    /// at the place.
     ///
-    /// The nearest limits first: it often leaves nothing to do for those behind it. Closest points cost most, so an entity is asked for its
-    /// own only when its boxes say that it is the next, and that it could still limit what is left of the metric.
+    /// The nearest entity limits first; often it leaves nothing to do for those behind it. Closest points cost most, so that of an entity
+    /// is found only when its boxes say that it is the next, and that it could still limit the metric.
     pub fn limit(
         &self,
         evaluator: &mut Evaluator,
@@ -156,7 +156,7 @@ impl<'a> Near<'a> {
             let across = across(way, at, local);
             let share = norm(across);
             let (g, size) = (unit(across), (share * length / self.cells).max(self.least));
-            // The sight is asked last: it costs most.
+            // The line of sight is tested last: it costs most.
             if share < ALONG || dot(g, metric.solve(g)) <= size * size || !self.is_facing(local, way, normal) {
                 continue;
             }
@@ -230,8 +230,7 @@ impl<'a> Near<'a> {
         }
     }
 
-    /// Whether a face with this normal lies opposite to one of the faces at the place, the way there along g. Of an edge (no normal) nothing
-    /// is asked.
+    /// Whether a face with this normal lies opposite to one of the faces at the place, in the direction g. An edge (no normal) always does.
     fn is_facing(&self, local: &Local, g: Vec3, normal: Option<Vec3>) -> bool {
         let Some(normal) = normal else { return true };
         let faces = |&own: &Vec3| {
@@ -260,8 +259,8 @@ impl<'a> Near<'a> {
     }
 }
 
-/// No size such that the curvature leaves a cell as thin as `across`: the middle of an edge of this size is that far from its arc. Cells
-/// along a sliver of a face on a curved wall would stand out of it else, and no mesh follows them.
+/// Bounds all sizes so that an edge along a wall of this curvature has its middle no farther from the wall than `across`. Otherwise thin
+/// cells on a sliver of a curved face would stand out of the wall, and no mesh could follow them.
 fn chord_limited(metric: Sym3, across: f64, curvature: f64) -> Sym3 {
     let along = (8.0 * across / curvature).sqrt();
     let reaches = along.is_finite() && metric.eigen().values[0] * along * along < 1.0;

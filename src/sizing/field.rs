@@ -11,7 +11,7 @@ use crate::mesh::TetMesh;
 use crate::metric::{Limits, Sym3, gradation};
 use crate::tasks::{GRAIN, Team};
 
-/// Vertices that one task asks the model about; each makes an evaluator.
+/// Vertices a task. Each task makes an evaluator.
 const VERTICES: usize = 1 << 9;
 
 /// What a thread has in hand.

@@ -1,4 +1,4 @@
-//! The sizes that a geometry asks for (METHOD.md §1): the curvature of its faces and edges, and what is thin or near.
+//! The sizes that a geometry asks for (METHOD.md §1.13): the curvature of its faces and edges, and what is thin or near.
 //!
 //! `curvature` makes the tensor of an entity at a point, `estimate` does where the model is a mesh's own surface; `feature` finds the
 //! entities that come near without touching (`touch`), by boxes over samples of the model (`pieces`, `tree`), where nothing stands between

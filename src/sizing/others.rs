@@ -1,4 +1,4 @@
-//! Other entities in the order in which a place asks them.
+//! The other entities near a place, in the order in which they are looked at.
 use crate::geometry::Entity;
 use crate::mesh::vector::Vec3;
 use std::cmp::Ordering;
@@ -6,11 +6,11 @@ use std::cmp::Ordering;
 /// Another entity, as a place sees it.
 #[derive(Clone, Copy)]
 pub struct Other {
-    /// How far it is; before it is asked, a bound from below.
+    /// How far it is; a lower bound before its closest point is known.
     pub length: f64,
     /// Which it is.
     pub to: Entity,
-    /// What it answered; none before it is asked.
+    /// Its closest point; none before it is known.
     pub found: Option<Found>,
 }
 
@@ -23,7 +23,7 @@ pub struct Found {
     pub normal: Option<Vec3>,
 }
 
-/// The greatest is the nearest; of two as near what is not asked yet, since it may be farther.
+/// The greatest is the nearest. Of two as near, the one whose closest point is not known is greater, since it may be farther.
 impl Ord for Other {
     fn cmp(&self, other: &Self) -> Ordering {
         let asked = |one: &Self| one.found.is_some();

@@ -10,11 +10,11 @@ const PIECES: usize = 8;
 const SAMPLES: usize = 3;
 /// Between its samples a piece may leave their box by this share of its diagonal.
 const MARGIN: f64 = 0.15;
-/// What is no larger than this share of the greatest size is one piece: how far a gap reaches is as large as that, so smaller boxes would
-/// rule little more out.
+/// An entity no larger than this share of the greatest size is one piece. Gaps reach about as far as the greatest size, so smaller boxes
+/// would rule out little more.
 const SMALL: f64 = 0.25;
 
-/// Boxes of pieces of all faces and ridges, and whose they are; for gaps that reach some times the greatest size.
+/// Boxes of the pieces of all faces and ridges, with the entity of each; for gaps that reach a few times the greatest size.
 pub fn pieces(team: Team<'_>, model: &Model, greatest: f64) -> Vec<(Box3, Entity)> {
     let topology = model.topology();
     let faces = topology.faces.len();

@@ -4,7 +4,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, cross, dot, lerp, norm, scale, sub};
 use crate::tasks::{GRAIN, Team};
 
-/// What stands at the ends of the line, by this share of it, belongs to them: the mesh's triangles are chords of the model.
+/// What the line meets within this share of its length from an end belongs to that end: the mesh's triangles are chords of the model.
 const ENDS: f64 = 0.02;
 /// A line whose sine with a triangle's plane is no more than this goes along it.
 const PARALLEL: f64 = 1e-6;
@@ -37,7 +37,7 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// Whether a segment may go through a box that its own box meets: no cross product of the segment and an axis parts them.
+/// Whether a segment may go through a box that its own box meets: no cross product of the segment and an axis separates them.
 fn passes([p, q]: [Vec3; 2], [low, high]: &Box3) -> bool {
     let half = scale(sub(q, p), 0.5);
     let (arm, size) = (sub(lerp(*low, *high, 0.5), lerp(p, q, 0.5)), scale(sub(*high, *low), 0.5));

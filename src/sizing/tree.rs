@@ -11,7 +11,7 @@ pub const EMPTY: Box3 = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
 /// Items of a leaf.
 const LEAF: usize = 4;
-/// Nodes at once on the way: one more for each level, of which there are fewer than 32.
+/// Most nodes on the stack of a search: one more for each level, of which there are fewer than 32.
 const STACK: usize = 64;
 
 /// The box around two boxes.
@@ -58,8 +58,8 @@ impl Tree {
         Self { order, boxes: sorted, nodes }
     }
 
-    /// Calls `visit` with the items whose boxes are admitted, until it returns false; whether it never did. A box that is not admitted
-    /// holds none that is.
+    /// Calls `visit` with the items whose boxes are admitted, until it returns false. Returns whether it never did. A box that is not
+    /// admitted must hold no box that is.
     pub fn each_where(&self, admits: impl Fn(&Box3) -> bool, mut visit: impl FnMut(u32) -> bool) -> bool {
         let first_leaf = self.nodes.len() / 2;
         let mut stack = [0usize; STACK];

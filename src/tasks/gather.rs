@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError, TryLockError};
 
 impl Pool {
-    /// As [`Pool::task_for`], with the state of the thread, one a thread, for each call alone.
+    /// As [`Pool::task_for`], with one state a thread, which `f` gets while it runs.
     ///
     /// # Panics
     /// As [`Pool::task_for`]; when there are fewer states than threads; and when `f` waits for tasks that come back to these states.

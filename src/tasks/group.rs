@@ -1,4 +1,4 @@
-//! What is waited for: a number of tasks, and the first panic among them.
+//! A group of tasks to be waited for, with the first panic among them.
 use super::core::Core;
 use super::seats::For;
 use std::any::Any;
@@ -25,7 +25,7 @@ impl Group {
         Self { pending: AtomicUsize::new(pending), waiter, panic: Mutex::new(None) }
     }
 
-    /// One task more. Only who waits or who is one of the tasks may say so: the count is not zero then, or nobody waits yet.
+    /// Adds a task. Only the waiting thread or a task of the group may call this: then the count is not zero, or nobody waits yet.
     pub fn add(&self) {
         self.pending.fetch_add(1, Relaxed);
     }

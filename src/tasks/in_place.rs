@@ -1,4 +1,4 @@
-//! One thread: tasks run where they are asked for, in order. One spawned within another waits until that has ended.
+//! One thread: tasks run at once and in order. A task spawned within another waits until that has ended.
 use super::core::Core;
 use super::group::Group;
 use super::job::{Job, Lane, Queue, Submit};

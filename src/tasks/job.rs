@@ -1,4 +1,4 @@
-//! A task as the queues hold it, its lifetime forgotten.
+//! A task as the queues hold it, without its lifetime.
 use super::core::Core;
 use super::group::Group;
 use super::nested::{self, Nested};
@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// Where a task runs, and where it puts those it makes.
+/// Where a task runs, and where it puts the tasks that it makes.
 pub struct Lane<'a> {
     /// Id of the thread.
     pub thread: usize,
@@ -20,7 +20,7 @@ pub struct Lane<'a> {
 
 /// The queue of a group, seen from one thread.
 pub trait Queue {
-    /// Puts a task where some thread finds it; runs none that belongs to a client on top of another.
+    /// Puts a task where some thread finds it. Never runs a client's task on top of another.
     fn push(&self, job: Job);
 
     /// Waits until all tasks of the group have ended, running some meanwhile.

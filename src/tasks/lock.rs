@@ -1,7 +1,7 @@
 //! A lock word, such as one a vertex: 0 when free, else the number of the thread that holds it.
 //!
-//! Never waited for, so there is no deadlock. Nothing but the word orders threads: all else in what the words guard may be relaxed.
-//! tests/lock_protocol.rs runs this file on loom's atomics, through all orders of two threads and all values their loads may have.
+//! No thread waits for a word, so there is no deadlock. The words alone order the threads: all other atomics that they guard may be relaxed.
+//! tests/lock_protocol.rs runs this file on loom's atomics, through all orders of two threads and all values that their loads may have.
 use super::sync::atomic::{
     AtomicU32,
     Ordering::{Acquire, Relaxed, Release},

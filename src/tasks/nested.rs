@@ -1,4 +1,4 @@
-//! A loop or scope within a task: its tasks have a queue of their own, so that who waits for them runs them and nothing else.
+//! A loop or scope within a task. Its tasks have a queue of their own, so that the thread which waits for them runs these and no others.
 //! Other threads are called to help through the back-end.
 use super::core::Core;
 use super::group::Group;
@@ -30,7 +30,7 @@ impl Nested {
 /// The queue as one thread sees it.
 struct Side<'a> {
     nested: &'a Arc<Nested>,
-    /// Who runs tasks here while waiting; none for who has no id.
+    /// The thread that runs tasks here while it waits; none for a thread without an id.
     thread: Option<usize>,
     core: &'a Core,
     base: &'a dyn Submit,

@@ -1,4 +1,4 @@
-//! Where the current thread stands: in which pools, with which id. By it a nested call is known.
+//! Where the current thread stands: in which pools, with which id. This tells whether a call is nested.
 use super::plan::Backend;
 use std::cell::{Cell, RefCell};
 
@@ -9,7 +9,7 @@ pub struct Place {
     pub pool: u64,
     /// Whose thread it is.
     pub backend: Backend,
-    /// Its id; none for who opened a scope and does not take part in the work.
+    /// Its id; none for a thread that opened a scope and does not take part in the work.
     pub thread: Option<usize>,
 }
 

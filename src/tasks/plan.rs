@@ -1,4 +1,4 @@
-//! How a loop is to be made into tasks, and who runs them.
+//! How a loop is cut into tasks, and which back-end runs them.
 use serde::Serialize;
 
 /// Who runs the tasks.
@@ -80,7 +80,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// So many items a task, all else as it usually is best.
+    /// A plan of so many items a task, with the default back-end and strategy.
     pub fn of_grain(grain: usize) -> Self {
         Self { grain, ..Self::default() }
     }

@@ -15,16 +15,16 @@ use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// Threads that live as long as the pool; with one thread none is made and work runs where it is asked for. See the module for the rules.
+/// Threads that live as long as the pool. A pool of one thread makes none: work runs in place. The rules are at the head of the module.
 pub struct Pool {
     core: Arc<Core>,
-    /// Held by who is in the outermost loop or scope.
+    /// Held during the outermost loop or scope.
     gate: Mutex<()>,
-    /// There from the first, but for one thread.
+    /// The default back-end; none with one thread.
     stealing: Option<Stealing>,
     /// Others, by their number, made when first asked for.
     engines: [OnceLock<Box<dyn Engine>>; Backend::ALL.len()],
-    /// Held by who makes one.
+    /// Held while one is being made.
     making: Mutex<()>,
 }
 
@@ -61,7 +61,7 @@ impl Pool {
         self.core.threads
     }
 
-    /// Starts the threads of the back-end if they are not there yet, which else is done when it is used first.
+    /// Starts the threads of the back-end, if they have not been started. Otherwise that happens at its first use.
     ///
     /// # Errors
     /// When the program was built without it, or the system refuses the threads.
@@ -142,7 +142,7 @@ impl Pool {
         each.group.resume();
     }
 
-    /// Runs `work(thread)` here as one task, if this thread has an id in this pool or nobody else has.
+    /// Runs `work(thread)` here as one task, if this thread has an id in this pool, or no other thread has one now.
     fn alone(&self, work: impl FnOnce(usize)) -> bool {
         let work = |thread| {
             let _in_task = place::mark(true);

@@ -13,7 +13,7 @@ pub struct Rows {
 const KEYS: usize = 4 * GRAIN;
 
 impl Rows {
-    /// A key of what goes into no row.
+    /// The key of an entry that goes into no row.
     pub const NOWHERE: u32 = u32::MAX;
 
     /// A row for each key, of the entries that have it, ascending: a counting sort. Item i brings the entries N·i, N·i + 1, …, each with its
@@ -103,7 +103,7 @@ impl Rows {
     }
 }
 
-/// Room that costs nothing until it is used.
+/// Zeroed memory, which costs nothing until it is used.
 fn zeros(count: usize) -> Vec<AtomicU32> {
     bytemuck::allocation::zeroed_vec(count)
 }

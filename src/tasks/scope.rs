@@ -6,13 +6,13 @@ use super::place;
 use std::marker::PhantomData;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Where tasks are spawned and waited for; see [`super::Pool::scope`]. Tasks may borrow what lives longer than `'scope`.
+/// Spawns tasks and waits for them; see [`super::Pool::scope`]. Tasks may borrow what lives longer than `'scope`.
 pub struct Scope<'l, 'scope> {
     queue: &'l dyn Queue,
     group: &'l Group,
     /// With one thread, where spawned tasks run at once.
     in_place: Option<&'l InPlace<'l>>,
-    /// Neither longer nor shorter.
+    /// Makes the lifetime invariant.
     scope: PhantomData<fn(&'scope ()) -> &'scope ()>,
 }
 

@@ -1,8 +1,8 @@
 //! Where threads sleep: a seat a thread, woken one at a time.
 //!
-//! Who sleeps says so first and then looks once more for what it waits for; who brings something leaves it first and then looks whether
-//! someone sleeps. A sequentially consistent fence between the two on both sides lets at least one see the other, so no call is lost.
-//! tests/sleep_protocol.rs runs this file on loom's atomics, through all orders.
+//! A thread that goes to sleep first says so, then looks once more for what it waits for. A thread that brings work first leaves it, then
+//! looks whether someone sleeps. Each has a sequentially consistent fence between its two steps, so at least one sees the other, and no
+//! call is lost. tests/sleep_protocol.rs runs this file on loom's atomics, through all orders.
 use super::sync::atomic::{
     AtomicBool, AtomicUsize,
     Ordering::{Relaxed, SeqCst},
@@ -21,7 +21,7 @@ pub enum For {
 
 /// Seats, counted from 0.
 pub struct Seats {
-    /// Those who sleep for work, the last to fall asleep on top: its caches are the warmest.
+    /// The threads that sleep for work, the last to fall asleep on top, since its caches are the warmest.
     idle: Mutex<Vec<usize>>,
     /// Length of `idle`, to be looked at without the lock.
     sleepers: AtomicUsize,
@@ -29,7 +29,7 @@ pub struct Seats {
 }
 
 struct Seat {
-    /// Written under the lock; read without it to leave those who are awake alone.
+    /// Written under the lock. Read without it, so that threads that are awake are left alone.
     asleep: AtomicBool,
     bell: Condvar,
 }
@@ -41,7 +41,7 @@ impl Seats {
         Self { idle: Mutex::new(Vec::new()), sleepers: AtomicUsize::new(0), seats }
     }
 
-    /// Sleeps until woken, not at all if `ready` now. Who comes back looks at all that it could have been woken for.
+    /// Sleeps until woken; not at all if `ready` now. After this the thread looks for everything that it could have been woken for.
     pub fn sleep(&self, seat: usize, reason: For, ready: impl Fn() -> bool) {
         let chair = &self.seats[seat];
         let mut idle = self.lock();
@@ -63,7 +63,7 @@ impl Seats {
         }
     }
 
-    /// Wakes one who sleeps for work, if any. What it is to find must be there already.
+    /// Wakes a thread that sleeps for work, if there is one. The work must be there already.
     pub fn wake_one(&self) {
         fence(SeqCst);
         if self.sleepers.load(Relaxed) > 0 {
@@ -76,7 +76,7 @@ impl Seats {
         }
     }
 
-    /// Wakes the one on this seat if it sleeps. What it is to find must be there already.
+    /// Wakes the thread on this seat, if it sleeps. What it waits for must be there already.
     pub fn wake(&self, seat: usize) {
         fence(SeqCst);
         if self.seats[seat].asleep.load(Relaxed) {

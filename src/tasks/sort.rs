@@ -3,7 +3,7 @@ use super::team::Team;
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// Fewer items are one thread's.
+/// Fewer items than this are sorted by one thread.
 const FEW: usize = if cfg!(debug_assertions) { 1 << 8 } else { 1 << 13 };
 
 impl Team<'_> {
@@ -24,7 +24,7 @@ impl Team<'_> {
         }
     }
 
-    /// Sorts items of which no two differ and are equal.
+    /// Sorts items by an order in which different items are never equal.
     pub fn sort<T: Copy + Ord + Send + Sync>(self, items: &mut Vec<T>) {
         self.sort_by(items, T::cmp);
     }
@@ -47,7 +47,7 @@ fn merge_piece<T: Copy>(items: &[T], run: usize, places: Range<usize>, order: &i
     merged
 }
 
-/// How many of the first `count` of both runs merged are of the left one; of equals the left one's are first.
+/// How many of the first `count` items of the merged runs are from the left one. Of equal items those of the left one come first.
 fn split<T>(left: &[T], right: &[T], count: usize, order: &impl Fn(&T, &T) -> Ordering) -> usize {
     let (mut low, mut high) = (count.saturating_sub(right.len()), count.min(left.len()));
     while low < high {

@@ -1,8 +1,8 @@
-//! The last correction: the integral of a component brought to what it is to be, within its bounds.
+//! The last correction: the integral of a component is brought to its target, within its bounds.
 use super::mass::sums;
 use crate::tasks::{GRAIN, Team};
 
-/// Rounds: the first does it, the others what rounding has left.
+/// Rounds. The first does it, the others correct what rounding has left.
 const ROUNDS: usize = 4;
 
 /// A component of rows of values.
@@ -40,7 +40,7 @@ pub fn balance(
         if missing.abs() <= f64::EPSILON * now[1] {
             break;
         }
-        // The bounds nearby are for the first rounds; those that they are not wide enough for have the bounds of all.
+        // The first rounds use each vertex' own bounds. If these are not wide enough, the later ones use the bounds of all vertices.
         let goal = |v: usize| {
             let [low, high] = if 2 * round < ROUNDS { bounds[at(v)] } else { overall };
             if missing > 0.0 { high } else { low }

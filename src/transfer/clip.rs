@@ -1,15 +1,15 @@
 //! The part of a tetrahedron that lies in another one.
 //!
-//! The tetrahedron is written in the barycentric coordinates λ of the other, where the four planes are λ_k = 0, and is cut by them one after
-//! the other. What lies inside a plane is cut into tetrahedra again, and the volume of each is that of the one it comes from times
-//! ratios in which the plane cuts its edges: products of numbers in [0, 1], never differences. So no volume is negative, each is as exact as
-//! the ratios are, and flat or coincident tetrahedra need no care.
+//! The tetrahedron is written in the barycentric coordinates λ of the other, whose four planes are λ_k = 0, and is cut by these one after
+//! the other. The part inside a plane is cut into tetrahedra again. The volume of each is the volume of the one it comes from, times the
+//! ratios in which the plane cuts its edges: products of numbers in [0, 1], never differences. So no volume is negative, each is as exact
+//! as the ratios, and flat or coincident tetrahedra need no special care.
 use crate::mesh::vector::{Vec3, cross, dot, sub};
 
 /// A point by its barycentric coordinates.
 type Lambda = [f64; 4];
 
-/// What comes of rounding in a barycentric coordinate, in units of the sum of the terms.
+/// Rounding of a barycentric coordinate, in units of the sum of its terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The planes of a tetrahedron.
@@ -35,7 +35,7 @@ impl Planes {
         Some(Self { gradients: [g0, g1, g2, g3], on: [x[1], x[0], x[0], x[0]] })
     }
 
-    /// A point; of its coordinates what may be rounding alone is 0.
+    /// A point in barycentric coordinates. A coordinate that may be rounding alone is 0.
     #[inline(always)]
     fn point(&self, p: Vec3) -> Point {
         let mut at = [0.0; 4];
@@ -53,7 +53,7 @@ impl Planes {
     pub fn clip(&self, x: &[Vec3; 4]) -> Piece {
         let [a, b, c, d] = [self.point(x[0]), self.point(x[1]), self.point(x[2]), self.point(x[3])];
         let mut piece = Piece::default();
-        // Not above a plane with any corner: what touches it only.
+        // No corner is inside some plane: the two touch at most.
         if (a.out | a.on) & (b.out | b.on) & (c.out | c.on) & (d.out | d.on) == 0 {
             cut([&a, &b, &c, &d], 1.0, &mut piece);
             piece.beyond &= a.out | b.out | c.out | d.out;
@@ -144,7 +144,7 @@ const fn order() -> [[u8; 4]; 16] {
     all
 }
 
-/// Adds the part of a tetrahedron, which is so much of the whole, that lies inside all planes.
+/// Adds the part of a tetrahedron inside all planes. The tetrahedron is `share` of the whole one.
 fn cut(corners: [&Point; 4], share: f64, piece: &mut Piece) {
     let [a, b, c, d] = corners.map(|corner| corner.out);
     if a & b & c & d != 0 {
@@ -154,7 +154,7 @@ fn cut(corners: [&Point; 4], share: f64, piece: &mut Piece) {
     if some == 0 {
         return piece.add(corners, share);
     }
-    // First the plane that leaves least: fewer parts come of it.
+    // The plane that leaves least comes first: that makes fewer parts.
     let most = three(a, b, c, d);
     let two = (a & b) | (c & d) | (a | b) & (c | d);
     let first = if most != 0 {

@@ -1,15 +1,16 @@
 //! Transfer that keeps the mean, or the integral, of each component.
 //!
-//! On each new tetrahedron the old field's integral and mean gradient, over its pieces in old tetrahedra, make a linear function, which is
-//! brought within the bounds of the old field on the old tetrahedra that are met, its mean kept. At a vertex the functions of its tetrahedra
-//! are averaged by volume: that keeps the integral, since a linear function's is the mean of its corners times the volume. So where both
-//! meshes fill the same space the integral is kept, but for rounding; a linear field comes out as it is, and no new extremum.
+//! On each new tetrahedron the old field's integral and mean gradient, over its pieces in old tetrahedra, give a linear function. It is
+//! brought within the bounds of the old field on the old tetrahedra met, with its mean kept. At a vertex the functions of its tetrahedra
+//! are averaged by volume. That keeps the integral, since the integral of a linear function is the mean of its corners times the volume.
+//! So where both meshes fill the same space the integral is kept, but for rounding; a linear field stays as it is, and there is no new
+//! extremum.
 //!
-//! **Where the meshes differ in volume** (a curved boundary, meshed twice) an integral cannot be kept and a constant stay one. What is
-//! kept is [`Keep::Mean`], the integral by the volume of the mesh: the transfer does not depend on what the field counts from, a constant stays one, and
-//! back on the first mesh the first integral is there again. New tetrahedra that reach out of the old mesh go on with the function of their
-//! inner part, within the bounds there; those wholly outside have the values of the nearest points. What this leaves to the mean that is
-//! wanted is moved in by [`balance`]: each value goes the same part of the way to the bound at its vertex.
+//! **Where the meshes differ in volume** (a curved boundary, meshed twice) no transfer keeps both the integral and a constant. By default
+//! [`Keep::Mean`] is kept, the integral divided by the volume of the mesh. Then the zero of the field does not matter, a constant stays one,
+//! and back on the first mesh the first integral is there again. New tetrahedra that reach out of the old mesh continue the function of
+//! their inner part, within its bounds; those wholly outside have the values of the nearest points. What is then missing to the mean is
+//! added by [`balance`]: each value goes the same share of the way to the bound at its vertex.
 use super::balance::{Of, balance};
 use super::corners::Corners;
 use super::error::{Error, Which};
@@ -24,13 +25,13 @@ use std::ops::Range;
 /// A tetrahedron of which less than this share lies in the old mesh is outside.
 const OUTSIDE: f64 = 1e-6;
 
-/// One of which this share or more lies there is inside.
+/// A tetrahedron of which this share or more lies there is inside.
 const INSIDE: f64 = 1.0 - 1e-9;
 
-/// What is kept where the volumes of the two meshes differ; where they are equal both are the same.
+/// What is kept where the volumes of the two meshes differ. Where they are equal, both choices are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Keep {
-    /// The integral by the volume of the mesh.
+    /// The integral divided by the volume of the mesh.
     #[default]
     Mean,
     /// The integral, as far as the bounds of the field let it: a constant stays as it is.
@@ -54,7 +55,7 @@ pub struct Conserved {
     pub before: Vec<Component>,
     /// Each component on the new mesh.
     pub after: Vec<Component>,
-    /// By how much the last correction changed the integral of each: what the meshes do not have in common, and rounding.
+    /// By how much the last correction changed the integral of each component: by what the meshes do not have in common, and rounding.
     pub corrected: Vec<f64>,
 }
 

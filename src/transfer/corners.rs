@@ -58,8 +58,8 @@ impl Corners {
         }
     }
 
-    /// Component c at the corners x: the mean of the pieces at their centroid and their mean gradient, brought within the bounds
-    /// with the mean over x kept, where that is within them; and the bounds.
+    /// Component c at the corners x, and its bounds. It is the linear function with the mean and the mean gradient of the pieces, brought
+    /// within the bounds with its mean over x kept, where that is within them.
     pub fn values(&self, c: usize, x: &[Vec3; 4]) -> ([f64; 4], [f64; 2]) {
         let Gathered { mass, gradient, bounds } = self.components[c];
         let per = 1.0 / self.covered;
@@ -69,8 +69,8 @@ impl Corners {
     }
 }
 
-/// Values brought within bounds; what is cut off is given to those that have room, in proportion to it, so that their sum stays where
-/// the bounds let it.
+/// Brings values within bounds. What is cut off is given to the others in proportion to their room, so that the sum stays as far as the
+/// bounds allow.
 fn within(values: [f64; 4], [low, high]: [f64; 2]) -> [f64; 4] {
     let cut = values.map(|value| value.max(low).min(high));
     let surplus: f64 = (0..4).map(|i| values[i] - cut[i]).sum();

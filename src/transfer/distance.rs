@@ -4,7 +4,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::quadrature::WALKINGTON;
 use crate::tasks::{GRAIN, Team};
 
-/// What a component of a field is off by.
+/// The error of a component of a field.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Distance {
     /// L^p norm of the difference, the p-th root of its integral; for p = ∞ the same as `greatest`.

@@ -1,4 +1,4 @@
-//! What a conservative transfer cannot do with.
+//! Meshes that a conservative transfer cannot use.
 use thiserror::Error;
 
 /// One of the two meshes.

@@ -6,10 +6,10 @@ use crate::mesh::locate::Locator;
 use crate::mesh::stamped_set::StampedSet;
 use crate::mesh::vector::{Vec3, add, scale};
 
-/// Less than this share of a tetrahedron uncovered is rounding: no other parts are looked for.
+/// When less than this share of a tetrahedron is not covered, that is rounding, and no other parts are looked for.
 const COVERED: f64 = 1e-10;
 
-/// One for each thread or chunk: it keeps its memory, and where it was last.
+/// A search, one for each thread or chunk. It keeps its memory, and the place where it was last.
 pub struct Front<'l> {
     locator: &'l Locator,
     visited: StampedSet,

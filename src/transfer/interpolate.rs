@@ -4,7 +4,7 @@ use crate::mesh::locate::Locator;
 use crate::tasks::{GRAIN, Team};
 
 /// Values at places, linear in each tetrahedron of the mesh, from those at its vertices: rows of `width` a vertex, rows of `width` a place.
-/// None is beyond those of its tetrahedron, not by rounding either.
+/// No value is beyond those of its tetrahedron, not even by rounding.
 ///
 /// # Panics
 /// When the number of values is not `width` a vertex, or the places are of another mesh.

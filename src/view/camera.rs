@@ -8,7 +8,7 @@ pub struct Camera {
     pub right: Vec3,
     /// Up in the picture.
     pub up: Vec3,
-    /// Out of the picture, to who looks at it.
+    /// Out of the picture, towards the viewer.
     pub toward: Vec3,
     /// The point that is shown at `middle`.
     pub target: Vec3,

@@ -3,7 +3,7 @@
 /// A colour.
 pub type Rgb = [f32; 3];
 
-/// From the worst shape to the best: red, yellow, blue, so that also those see the bad ones who cannot tell red from green.
+/// From the worst shape to the best: red, yellow, blue. People who cannot tell red from green see the bad ones too.
 pub const QUALITY: [Rgb; 6] = [
     [0.545, 0.035, 0.137],
     [0.867, 0.278, 0.200],

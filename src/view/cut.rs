@@ -1,8 +1,8 @@
 //! What of a scene is seen: behind a plane, on surfaces that are not hidden, below a quality.
 //!
-//! The cut is of whole tetrahedra: all that reach behind the plane are kept. So a face between a kept tetrahedron and one that is
-//! not has all three vertices in front and the fourth of the kept one behind: those of the tetrahedra with one vertex behind are all
-//! that can come to light, and no neighbours are needed to find them.
+//! The cut keeps whole tetrahedra: all that reach behind the plane. So a face between a kept tetrahedron and one that is not kept has all
+//! three vertices in front, and the fourth vertex of the kept one is behind. Only tetrahedra with exactly one vertex behind can show a
+//! face, and no neighbours are needed to find them.
 use super::Scene;
 use crate::mesh::adjacency::NONE;
 use crate::mesh::vector::{Vec3, dot, norm};

@@ -25,7 +25,7 @@ impl Image {
         }
     }
 
-    /// Draws lines of one colour, together: where they cross nothing is darker.
+    /// Draws lines of one colour together, so that crossings are not darker.
     pub fn strokes(&mut self, segments: &[Segment], half_width: f64, colour: Rgb) {
         let ends = || segments.iter().flatten();
         let bound = |i: usize, f: fn(f64, f64) -> f64, none: f64| ends().map(|p| p[i]).fold(none, f);

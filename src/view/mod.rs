@@ -1,4 +1,4 @@
-//! A mesh as one sees it: a page that any browser opens, and pictures without a browser.
+//! Views of a mesh: a page for any browser, and pictures without a browser.
 //!
 //! `scene` is what there is to show (surface, regions, ridges, qualities, fields, names), `cut` which part of it; `page` packs it
 //! all into one HTML file, whose JavaScript does the same cut again, and `picture` draws it here, with the parts `camera`, `raster`, `image`, `sheet`

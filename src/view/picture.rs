@@ -112,8 +112,8 @@ fn draw(team: Team<'_>, scene: &Scene<'_>, options: &Options) -> Image {
     sheet.image
 }
 
-/// The vertices that are to fit in: those of all that is shown, but where surfaces are hidden, of the others alone, since the tetrahedra
-/// behind a cut reach as far as the hidden ones did.
+/// The vertices that must fit into the picture: all that is shown. Where surfaces are hidden, only those of the other surfaces count, since
+/// the tetrahedra behind a cut reach as far as the hidden surfaces.
 fn in_view(scene: &Scene<'_>, options: &Options, shown: &Shown) -> Vec<u32> {
     let surface = shown.triangles.iter().flat_map(|&t| scene.surface.triangles.nodes[t as usize]);
     let inside = shown.faces.iter().filter(|_| options.part.hidden.is_empty());
@@ -180,7 +180,7 @@ fn lines(scene: &Scene<'_>, options: &Options, shown: &Shown, camera: &Camera, u
         .edges
         .iter()
         .map(|&e| line(scene.ridges.nodes[e as usize].map(|v| scene.mesh.vertices[v as usize]), RIDGE, 0.75));
-    // Edges of the model belong to no surface of the mesh: where some are hidden, those about the others are drawn.
+    // Edges of the model belong to no surface of the mesh. Where surfaces are hidden, those near the others are drawn.
     let some_hidden = !options.part.hidden.is_empty();
     let [low, high] = if some_hidden { box_of_shown(scene, options) } else { scene.bounds };
     let margin = 0.01 * distance(low, high);

@@ -12,8 +12,8 @@ const BAND: usize = 24;
 /// Half the width of the lines between elements, pixels.
 const HALF_WIRE: f64 = 0.42;
 
-/// Triangles lower than the first (pixels) have no lines around them, those higher than the second have them wholly: else a fine
-/// mesh would be black.
+/// Triangles lower than the first (in pixels) get no lines around them, those higher than the second get full ones. Otherwise a fine mesh
+/// would be black.
 const WIRE_FADES: [f64; 2] = [2.0, 7.0];
 
 /// How dark the lines between elements are.

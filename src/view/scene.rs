@@ -40,7 +40,7 @@ pub struct Quality {
     pub histogram: Vec<usize>,
 }
 
-/// References that there are: how many elements, what they are called, their colour.
+/// A reference: how many elements have it, its name and its colour.
 pub struct Reference {
     /// The reference.
     pub reference: i32,

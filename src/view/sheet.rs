@@ -44,7 +44,7 @@ impl Sheet<'_> {
         self.image.strokes(&[ends], 0.6 * self.unit.max(1.0), colour);
     }
 
-    /// Takes away what is outside of a rectangle, in pixels: what is enlarged would run through the legend.
+    /// Clears everything outside of a rectangle, in pixels. An enlarged scene would else run through the legend.
     pub fn frame(&mut self, [left, top, width, height]: [f64; 4]) {
         let [right, bottom] = [left + width, top + height];
         let [whole, high] = [self.image.width as f64, self.image.height as f64];
@@ -181,7 +181,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// Bars to the left of the map, by the logarithm of the number: that the bad ones are seen.
+    /// Bars to the left of the map, by the logarithm of the number, so that a few bad elements are seen.
     fn histogram(&mut self, [right, top, longest, high]: [f64; 4]) {
         let histogram = &self.scene.quality.histogram;
         let length = |count: usize| (1.0 + count as f64).ln();

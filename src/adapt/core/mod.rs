@@ -2,7 +2,7 @@
 //!
 //! The writing methods of [`store::Store`] are visible in this module alone. Whoever changes a mesh calls [`commit`] (a cavity is replaced),
 //! [`vertex_moves`] (a vertex moves), [`vertex_replacement`] (a vertex goes onto another, in the records that are there),
-//! [`boundary_tets`] (a tetrahedron at the boundary goes) or [`ridges`]. All of these check what is required or frozen.
+//! [`boundary_tets`] (a tetrahedron at the boundary goes) or, after a commit, [`ridges`]. The first four check what is required or frozen.
 pub mod access;
 pub mod ball;
 pub mod boundary_tets;

@@ -50,11 +50,11 @@ const PATIENCE: usize = 1;
 /// Tetrahedra below this mean ratio are repaired.
 const REPAIR_BELOW: f64 = 0.5;
 
-/// The end-game tries as many tetrahedra in a run as make this part of the mesh, and some. It is dear: one costs as much as some thousand
-/// flips looked at. Where a metric can be met, fewer are below its limit; where it cannot, the end-game would not end.
+/// In a run, repair tries at most this share of the tetrahedra of the mesh, and [`REPAIR_FEW`]. It is dear: one costs as much as to look
+/// at some thousand flips. Where a metric can be met, fewer tetrahedra are below the limit; where it cannot, repair would not end.
 const REPAIR_SHARE: f64 = 0.25;
 
-/// Tetrahedra that the end-game tries however small the mesh.
+/// Repair may try so many tetrahedra however small the mesh is.
 const REPAIR_FEW: f64 = 500.0;
 
 /// The store is renumbered when it has grown by this factor.
@@ -118,9 +118,9 @@ pub struct Pipeline<'c, 'm> {
     input: usize,
     /// Whether the mesh has more vertices than its metric accounts for, so that nothing is inserted any more.
     pub overgrown: bool,
-    /// Tetrahedra that the end-game tried.
+    /// Tetrahedra that repair has tried.
     repaired: usize,
-    /// Tetrahedra that it would have tried, had there been fewer.
+    /// Tetrahedra that it left untried, since there were too many.
     pub unrepaired: usize,
     /// Tetrahedra when the store was last renumbered.
     ordered: usize,
@@ -291,7 +291,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.looked = looked;
     }
 
-    /// Of the items of the end-game as many as it may still try, the worst.
+    /// Leaves as many items of repair as it may still try, the worst ones.
     fn no_more_than_repaired(&mut self, items: &mut Vec<TetId>) {
         let most = (REPAIR_FEW + REPAIR_SHARE * self.live_tets() as f64) as usize;
         let left = most.saturating_sub(self.repaired);

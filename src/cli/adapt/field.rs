@@ -18,7 +18,7 @@ pub struct FieldArguments {
     pub field: Vec<PathBuf>,
 }
 
-/// Lets the options of the multiscale metric and of the geometry's be given with --field only, and bounds of the sizes not with an
+/// Allows the options of the multiscale metric and of the geometry's metric with --field only, and forbids bounds of the sizes with an
 /// analytic field.
 pub fn only_with_field(command: clap::Command) -> clap::Command {
     let options = fields::OPTIONS.into_iter().chain(["segments", "feature_cells", "no_geometry"]);

@@ -12,7 +12,7 @@ pub struct Targets {
     mesh: Target,
     metric: Target,
     report: Option<Target>,
-    /// A model that was made on the way, and where it goes.
+    /// A model that was made by the run, and where it goes.
     model: Option<(PathBuf, Target)>,
 }
 

@@ -21,10 +21,10 @@ use crate::tasks::{Team, stage};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Twelve tetrahedra for each unit of complexity, numbered with 32 bits; some numbers lie idle.
+/// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
 const GREATEST_COMPLEXITY: f64 = 2e8;
 
-/// Of the complexity the geometry's sizes take no more than this share, so that some is left for the field.
+/// The sizes of the geometry take at most this share of the complexity, so that some is left for the field.
 const GEOMETRY_SHARE: f64 = 0.5;
 
 /// The inputs of a run.
@@ -55,7 +55,7 @@ pub struct InputArguments {
     no_geometry: bool,
 }
 
-/// A mesh with the metric at its vertices, if that is what the metric is known by.
+/// A mesh, with the metric at its vertices if it comes from a file.
 pub struct Given {
     /// The mesh.
     pub mesh: TetMesh,
@@ -204,7 +204,7 @@ impl InputArguments {
         Ok(logs)
     }
 
-    /// ln of the metric that the local sizes ask for, all else as large as can be; none without any.
+    /// ln of the metric that the local sizes ask for, with very large sizes elsewhere; none without local sizes.
     fn local_sizes(&self, team: Team<'_>, mesh: &TetMesh, names: &Names) -> Result<Option<Vec<Sym3>>, String> {
         if self.local.is_empty() {
             return Ok(None);
@@ -249,7 +249,7 @@ impl InputArguments {
         Ok(Some(logs))
     }
 
-    /// Scales the source to the complexity that is asked for, which one that was made for it has; and refuses one that no mesh can have.
+    /// Scales the source to the complexity asked for, unless it was made for that. Refuses a complexity that no mesh can have.
     fn scale(&self, team: Team<'_>, mesh: &TetMesh, source: &mut Source, is_made: bool) -> Result<(), String> {
         let named = |error: metric::Error| format!("{}: {error}", self.mesh.display());
         source.check(team, mesh).map_err(named)?;

@@ -6,11 +6,11 @@ use crate::metric::Sym3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::str::FromStr;
 
-/// What a part is called.
+/// How a part is named.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Key {
     Reference(i32),
-    /// As in the names file of the mesh, or in its CAD model.
+    /// By a name in the names file of the mesh, or in its CAD model.
     Name(String),
 }
 
@@ -19,7 +19,7 @@ enum Key {
 enum Kind {
     Surface,
     Region,
-    /// A name alone: surfaces that are called so, else regions.
+    /// A name alone: surfaces of that name, else regions.
     Any,
 }
 
@@ -60,7 +60,7 @@ impl FromStr for Part {
 }
 
 impl Part {
-    /// What is meant; refuses what the mesh has not, and tells what there is.
+    /// The parts that are meant. Refuses what the mesh does not have, and lists what it has.
     fn find(&self, mesh: &TetMesh, names: &Names) -> Result<Vec<Found>, String> {
         let name = match &self.key {
             Key::Reference(reference) if self.kind == Kind::Region => {
@@ -161,7 +161,7 @@ impl FromStr for Local {
     }
 }
 
-/// Lets ln M at the vertices ask for no more than the sizes on their parts.
+/// Bounds the sizes of ln M at the vertices by those of their parts.
 pub fn apply(locals: &[Local], mesh: &TetMesh, names: &Names, logs: &mut [Sym3]) -> Result<(), String> {
     for local in locals {
         let size = Sym3::ZERO.plus_identity(-2.0 * local.size.ln());

@@ -39,7 +39,7 @@ struct Operation {
     seconds: f64,
 }
 
-/// What a run was asked for, as the report has it.
+/// What the user asked for, as the report has it.
 #[derive(Clone, Serialize)]
 pub struct Asked {
     /// The mesh, or the model that the mesh was made of.
@@ -65,7 +65,7 @@ const STOPPED_GROWING: &str = "memory ran out, or there are far more vertices th
      a cell, or are many times the domain in some directions; bound it by --aspect-ratio, --hmax or --gradation, or with --field leave \
      the geometry in (no --no-geometry)";
 
-/// Why bad tetrahedra were not tried.
+/// Why bad tetrahedra were left untried.
 const UNREPAIRED: &str = "more than a mesh has that meets its metric, and the last of them were not tried again; bound the metric by \
      --aspect-ratio or --gradation";
 

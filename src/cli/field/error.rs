@@ -41,7 +41,7 @@ pub struct Arguments {
 struct Report {
     version: &'static str,
     norm: Norm,
-    /// Of the mesh and of the truth's.
+    /// Vertices of the mesh and of the truth's mesh.
     vertices: [usize; 2],
     tets: [usize; 2],
     /// The truth's vertices outside the mesh, which get its nearest values, and how far the farthest is.

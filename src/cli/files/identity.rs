@@ -1,4 +1,4 @@
-//! What tells two paths of one file.
+//! The identity of files, by which two paths to one file are known.
 use crate::mesh::io::follow;
 use std::ffi::OsString;
 use std::fs::Metadata;

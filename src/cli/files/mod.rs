@@ -1,8 +1,8 @@
 //! The files of a command, side files too: all that it reads and all that it writes are known before its work begins.
 //!
-//! A file is told by device and inode, so that links and roundabout paths are seen through; one that is not there yet by its folder and
-//! name. No input is ever overwritten, no two outputs go to the same file, and what cannot be written is told at once. Nothing else in
-//! `cli` writes files: [`Outputs`] takes a [`Target`], and only [`Files`] makes one.
+//! A file is identified by device and inode, whatever links lead to it; a file that does not exist yet by its folder and name. No input is
+//! ever overwritten, no two outputs go to the same file, and what cannot be written is refused before the work. Nothing else in `cli`
+//! writes files: [`Outputs`] takes a [`Target`], and only [`Files`] makes one.
 mod identity;
 mod outputs;
 pub mod text;
@@ -49,7 +49,7 @@ impl Target {
 }
 
 impl Files {
-    /// None yet. All inputs are to be named before the first output.
+    /// No files yet. All inputs must be named before the first output.
     pub fn new() -> Self {
         Self::default()
     }

@@ -185,7 +185,7 @@ pub fn logs(run: &RunArguments, team: Team<'_>, path: &Path, vertices: usize) ->
     Ok(content)
 }
 
-/// Reads ln M at the vertices of a mesh that is not at hand.
+/// Reads ln M at the vertices of a mesh that is not read.
 pub fn all_logs(run: &RunArguments, team: Team<'_>, path: &Path) -> Result<Vec<Sym3>, Failure> {
     let Read { content, notices } = Field::read_all_logs(team, path)?;
     run.note(&notices);

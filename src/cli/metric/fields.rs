@@ -48,7 +48,7 @@ type Sensors<'f> = Vec<Vec<&'f [f64]>>;
 /// The options that say how the metric is made, as [`MultiscaleArguments`] has them.
 pub const OPTIONS: [&str; 4] = ["norm", "hessian", "component", "combine"];
 
-/// Those that bound sizes.
+/// The options that bound sizes.
 pub const BOUNDS: [&str; 4] = ["gradation", "hmin", "hmax", "aspect_ratio"];
 
 /// The metric that was made, for tables and JSON.

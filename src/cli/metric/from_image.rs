@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let diameter = common::diameter(&mesh);
     let hmax = limits.hmax.unwrap_or(diameter).min(diameter);
     let half_voxel = 0.5 * image.frame.spacings().into_iter().fold(f64::INFINITY, f64::min);
-    // Finer the image says nothing.
+    // The image has nothing finer.
     let limits = Limits { hmin: Some(limits.hmin.unwrap_or(half_voxel.min(hmax))), hmax: Some(hmax), ..limits };
     let wish = Wish { complexity: arguments.complexity, limits, gradation: arguments.gradation.ratio() };
     let outside = outside(team, &image, &mesh);

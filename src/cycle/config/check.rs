@@ -1,4 +1,4 @@
-//! What a configuration may not say although each key alone could be: refused before the loop begins.
+//! Refuses configurations whose keys are each allowed, but not together, before the loop begins.
 use super::{Growth, Loaded, NormWord};
 use crate::metric::multiscale::Norm;
 use crate::view::cut::Plane;

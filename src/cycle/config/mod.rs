@@ -89,8 +89,8 @@ pub fn parse(text: &str) -> Result<Config, String> {
     })
 }
 
-/// What of two configurations is not the same, `[table] key` each, where finished steps would not be the same either. That is all but
-/// when the loop ends, what is drawn, and threads.
+/// The keys, as `[table] key`, in which two configurations differ so that finished steps would differ too. Only the end of the loop, what
+/// is drawn, and the threads may differ.
 pub fn differences(old: &Config, new: &Config) -> Vec<String> {
     let comparable = |config: &Config| {
         let mut config = config.clone();

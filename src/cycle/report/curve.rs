@@ -80,7 +80,7 @@ fn chart(history: &History, name: &str) -> String {
         );
     }
     svg += "</svg>";
-    // Of what does not go to zero there is no order.
+    // A functional that does not go to zero has no order.
     let note = order(history, name).filter(|_| name.contains("error")).map_or_else(String::new, |order| {
         format!(
             ": falls with vertices to the power {:.2} over the last {FITTED} complexities (second order is 0.67)",

@@ -27,8 +27,8 @@ pub fn check_solution_format(path: &Path) -> Result<(), String> {
     Format::of(path).map(drop).map_err(|error| error.to_string())
 }
 
-/// Writes the mesh for the solver; the fields of the last solution go along where one file carries both. Its association with a model does
-/// not: other readers stumble over that, meshio among them.
+/// Writes the mesh for the solver, with the fields of the last solution where one file carries both. Its association with a model is left
+/// out, since other readers (meshio among them) fail on it.
 pub fn write_mesh(path: &Path, data: &Dataset) -> Result<(), String> {
     let carries = matches!(Format::of(path), Ok(Format::Vtu));
     let mesh = TetMesh { association: Association::default(), ..data.mesh.clone() };

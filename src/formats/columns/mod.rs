@@ -16,7 +16,7 @@ const MAGIC: i32 = 535_532;
 /// Characters of a name in a binary file, the last of them 0.
 const NAME: usize = 33;
 
-/// What a point's number and coordinates are called.
+/// The names of the columns of a point's number and coordinates.
 const POINT: &str = "PointID";
 const PLACE: [&str; 3] = ["x", "y", "z"];
 
@@ -32,7 +32,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], vertices: &[Vec3]) -> Result<Read<
     Ok(Read { content: fields(&table, &rows), notices })
 }
 
-/// The row of each vertex: that with its number, where the table has such a column.
+/// The row of each vertex: the one with its number, where the table has such a column.
 fn order(path: &Path, table: &Table, vertices: usize) -> Result<Vec<u32>, Error> {
     let Some(column) = table.names.iter().position(|name| name.eq_ignore_ascii_case(POINT) || name == "Point_ID")
     else {

@@ -36,7 +36,7 @@ pub fn is_case(path: &Path) -> bool {
     file::find(&poly_mesh_of(path), "faces").is_some()
 }
 
-/// Whether a path is that of a folder, so of a case: it is there, or ends in `/`.
+/// Whether a path is a folder, and so a case: the folder exists, or the path ends in `/`.
 pub fn is_folder(path: &Path) -> bool {
     path.as_os_str().to_string_lossy().ends_with('/') || path.is_dir()
 }
@@ -215,7 +215,7 @@ pub fn add(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset, text:
     Ok(notices)
 }
 
-/// The least that OpenFOAM's tools ask for; files that are there stay.
+/// The fewest files that OpenFOAM's tools ask for. Files that exist stay.
 fn add_system(batch: &mut Batch, case: &Path) -> Result<(), Error> {
     let folder = case.join("system");
     batch.folder(&folder)?;

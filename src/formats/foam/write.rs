@@ -42,8 +42,8 @@ pub fn write_poly_mesh(
     Ok(patches)
 }
 
-/// Adds what [`write_poly_mesh`] writes to files that belong together. Of a mesh that is there the faces go first, and the new ones come
-/// last: without them there is no mesh, so points of one and faces of another are never read together.
+/// Adds what [`write_poly_mesh`] writes to files that belong together. The faces of an older mesh are removed first, and the new
+/// ones come last. Without faces there is no mesh, so points of one mesh and faces of another are never read together.
 pub(super) fn add_poly_mesh(
     batch: &mut Batch,
     team: Team<'_>,

@@ -57,7 +57,7 @@ fn count(source: &mut Source) -> Result<usize, Error> {
 }
 
 impl View {
-    /// Makes a field of it: of the last step where there are several; at elements their mean about each vertex.
+    /// Makes a field of it, of the last step where there are several. Values of elements become means at the vertices.
     pub fn resolve(
         self,
         mesh: &TetMesh,

@@ -206,7 +206,7 @@ fn names(raw: &Raw) -> Names {
     Names { edges: of(1, &mesh.edges.refs), triangles: of(2, &mesh.triangles.refs), tetrahedra: of(3, &mesh.tets.refs) }
 }
 
-/// Takes the nodes out that `used` does not tell, and the elements and places of them; returns which stay.
+/// Removes the nodes that are not `used`, with their elements and places. Returns which nodes stay.
 fn compact(mesh: &mut TetMesh, used: impl Fn(&TetMesh, &mut dyn FnMut(u32))) -> Vec<bool> {
     let mut kept = vec![false; mesh.vertices.len()];
     used(mesh, &mut |v| kept[v as usize] = true);

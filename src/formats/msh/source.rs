@@ -92,7 +92,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Items to make room for: what a count says, but no more than the rest can hold of so many numbers at least each.
+    /// How many items to make room for: what a count says, but no more than fit into the rest, at so many numbers or more each.
     pub fn room(&self, count: usize, numbers: usize) -> usize {
         let least = if self.is_text() { 2 } else { 4 };
         self.scan.room(count, least * numbers)

@@ -65,8 +65,8 @@ struct Part {
 }
 
 impl Part {
-    /// With `grouped` each entity gets a group, of no name where it has none: where there are some, gmsh writes only elements of groups,
-    /// and meshio wants all in one.
+    /// With `grouped` each entity gets a group, without a name where it has none. If there are any groups, gmsh writes only elements in
+    /// groups, and meshio wants every element in one.
     fn new(
         (dimension, kind): (i32, i64),
         refs: &[i32],

@@ -25,7 +25,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 /// Is asked whether there may be so many values.
 type Check<'c> = &'c dyn Fn(usize) -> Result<(), Error>;
 
-/// Decodes the arrays of a document, each once: so no more is made than deflate can hold in the file (1032 bytes a byte).
+/// Decodes the arrays of a document, each once. So no more memory is needed than deflate can pack into the file (1032 bytes a byte).
 pub(super) struct Decoder<'d, 'a> {
     path: &'d Path,
     document: &'d Document<'a>,

@@ -129,7 +129,7 @@ impl<'a> Reader<'_, 'a> {
         }
     }
 
-    /// An array that would be no field is not unpacked: it may hold thousands of times what the file does.
+    /// Whether an array can be a field. Others are not unpacked: they may be a thousand times as large as the file.
     fn skip_wide(&mut self, array: &Array) {
         self.leave_out(array, &format!("has {} values an item", array.width));
     }

@@ -7,10 +7,10 @@ use std::collections::{HashMap, HashSet};
 /// What changed besides the association.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Associated {
-    /// Whether the triangles' references were replaced by the numbers of the faces: they did not tell faces apart,
-    /// or had several names for one.
+    /// Whether the triangles' references were replaced by the numbers of the faces, since one reference stood for several faces or several
+    /// references for one.
     pub references_replaced: bool,
-    /// Listed edges that lie on no edge of the model, and were dropped.
+    /// How many listed edges were dropped, since they lie on no edge of the model.
     pub edges_dropped: usize,
 }
 
@@ -50,7 +50,7 @@ fn write_vertices(mesh: &mut TetMesh, classification: &Classification) {
     }
 }
 
-/// Replaces the listed edges by the ridges; returns how many of them were none. Required edges stay, ridges or not.
+/// Replaces the listed edges by the ridges. Returns how many of them were no ridges. Required edges stay in any case.
 fn write_edges(mesh: &mut TetMesh, classification: &Classification) -> usize {
     let sorted = |nodes: [u32; 2]| [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])];
     let listed: HashMap<[u32; 2], i32> = mesh.edges.iter().map(|(nodes, r)| (sorted(nodes), r)).collect();

@@ -12,7 +12,7 @@ use std::collections::HashMap;
 enum Need {
     /// A corner of the shape.
     Corner,
-    /// It only closes one smooth edge: used where the mesh has it.
+    /// It only closes one smooth edge. It is used where the mesh has a vertex there.
     Ring,
     /// A smooth pole or the end of a seam: no feature of the shape.
     None,
@@ -43,7 +43,7 @@ pub(super) fn find(fit: &Fit, ridges: &Ridges) -> Result<Vec<Option<u32>>, Error
         };
         let tolerance = fit.allowed(Entity::Vertex(model));
         let (mut nearest, mut away) = points.nearest(fit, vertex.point);
-        // Where solids touch, vertices of several lie at one place: each goes with its edges.
+        // Where solids touch, vertices of several solids lie at one place. Each goes with its edges.
         if nearest.is_some_and(|mesh| !on_edges.has(mesh, &vertex.edges))
             && let Some((own, at)) = on_edges.nearest(fit, &vertex.edges, vertex.point)
             && at <= tolerance
@@ -67,7 +67,7 @@ pub(super) fn find(fit: &Fit, ridges: &Ridges) -> Result<Vec<Option<u32>>, Error
     Ok(found)
 }
 
-/// Mesh vertices to look for the nearest one in.
+/// Mesh vertices among which the nearest is looked for.
 struct Points {
     vertices: Vec<u32>,
     tree: BoxTree,
@@ -139,8 +139,8 @@ fn is_smooth_ring(fit: &Fit, evaluator: &mut Evaluator, edge: u32) -> bool {
     entity.vertices[0] == entity.vertices[1] && dot(first, last) > (1.0 - 1e-6) * norm(first) * norm(last)
 }
 
-/// Whether a face comes to a point at one of its degenerate edges: its normal differs around it. A sphere's
-/// pole is none, a cone's apex is.
+/// Whether a face has an apex at one of its degenerate edges: its normal differs around it. A cone's apex is one, a sphere's pole is
+/// not.
 fn is_apex(fit: &Fit, evaluator: &mut Evaluator, edges: &[u32]) -> bool {
     let poles = edges.iter().copied().filter(|&e| fit.topology.edges[e as usize].degenerate);
     poles.into_iter().any(|edge| {

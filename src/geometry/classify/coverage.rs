@@ -36,7 +36,7 @@ fn check_edge(fit: &Fit, edge: u32, nodes: &[[u32; 2]], entities: &[Entity]) -> 
         [chain] => {
             let ends = [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]].map(corner);
             let [first, last] = entity.vertices;
-            // A ring's vertex may be missing in the mesh.
+            // The vertex of a closed edge may be missing in the mesh.
             let open_ring = first == last && ends == [None; 2] && chain.is_closed();
             open_ring || ends == [first, last] || ends == [last, first]
         }

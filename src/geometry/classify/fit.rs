@@ -6,11 +6,11 @@ use crate::geometry::{EdgeEntity, Entity, FaceEntity, Geometry, Model, Topology}
 use crate::mesh::TetMesh;
 use crate::tasks::Team;
 
-/// Part of the model's diagonal that a vertex may be off by default: what single precision leaves, with room.
+/// By default a vertex may be off by this share of the model's diagonal: the rounding of single precision, with room.
 const TOLERANCE: f64 = 1e-6;
 
-/// While entities are looked for, vertices may be this many tolerances off: p-curves, curves and surfaces of a model
-/// agree less well than it states. The entity that is found is held to one tolerance.
+/// While entities are looked for, vertices may be this many tolerances off, since p-curves, curves and surfaces of a model agree less well
+/// than the model says. At the entity that is found a vertex may be one tolerance off.
 const SLACK: f64 = 10.0;
 
 /// How to classify.
@@ -19,8 +19,7 @@ pub struct Options {
     /// How far a vertex may be from its entity, model units. By default 1e-6 of the model's diagonal, or twice the
     /// tolerance that the model states for the entity if that is more.
     pub tolerance: Option<f64>,
-    /// Dihedral angle in degrees that separates patches where the file lists no edges; it decides nothing that
-    /// geometry does not confirm.
+    /// Dihedral angle in degrees that separates patches where the file lists no edges. The model has to confirm what it separates.
     pub ridge_angle_deg: f64,
 }
 
@@ -83,8 +82,8 @@ pub(super) struct Fit<'a> {
     /// The tolerance given, or that of an entity which states none.
     pub tolerance: f64,
     given: bool,
-    /// For each edge the greatest tolerance of its vertices, for each face that of its edges and their vertices: what lies on them may be
-    /// so far off the edge or face that they bound.
+    /// For each edge the greatest tolerance of its vertices, for each face that of its edges and their vertices. A point on these may be so
+    /// far off the edge or face that they bound.
     edge_borders: Vec<f64>,
     face_borders: Vec<f64>,
 }
@@ -126,7 +125,7 @@ impl Fit<'_> {
         self.allowed(entity).max(self.sure(entity))
     }
 
-    /// How near is too near for chance. A tolerance that the user gives may span several entities.
+    /// A point nearer than this to an entity is not near it by chance. A tolerance that the user gives may span several entities.
     pub fn sure(&self, entity: Entity) -> f64 {
         let border = match entity {
             Entity::Edge(edge) => self.edge_borders[edge as usize],

@@ -1,4 +1,4 @@
-//! What the file itself says about the model: believed only as far as the model agrees.
+//! What the file itself says about the model, which counts only where the model agrees.
 use super::Classification;
 use crate::geometry::{Entity, Topology};
 use crate::mesh::TetMesh;
@@ -8,7 +8,7 @@ use std::collections::HashMap;
 pub(super) struct Hints {
     /// Entities that the file lists for each vertex, with parameters.
     listed: HashMap<(u32, Entity), [f64; 2]>,
-    /// Lowest of them.
+    /// For each vertex the listed entity of lowest dimension.
     lowest: HashMap<u32, Entity>,
     /// Entries of entities that the model does not have.
     unknown: usize,

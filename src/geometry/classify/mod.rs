@@ -2,7 +2,7 @@
 //!
 //! Triangles come first ([`patches`], and [`triangles`] where a patch spans several faces); mesh edges between
 //! different faces are ridges and find their model edge ([`ridges`]); vertices of the model find their mesh vertex
-//! ([`corners`]); then everything has its entity ([`entities`]), and [`coverage`] holds the mesh against the whole model.
+//! ([`corners`]); then everything has its entity ([`entities`]), and [`coverage`] checks that the mesh covers the whole model.
 mod associate;
 mod corners;
 mod coverage;

@@ -1,4 +1,4 @@
-//! Patches of triangles against faces of the model.
+//! Finds the faces of the model on which patches of triangles lie.
 use super::fit::Fit;
 use super::landing::{box_reaches, land_patch, misfit};
 use super::{Error, triangles};
@@ -10,14 +10,14 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Vertices of a patch that are tried on every face, and triangles that decide between faces.
 const SAMPLES: usize = 8;
 
-/// Tasks at most that the patches are shared out among; each makes an evaluator.
+/// Most tasks for the patches. Each makes an evaluator.
 const TASKS: usize = 64;
 
 /// Triangles on their faces.
 pub(super) struct Faces {
     /// Face of each triangle.
     pub of_triangle: Vec<u32>,
-    /// For each vertex a face that it was put on and where; on the border of faces any of them.
+    /// For each vertex a face that it was put on, and where on it. For a vertex on the border of faces it is any of these.
     pub landings: Vec<Option<(u32, OnSurface)>>,
     /// What the user should know.
     pub notices: Vec<String>,
@@ -79,7 +79,7 @@ fn match_patch(fit: &Fit, evaluator: &mut Evaluator, patch: &[u32], on_ridge: &[
     inside.sort_unstable();
     inside.dedup();
     let hinted = named(fit, fit.mesh.triangles.refs[*patch.first()? as usize]).or_else(|| fit.hints.face_of(nodes()));
-    // A patch without a vertex inside may have all of them on the border of another face: no hint settles that.
+    // If a patch has no vertex inside, all of its vertices may lie on the border of another face. No hint decides that.
     if let (Some(face), false) = (hinted, inside.is_empty())
         && let Ok(landings) = land_patch(fit, evaluator, patch, face)
         && landings.iter().all(|(_, on)| on.distance <= fit.sure(Entity::Face(face)))
@@ -117,7 +117,7 @@ pub(super) fn spread(items: &[u32]) -> Vec<u32> {
     (0..n).map(|i| items[i * items.len() / n]).collect()
 }
 
-/// Says so when references look like face numbers, but are not.
+/// Notes for the user when references look like face numbers, but are not.
 fn note_references(fit: &Fit, faces: &mut Faces) {
     let refs = &fit.mesh.triangles.refs;
     let wrong: Vec<usize> =

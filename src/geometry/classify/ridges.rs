@@ -10,7 +10,7 @@ use std::collections::HashMap;
 pub(super) struct Ridges {
     /// Nodes and model edge.
     pub list: Vec<([u32; 2], u32)>,
-    /// For a vertex and a model edge where it lands on it.
+    /// For a vertex and a model edge the vertex' closest point on the edge.
     pub landings: HashMap<(u32, u32), OnCurve>,
 }
 

@@ -1,4 +1,4 @@
-//! Parameters and closest points of every vertex on its entity, held to the tolerance.
+//! Parameters and closest point of every vertex on its entity, within the tolerance.
 use super::fit::Fit;
 use super::patches::{Faces, named};
 use super::ridges::Ridges;

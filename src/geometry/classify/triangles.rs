@@ -1,4 +1,4 @@
-//! Triangles against faces one by one, where a patch of the mesh spans several faces.
+//! Finds the faces of triangles one by one, where a patch of the mesh spans several faces.
 use super::Error;
 use super::error::numbers;
 use super::fit::Fit;

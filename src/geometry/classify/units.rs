@@ -19,7 +19,7 @@ const FACTORS: [(f64, &str, &str); 7] = [
     (12.0, ": the mesh is in inches, the model in feet", ": the mesh is in feet, the model in inches"),
 ];
 
-/// How far a coarse mesh's box may be from a known factor: its chords cut curved walls.
+/// The ratio of the boxes may differ from a known factor by this: the chords of a coarse mesh cut curved walls.
 const SLACK: f64 = 0.05;
 
 /// Sizes within this factor are taken for the same units: a coarse mesh of a ball is that much smaller.

@@ -1,4 +1,4 @@
-//! The boundary of a tetrahedral mesh: its outward side, and triangles that the file left out.
+//! The boundary of a tetrahedral mesh: its outward side, and triangles that the file lacks.
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, Side, TriangleIndex, sorted3};
 use crate::mesh::vector::volume6;
@@ -63,8 +63,8 @@ pub fn complete_matched(team: Team<'_>, mesh: &mut TetMesh, faces: &MatchedFaces
 /// Marks the side of a face without a tetrahedron.
 const OUTSIDE: i32 = i32::MAX;
 
-/// Each face on the boundary or between regions, once, and the regions of its two sides, the smaller first; the face's normal leaves
-/// that one.
+/// Each face on the boundary or between regions, once, with the regions on its two sides, the smaller first. The face's normal points
+/// out of that one.
 fn interfaces(team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces) -> Vec<([u32; 3], [i32; 2])> {
     team.collect(GRAIN, mesh.tets.len(), |range, found| {
         for t in range {

@@ -15,7 +15,7 @@ impl Chain {
     }
 }
 
-/// Joins edges to chains. Vertices with `corner` end a chain; every vertex at which other than two edges meet
+/// Joins edges to chains. Vertices with `corner` end a chain; every vertex where not exactly two edges meet
 /// must be one. Closed chains without a corner start at their first edge.
 pub(crate) fn trace_chains(edges: &[[u32; 2]], corner: impl Fn(u32) -> bool) -> Vec<Chain> {
     let at = Incidence::new(edges);

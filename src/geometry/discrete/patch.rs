@@ -16,7 +16,7 @@ struct Plane {
 /// Triangles of one discrete face, normals outward.
 ///
 /// Parameters: on a plane patch the coordinates on its axes. On another, u = k + b1/2, v = b2, where k is the triangle
-/// and b1, b2 are the barycentric weights of its second and third corner: a name of the point rather than a chart.
+/// and b1, b2 are the barycentric weights of its second and third corner. These name a point, but are no chart.
 pub(crate) struct Patch {
     triangles: Vec<[Vec3; 3]>,
     normals: Vec<Vec3>,
@@ -129,7 +129,7 @@ impl Patch {
         let weights = closest_on_triangle(self.triangles[nearest], p);
         let mut point = self.at(nearest, weights);
         if let Some(plane) = &self.plane {
-            // The mean plane is the face; its triangles only bound it.
+            // The mean plane is the face. Its triangles only bound it.
             let inside = weights.iter().all(|&w| w > 0.0);
             point = plane.project(if inside { p } else { point });
             return OnSurface { uv: plane.parameters(point), point, distance: distance(p, point) };
@@ -168,7 +168,7 @@ impl Patch {
     }
 }
 
-/// A share of a column that is left beside the others and is no more than this one is rounding: the triangle is a line.
+/// When no more than this share of a column is left beside the others, that is rounding: the triangle is a line.
 const SINGULAR: f64 = 1e-7;
 
 /// The x with the least |A x − b|; none where the columns of A depend on each other.

@@ -15,8 +15,8 @@ impl Discrete {
         self.edge_refs[edge as usize]
     }
 
-    /// Writes the features into a mesh that is classified on this geometry, as the first mesh had them: references of
-    /// triangles, and the ridges as edges (0 where the file had not listed them), all marked as ridges; corners. Required
+    /// Writes the features into a mesh that is classified on this geometry, as the first mesh had them: the references of triangles, the
+    /// ridges as edges (with reference 0 where the file had not listed them), and the corners. Required
     /// edges stay. There is no association: the entities of a discrete geometry mean nothing outside this run.
     pub fn restore(&self, mesh: &mut TetMesh, classification: &Classification) {
         mesh.association = Association::default();

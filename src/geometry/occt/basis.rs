@@ -10,9 +10,9 @@ pub const MAX_ORDER: usize = MAX_DEGREE + 1;
 #[derive(Clone, Debug)]
 pub struct Knots {
     degree: usize,
-    /// Each as often as its multiplicity; a periodic spline's go on beyond both ends.
+    /// The knots, each as often as its multiplicity. Those of a periodic spline go on beyond both ends.
     flat: Vec<f64>,
-    /// Where spans of some length begin, and where the last one ends.
+    /// The begins of spans that have a length, and the end of the last one.
     breaks: Vec<f64>,
     /// The place in `flat` of each span's first knot (the last of several equal ones).
     firsts: Vec<u32>,
@@ -25,7 +25,7 @@ pub struct Knots {
 pub type Functions<const N: usize> = [[f64; N]; 3];
 
 impl Knots {
-    /// Knots as they are; none where they are no knots of the degree (not ascending, too few, no span).
+    /// Knots as they are given; none where they are no knots of this degree (not ascending, too few, no span).
     pub fn new(degree: usize, flat: &[f64], period: f64) -> Option<Self> {
         let sound = (1..=MAX_DEGREE).contains(&degree)
             && flat.len() >= 2 * (degree + 1)

@@ -9,10 +9,10 @@ use crate::geometry::{CurveFrame, Topology};
 use crate::mesh::vector::{distance, norm};
 use cxx::{Exception, SharedPtr, UniquePtr};
 
-/// Agreement with OCCT, relative to the model's size, without which a copy is not used: a scaled location changes a
-/// line's parameters, for one.
+/// A copy that differs from OCCT by more than this, relative to the model's size, is not used. A scaled location, for one, changes the
+/// parameters of a line.
 const AGREEMENT: f64 = 1e-13;
-/// Shares of a range at which it is looked at.
+/// Shares of a range at which a copy is compared.
 const SHARES: [f64; 5] = [0.0, 0.31, 0.52, 0.77, 1.0];
 
 /// An edge's curve in the parameters of a face.
@@ -21,7 +21,7 @@ pub struct PCurve {
     pub face: u32,
     /// The curve, its third coordinate 0; without a copy it is general.
     pub curve: Curve,
-    /// Its other one, on a seam.
+    /// The second curve of a seam.
     pub other: Option<Curve>,
 }
 

@@ -1,4 +1,4 @@
-//! Curves as they were copied from OCCT, and the descent to the closest point where there is no closed form.
+//! Curves that were copied from OCCT, and the descent to the closest point where there is no closed form.
 use super::bridge::ffi;
 use super::spline::SplineCurve;
 use super::swept::Conic;
@@ -67,12 +67,12 @@ impl Curve {
         }
     }
 
-    /// Whether [`Self::foot`] has an answer.
+    /// Whether [`Self::foot`] has a closed form.
     pub fn has_foot(&self) -> bool {
         matches!(self, Self::Line { .. } | Self::Circle { .. })
     }
 
-    /// Ends of the smooth spans, where they are known.
+    /// The ends of the smooth spans, where they are known.
     pub fn breaks(&self) -> &[f64] {
         if let Self::Spline(spline) = self { spline.breaks() } else { &[] }
     }

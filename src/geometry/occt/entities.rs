@@ -75,7 +75,7 @@ fn edge_entity(record: &ffi::EdgeRecord) -> EdgeEntity {
     }
 }
 
-/// Adds a face, and itself to its edges: twice to those it has twice, which [`connect`] makes seams.
+/// Adds a face, and lists it at its edges; twice at an edge that it has twice, which [`connect`] makes a seam.
 fn add_face(topology: &mut Topology, index: u32, record: &ffi::FaceRecord) {
     use SurfaceKind::*;
     const KINDS: [SurfaceKind; 11] =
@@ -113,7 +113,7 @@ fn face_range(record: &ffi::FaceRecord, k: usize, period: Option<f64>) -> [f64; 
     }
 }
 
-/// Marks the seams, leaves each face once in an edge, tells the vertices their edges, and finds the largest tolerance.
+/// Marks the seams, lists each face once at an edge, lists the edges at their vertices, and finds the largest tolerance.
 fn connect(topology: &mut Topology) {
     for (i, edge) in topology.edges.iter_mut().enumerate() {
         let count = edge.faces.len();

@@ -9,15 +9,15 @@ use crate::mesh::vector::{Vec3, cross, distance, dot, norm, scale, unit};
 use cxx::UniquePtr;
 use std::sync::PoisonError;
 
-/// Evaluator of one thread: its own adaptors and classifiers, which the next one goes on with.
+/// Evaluator of one thread, with adaptors and classifiers of its own. The next evaluator goes on with these.
 pub struct OcctEvaluator<'a> {
     pub(super) model: &'a OcctModel,
     pub(super) occt: UniquePtr<ffi::Evaluator>,
 }
 
-/// Below this sine or share of the longer side, Su × Sv does not tell a normal.
+/// Below this sine, or this share of the longer side, Su × Sv gives no normal.
 const SINGULAR: f64 = 1e-9;
-/// How far towards the middle of the range a normal is looked for where Su × Sv is none.
+/// Where Su × Sv gives no normal, it is taken so far towards the middle of the range.
 const NUDGE: f64 = 1e-4;
 
 impl<'a> OcctEvaluator<'a> {
@@ -130,7 +130,7 @@ impl<'a> OcctEvaluator<'a> {
         let (a, b) = (norm(jet.du), norm(jet.dv));
         let normal = cross(jet.du, jet.dv);
         let length = norm(normal);
-        // Rounding leaves a sphere's Su a direction even at the poles; at a cone's apex it means nothing.
+        // Rounding leaves Su of a sphere a direction even at a pole. At a cone's apex such a direction means nothing.
         let sphere = matches!(self.model.surfaces[face as usize].form, Surface::Sphere(..));
         let least = if sphere { 1e-30 } else { SINGULAR };
         let (long, short) = ((a * spans[0]).max(b * spans[1]), (a * spans[0]).min(b * spans[1]));
@@ -142,12 +142,12 @@ impl<'a> OcctEvaluator<'a> {
         if let Some(normal) = self.regular_normal(face, jet) {
             return normal;
         }
-        // The limit from two sides: a pole's agree, an apex's don't.
+        // The limits from two sides agree at a pole, and not at an apex.
         let range = self.model.topology.faces[face as usize].range;
         let sides = [0.25, 0.75].map(|s| {
             let middle = range.map(|[low, high]| low + s * (high - low));
             let near = [0, 1].map(|k: usize| uv[k] + NUDGE * (middle[k] - uv[k]));
-            // The parameter without length is free: take it from the side.
+            // The parameter without length is free, so it is varied.
             let free = usize::from(norm(jet.du) > norm(jet.dv));
             let mut at = near;
             at[free] = middle[free];

@@ -1,4 +1,4 @@
-//! Points whose hull, grown by a margin, holds a piece of a curve or surface: Bezier poles of splines, else samples.
+//! Points whose convex hull, enlarged by a margin, holds a piece of a curve or surface: Bezier poles of splines, else samples.
 use super::curve::Curve;
 use super::pieces::Jets;
 use super::surface::{Jet, Surface};
@@ -7,7 +7,7 @@ use crate::mesh::vector::{Vec3, norm};
 
 /// Samples in each direction, ends included.
 const SAMPLES: usize = 5;
-/// What the largest second derivative of the samples is allowed to be exceeded by between them.
+/// Between the samples the second derivative may exceed their largest one by this factor.
 const EXCESS: f64 = 1.5;
 
 /// A curve as a surface without extent in v.
@@ -38,7 +38,7 @@ pub fn of_curve(form: &Curve, jet: &mut Jets, range: [f64; 2], out: &mut Vec<Vec
     }
 }
 
-/// Samples, and how far a smooth piece strays from the hull of those beside: h²/8 times the second derivative.
+/// Samples, and the greatest distance of a smooth piece from the hull of neighbouring samples: h²/8 times the second derivative.
 fn sampled(jet: &mut Jets, rectangle: [[f64; 2]; 2], out: &mut Vec<Vec3>) -> f64 {
     let [u, v] = rectangle;
     let at = |[low, high]: [f64; 2], i: usize| {

@@ -49,7 +49,7 @@ pub fn read_saved(path: &Path) -> Result<OcctModel, Error> {
 /// Writes a model for another process: see [`OcctModel::save`].
 pub fn save(occt: &ffi::Model, path: &Path) -> Result<(), Error> {
     let fail = |message: String| Error::Model { path: path.into(), message };
-    // There is all of it or nothing.
+    // The file is written whole or not at all.
     let part = path.with_extension("part");
     let name = part.to_str().ok_or_else(|| fail("the file's name is not UTF-8; rename it".into()))?;
     let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
@@ -111,7 +111,7 @@ fn ends(path: &Path) -> std::io::Result<(Vec<u8>, Vec<u8>)> {
     Ok((head, tail))
 }
 
-/// Tells files of another kind and cut files before OCCT sees them, which takes what it finds without complaint.
+/// Finds files of another kind, and cut files, before OCCT reads them: it takes what it finds without complaint.
 fn check(format: Format, head: &[u8], tail: &[u8]) -> Result<(), &'static str> {
     let has = |text: &[u8], word: &str| text.windows(word.len()).any(|window| window == word.as_bytes());
     let letter = |line: &[u8], letter: u8| line.get(72) == Some(&letter);

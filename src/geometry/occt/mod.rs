@@ -50,16 +50,16 @@ pub struct OcctModel {
     occt: cxx::SharedPtr<ffi::Model>,
     surfaces: Vec<Shape<Surface>>,
     curves: Vec<Shape<Curve>>,
-    /// Of each edge, its curves in the parameters of its faces.
+    /// For each edge its curves in the parameters of its faces.
     pcurves: Vec<Vec<PCurve>>,
-    /// Of each face, where its parameters are known to be inside; made when first asked for.
+    /// For each face, where its parameters are known to be inside it; made on first use.
     trims: Vec<OnceLock<Trim>>,
     /// Whether a face has edges whose chords may leave it.
     rounded: Vec<bool>,
-    /// Evaluators that no thread has in hand: their classifiers are dear to make (40 µs a face), and what they answer does not depend on
-    /// what they were asked before.
+    /// Evaluators that no thread uses now. They are kept since their classifiers are dear to make (40 µs a face); their answers do not depend
+    /// on earlier calls.
     idle: Mutex<Vec<cxx::UniquePtr<ffi::Evaluator>>>,
-    /// The greater of the box's diagonal and the largest coordinate: what rounding is measured by.
+    /// The greater of the box's diagonal and the largest coordinate. Rounding is measured by it.
     size: f64,
 }
 
@@ -116,7 +116,7 @@ impl OcctModel {
         range::span_about(form.breaks(), range, t) / form.degree() as f64
     }
 
-    /// The same model with its splines and swept surfaces evaluated by OCCT: what copies are measured against.
+    /// The same model with its splines and swept surfaces evaluated by OCCT. Tests compare the copies with it.
     #[doc(hidden)]
     pub fn without_copies(mut self) -> Self {
         for shape in &mut self.surfaces {

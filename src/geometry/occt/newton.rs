@@ -17,8 +17,8 @@ pub struct SurfacePoint {
 }
 
 /// Goes down from `start` to a closest point within `bounds` (of u, of v; infinite where the surface closes on
-/// itself): Newton's method on |S(u, v) − p|², with the first fundamental form in the place of the second derivatives
-/// where those are not convex. A parameter at its bound that wants beyond it stays there while the other one moves.
+/// itself): Newton's method on |S(u, v) − p|², with the first fundamental form in place of the Hessian where that is not
+/// convex. A parameter at its bound that a step would take beyond it stays there while the other one moves.
 ///
 /// No step is longer than `longest`: near a pole, where S_u vanishes, it would leave no digits of u.
 /// `size` is the size of the model, for what counts as rounding. NaN in gives NaN out.
@@ -62,7 +62,7 @@ pub fn descend(
     SurfacePoint { uv, point: here.point, distance: length, foot }
 }
 
-/// The next step, and whether a bound holds a parameter; none when it cannot be told (NaN, no derivatives).
+/// The next step, and whether a bound holds a parameter; none where there is no step (NaN, no derivatives).
 fn newton_step(jet: &Jet, arm: Vec3, uv: [f64; 2], bounds: [[f64; 2]; 2]) -> Option<([f64; 2], bool)> {
     let slope = [dot(arm, jet.du), dot(arm, jet.dv)];
     let metric = [dot(jet.du, jet.du), dot(jet.du, jet.dv), dot(jet.dv, jet.dv)];

@@ -1,4 +1,4 @@
-//! Cutting a face or an edge into flat pieces, and these into a tree.
+//! Cuts a face or an edge into flat pieces, in a tree.
 use super::surface::Jet;
 use super::tree::{Node, boxed};
 use crate::mesh::vector::{Vec3, cross, dot, norm, unit};
@@ -11,7 +11,7 @@ const TURN: f64 = 0.5;
 const SAMPLES: usize = 5;
 /// Most halvings of a smooth span.
 const HALVINGS: u32 = 12;
-/// What the curvatures of samples are allowed to be exceeded by between them.
+/// Between the samples the curvature may exceed theirs by this factor.
 const EXCESS: f64 = 1.5;
 
 /// S and its derivatives at parameters.
@@ -28,7 +28,7 @@ pub struct Source<'a> {
     pub hull: &'a mut Hull<'a>,
 }
 
-/// Where a range is cut: at its ends and at the breaks between them, or into `count` equal pieces where there are none.
+/// The cuts of a range: its ends and the breaks between them, or those of `count` equal pieces where there are no breaks.
 pub fn cuts(range: [f64; 2], period: Option<f64>, breaks: &[f64], count: usize) -> Vec<f64> {
     let [low, high] = range;
     let mut all = vec![low];
@@ -101,7 +101,7 @@ impl Builder<'_, '_> {
             return margin;
         }
         self.points.truncate(first);
-        // Where it turns more; where only the hull is thick, the longer side.
+        // Cut the direction in which the normal turns more; where only the hull is too thick, the longer one.
         let sizes = extents(&here, rectangle);
         let is_curve = rectangle[1][0] == rectangle[1][1];
         let k = if u_turn.max(v_turn) > 0.1 * TURN { v_turn > u_turn } else { sizes[1] > sizes[0] };

@@ -1,4 +1,5 @@
-//! Closest points of faces: closed forms where there are, else a descent from the guess, and a tree of pieces that rules the rest out.
+//! Closest points of faces: by closed forms where there are any, else by a descent from the guess, with a tree of pieces to rule out the
+//! rest.
 use super::evaluator::OcctEvaluator;
 use super::hull;
 use super::newton::{self, SurfacePoint};
@@ -10,7 +11,7 @@ use super::trim::{self, Trim};
 use crate::geometry::OnSurface;
 use crate::mesh::vector::{Vec3, distance};
 
-/// What counts as closer, relative: less is rounding.
+/// A point is closer when its distance is less by this share. Less is rounding.
 pub const CLOSER: f64 = 1.0 - 1e-12;
 /// What counts as the same parameters, as a share of the longest step.
 const SAME: f64 = 1e-9;
@@ -56,7 +57,7 @@ pub fn on_face(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: Option<[f6
     })
 }
 
-/// The same, if it is closer than `limit`: the surface, trimmed or not, tells in most cases that nothing is.
+/// The same, if it is closer than `limit`. In most cases the untrimmed surface shows already that nothing is.
 pub fn on_face_within(
     on: &mut OcctEvaluator,
     face: u32,

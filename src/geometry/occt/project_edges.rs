@@ -12,7 +12,7 @@ use crate::mesh::vector::{Vec3, distance};
 /// Closest point of an edge, ends included.
 pub fn on_edge(on: &mut OcctEvaluator, edge: u32, point: Vec3, guess: Option<f64>) -> OnCurve {
     on_edge_within(on, edge, point, guess, f64::INFINITY).unwrap_or_else(|| {
-        // Only a point that is no number has no closest one.
+        // Only a point of NaN has no closest one.
         let t = guess.filter(|t| t.is_finite()).unwrap_or(on.model.topology.edges[edge as usize].range[0]);
         let (t, _) = place(t, on.model.topology.edges[edge as usize].range, None);
         OnCurve { t, point: on.edge_frame(edge, t).point, distance: f64::NAN }

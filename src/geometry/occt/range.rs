@@ -1,9 +1,9 @@
 //! Parameters and their ranges.
 
-/// A share of a range by which a parameter may miss it from rounding alone.
+/// A parameter may be outside its range by this share of it from rounding alone.
 const ROUNDING: f64 = 1e-12;
 
-/// Takes `x` into the range, by the period first, else to the nearer end; and whether it lay in it, but for rounding.
+/// Takes `x` into the range, by the period or else to the nearer end. Also returns whether it lay in the range, but for rounding.
 pub fn place(x: f64, range: [f64; 2], period: Option<f64>) -> (f64, bool) {
     let [low, high] = range;
     let x = match period {

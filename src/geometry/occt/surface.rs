@@ -1,4 +1,4 @@
-//! Surfaces as they were copied from OCCT: evaluation, and feet of perpendiculars where there is a closed form.
+//! Surfaces that were copied from OCCT: evaluation, and feet of perpendiculars where there is a closed form.
 use super::bridge::ffi;
 use super::spline::SplineSurface;
 use super::swept::Swept;
@@ -153,8 +153,8 @@ impl Surface {
         }
     }
 
-    /// Foot of the closest perpendicular on the whole surface; none without a closed form. Where every angle is as
-    /// close as another (a point on the axis), u is `fallback`'s.
+    /// Foot of the closest perpendicular on the whole surface; none without a closed form. For a point on the axis, to which all angles are
+    /// equally close, u is that of `fallback`.
     pub fn foot(&self, point: Vec3, fallback: [f64; 2]) -> Option<[f64; 2]> {
         let local = self.local(point)?;
         let rho = local[0].hypot(local[1]);

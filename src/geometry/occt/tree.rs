@@ -1,4 +1,4 @@
-//! A face or an edge cut into flat pieces, in a tree of oriented boxes: what the global search rules out by.
+//! A face or an edge cut into flat pieces, in a tree of oriented boxes. The global search rules out pieces by it.
 use super::pieces::{Source, cut};
 use super::range::bring_near;
 use super::surface::Jet;
@@ -21,18 +21,18 @@ pub struct Node {
     about: f64,
     /// The second child; the first is the next node. None in a leaf.
     pub second: u32,
-    /// Whether all of it lies outside the trimmed face: nothing is looked for in it.
+    /// Whether all of it lies outside the trimmed face, so that no search looks into it.
     outside: bool,
 }
 
 /// No child.
 pub const LEAF: u32 = u32::MAX;
-/// Curvature times distance below which |S − p|² has one minimum over a piece and those beside it; 1 is the centre of
-/// curvature, and the curvatures are from samples.
+/// Where curvature times distance is below this, |S − p|² has one minimum over a piece and those beside it. In theory it is below 1 (the
+/// centre of curvature), but the curvatures are from samples.
 const CONVEX: f64 = 0.5;
 /// How far beyond a piece its surroundings go, in its widths.
 const BESIDE: f64 = 1.0;
-/// Depth of a tree, amply: spans are halved in number, then ten times in length.
+/// More than the depth of any tree: the number of spans is halved, then a span ten times.
 const DEPTH: usize = 128;
 
 impl Node {
@@ -67,8 +67,8 @@ impl Node {
         bend * reach < CONVEX
     }
 
-    /// Whether a foot at `uv` leaves no other point of the piece closer than `reach`, which is its distance: it lies in
-    /// the piece or beside it, and there the distance has one minimum.
+    /// Whether a foot at `uv` of distance `reach` rules out closer points in the piece: the foot lies in the piece or beside it, and there
+    /// the distance has one minimum.
     pub fn is_covered(&self, uv: [f64; 2], periods: [Option<f64>; 2], reach: f64) -> bool {
         let middle = self.middle();
         self.about * reach < CONVEX
@@ -174,7 +174,7 @@ impl Tree {
         }
     }
 
-    /// The leaf whose middle is nearest, if one reaches within the limit; none for a point that is no number.
+    /// The leaf with the nearest middle, of those that come within the limit; none for a point of NaN.
     pub fn nearest(&self, point: Vec3, limit: f64) -> Option<&Node> {
         let mut best = (f64::INFINITY, None);
         self.visit(point, limit, |leaf, limit| {

@@ -7,7 +7,7 @@ use super::{Error, FieldKind};
 use std::ops::Range;
 use std::path::Path;
 
-/// Unknown words of which a notice is given; a damaged file can have very many.
+/// Most unknown words that get a notice. A damaged file can have very many.
 const MOST_NOTICES: usize = 20;
 
 /// Takes a text apart at blanks and comments.
@@ -166,7 +166,7 @@ fn solution_header(source: &Source, tokens: &mut Tokens, name: &str) -> Result<V
     field_kinds(codes.into_iter()).map_err(|message| source.error(tokens.next, name, message))
 }
 
-/// Comments is followed by a count and as many lines of free text, in which words mean nothing.
+/// The keyword Comments is followed by a count and as many lines of free text, which are skipped.
 fn skip_comments(tokens: &mut Tokens) {
     let lines = tokens.token().and_then(|t| parse_int(&tokens.bytes[t]).ok()).unwrap_or(0);
     tokens.skip_line();

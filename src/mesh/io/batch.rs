@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// How long another run is waited for that renames files in the same folder: that takes microseconds.
+/// How long to wait for another run that renames files in the same folder, which takes it microseconds.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Files that belong together, such as a mesh, its solution and its names.
@@ -24,7 +24,7 @@ pub struct Batch {
     folders: Vec<Staged>,
 }
 
-/// What is written already, and where it goes.
+/// The files that are written already, each with its target.
 struct Staged {
     from: Temporary,
     to: PathBuf,
@@ -34,7 +34,7 @@ struct Staged {
 type Content<'a> = &'a mut dyn FnMut(&mut dyn Write) -> io::Result<()>;
 
 impl Batch {
-    /// Of no files.
+    /// An empty batch.
     pub fn new() -> Self {
         Self::default()
     }
@@ -59,12 +59,13 @@ impl Batch {
         Ok(())
     }
 
-    /// A file of an older result, which would be taken for one of this: it goes before the new ones come.
+    /// Removes a file of an older result, which would be taken for one of this result, before the new files come.
     pub fn remove(&mut self, path: &Path) {
         self.old.push(path.to_owned());
     }
 
-    /// Lets files be added in a folder: where it is not there it is made beside, with those above it, and renamed with the files in it.
+    /// Makes a folder to add files in. Where it does not exist, it is made beside its place, with the folders above it, and renamed together
+    /// with its files.
     ///
     /// # Errors
     /// [`Error::System`] when something else has the name, or it cannot be made.
@@ -81,7 +82,7 @@ impl Batch {
         let folders = std::mem::take(&mut self.folders);
         let all = files.len() + main.len() + folders.len() + self.old.len();
         let last = main.last().or(files.last());
-        // Two runs with the same files take turns, so that all files are of one of them.
+        // Two runs that write the same files take turns, so that all files come from one of them.
         let _turn = last.filter(|_| all > 1).and_then(|staged| turn(folder_of(&staged.to)));
         for path in &self.old {
             match fs::remove_file(path) {
@@ -95,7 +96,7 @@ impl Batch {
         Ok(())
     }
 
-    /// Writes the bytes; what is to be renamed, if anything.
+    /// Writes the bytes. Returns what is to be renamed, if anything.
     fn stage(&self, path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Option<Staged>> {
         let mut write = Some(write);
         let mut content = |to: &mut dyn Write| write.take().map_or(Ok(()), |write| write(to));
@@ -153,7 +154,7 @@ impl Batch {
     }
 }
 
-/// Writes and keeps what is written, which a full disk may refuse only now.
+/// Writes the bytes and syncs them: a full disk may refuse them only then.
 fn fill(file: File, write: Content<'_>) -> io::Result<File> {
     let mut buffered = BufWriter::with_capacity(1 << 18, file);
     write(&mut buffered)?;
@@ -162,7 +163,7 @@ fn fill(file: File, write: Content<'_>) -> io::Result<File> {
     Ok(file)
 }
 
-/// The right to rename files in a folder. Where the system has no such lock, or whoever started us holds it all the time, it goes without.
+/// The right to rename files in a folder. Where the system has no such lock, or another process holds it all the time, we do without.
 fn turn(folder: &Path) -> Option<File> {
     let folder = File::open(folder).ok()?;
     let began = Instant::now();

@@ -109,7 +109,7 @@ fn chain(source: &Source, words: Words) -> Result<Vec<Link>, Error> {
         let Some(next) = words.int_at(source.bytes, at + WORD, words.position) else {
             return Err(source.error(size, &describe(code), CUT));
         };
-        // positions that only grow make the chain end
+        // since positions only grow, the chain ends
         let next = match usize::try_from(next) {
             Ok(0) => return Err(source.error(at, &describe(code), NO_END)),
             Ok(next) if next >= body && next < size => next,

@@ -40,7 +40,7 @@ pub(super) fn of_file(team: Team<'_>, path: &Path) -> Result<Vec<u8>, Error> {
 #[cfg(unix)]
 const PART: usize = 1 << 22;
 
-/// The bytes by many threads; none where that is not worth it or not possible, whatever the reason.
+/// Reads the bytes on many threads; none where that is not worth it, or not possible for whatever reason.
 #[cfg(unix)]
 fn in_parts(team: Team<'_>, path: &Path) -> Option<Vec<u8>> {
     use std::os::unix::fs::FileExt;

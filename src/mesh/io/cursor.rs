@@ -16,7 +16,7 @@ pub(super) trait Cursor<'a> {
     fn raw_real(&mut self) -> Result<f64, String>;
     /// Byte at which the last value begins.
     fn at(&self) -> usize;
-    /// At the first value of a row, counted from 0; none where that cannot be told without the rows before.
+    /// A cursor at the first value of a row, counted from 0; none where its place depends on the rows before.
     fn at_row(source: &Source<'a>, section: &Section, row: usize) -> Option<Self>
     where
         Self: Sized;
@@ -70,7 +70,8 @@ pub(super) fn rows<'a, C: Cursor<'a>>(
 /// Rows of a binary file a task.
 const ROWS: usize = 4 * GRAIN;
 
-/// What `row` makes of each row of a section, as two lists. Where rows have their places all threads read; `none` fills the lists before.
+/// What `row` makes of each row of a section, as two lists. Where the places of rows are known, all threads read; `none` fills the lists
+/// first.
 pub(super) fn columns<'a, C: Cursor<'a>, A: Copy + Send, B: Copy + Send>(
     team: Team<'_>,
     source: &Source<'a>,
@@ -110,7 +111,7 @@ pub(super) fn columns<'a, C: Cursor<'a>, A: Copy + Send, B: Copy + Send>(
 pub(super) struct Fault(Mutex<Option<(usize, usize, String)>>);
 
 impl Fault {
-    /// Calls `row` for these rows of a section whose rows have places, with the number of the row among them, up to one with a fault.
+    /// Calls `row` for these rows of a section in which the places of rows are known, with the number of the row among them, up to a fault.
     pub(super) fn in_rows<'a, C: Cursor<'a>>(
         &self,
         source: &Source<'a>,
@@ -139,7 +140,7 @@ impl Fault {
     }
 }
 
-/// Rows to make room for: what the header says, but no more than the bytes can hold, for headers lie.
+/// How many rows to make room for: what the header says, but no more than the bytes can hold, since a header may be wrong.
 pub(super) fn room(section: &Section) -> usize {
     let (ints, reals) = section.row();
     // the shortest value is a digit and a blank

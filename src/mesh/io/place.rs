@@ -5,10 +5,10 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Links that are followed before they are called a circle, as Linux counts them.
+/// After so many links they are called a circle. Linux has the same bound.
 const MOST_LINKS: usize = 40;
 
-/// Bytes of a name that a temporary name repeats: file systems take 255 in all.
+/// Most bytes of a name that a temporary name repeats. File systems allow 255 in all.
 const MOST_REPEATED: usize = 100;
 
 /// Where the bytes for a path go.
@@ -17,7 +17,7 @@ pub(super) enum Place {
     File { path: PathBuf, before: Option<Metadata> },
     /// A device or a pipe: it is written directly.
     Device,
-    /// `/dev/stdout` that is redirected to a file: replacing that would lose what is printed.
+    /// `/dev/stdout`, redirected to a file. To replace that file would lose what is printed.
     Stdout,
 }
 
@@ -105,7 +105,7 @@ fn is_stdout(_: &Metadata) -> bool {
     false
 }
 
-/// Something new beside its target. It goes with this, unless it has been renamed.
+/// Something new beside its target. It is removed with this, unless it has been renamed.
 pub(super) struct Temporary {
     pub path: PathBuf,
     pub is_renamed: bool,

@@ -1,5 +1,5 @@
 //! The multiscale metric: from fields at the vertices to the metric whose mesh has the least interpolation error in an L^p norm for its
-//! number of vertices (METHOD.md §1; Loseille & Alauzet 2011).
+//! number of vertices (METHOD.md §1.9; Loseille & Alauzet 2011).
 //!
 //! Fields → Hessians ([`Recovery`]) → |H|, averaged over the steps of a sensor → L^p metric of each sensor at the complexity wanted →
 //! their intersection → limits, gradation, and the scale at which the complexity is met with these.

@@ -44,7 +44,7 @@ impl Recovery {
 
     /// The Hessian at the vertices of a mesh, shape (n,), of a field with these values there, shape (n,), in the field's units over length²
     /// (by L2 projection |H| on the boundary); and at how many vertices it is the mean of the neighbours', since the points around do not
-    /// tell it. `rings` are the mesh's.
+    /// determine it. `rings` are those of the mesh.
     ///
     /// # Panics
     /// When there is not one value a vertex.

@@ -1,11 +1,11 @@
 //! The quadratic function that comes nearest to the value at a vertex and the values around it.
 //!
-//! u(x) ≈ a + g·d + ½ dᵀH d with d = x − v, by weighted least squares. The coordinates are d = C y with the second moments Σ ddᵀ = CCᵀ of the
-//! points: whatever affine map the points have gone through, the same y come out, so a mesh stretched a thousand times is as good as
-//! one that is not. A row weighs 1/(|y|² + ε²), ε² a quarter of the mean |y|²: of some weights that were tried once, by the interpolation
-//! error of adapted meshes, equal ones were clearly worse; the others lie within the noise.
-//! The system is solved by modified Gram–Schmidt on the columns with the right-hand side among them, which is as stable as
-//! Householder's reflections (Björck 1967), and all of it is products of columns, eight rows at a time.
+//! u(x) ≈ a + g·d + ½ dᵀH d with d = x − v, by weighted least squares (METHOD.md §1.10). With the second moments Σ ddᵀ = CCᵀ of the points,
+//! d = C y: the coordinates y do not change when the points go through an affine map, so a mesh stretched a thousand times is fitted as
+//! well as one that is not. A row has the weight 1/(|y|² + ε²), ε² a quarter of the mean |y|². (Of some weights that were compared by the
+//! interpolation error of adapted meshes, equal ones were clearly worse; the others lie within the noise.)
+//! The system is solved by modified Gram–Schmidt with the right-hand side as one more column, which is as stable as Householder's
+//! reflections (Björck 1967). All of it is products of columns, eight rows at a time.
 use crate::metric::Sym3;
 use crate::metric::lanes::{LANES, Lanes};
 use multiversion::multiversion;
@@ -16,21 +16,21 @@ const TERMS: usize = 10;
 /// The products of two coordinates, and the squares of these.
 const PRODUCTS: [(usize, [usize; 2]); 3] = [(5, [4, 6]), (7, [4, 9]), (8, [6, 9])];
 
-/// Those that are not quadratic.
+/// The first so many terms are not quadratic.
 const LINEAR: usize = 4;
 
-/// A pivot of the second moments that is less than this share of its term: the points lie in a plane, to the rounding.
+/// When a pivot of the second moments is less than this share of its term, the points lie in a plane, to rounding.
 const FLAT: f64 = 1e-15;
 
 /// A vertex and the points around it, eight a block, and room to work in.
 #[derive(Default)]
 pub struct Quadratic {
-    /// Differences of the coordinates from the vertex, and of the value; and 1, where 0 is no point.
+    /// Differences of the coordinates and the value from those of the vertex; then 1 for a point, 0 for none.
     blocks: Vec<[Lanes; 5]>,
     points: usize,
     /// The columns of the terms and the right-hand side, one after the other, each as long as there are blocks.
     columns: Vec<Lanes>,
-    /// Whether [`Fitted::unexplained`] is asked for: a quarter more work.
+    /// Whether [`Fitted::unexplained`] is computed, which is a quarter more work.
     explains: bool,
 }
 
@@ -39,8 +39,8 @@ pub struct Quadratic {
 pub struct Fitted {
     /// The second derivatives.
     pub hessian: Sym3,
-    /// How well the points tell the terms apart, in [0, 1]: the least share of a term's column that is no combination of those before,
-    /// where a product of two coordinates counts as small as it is beside their squares.
+    /// How well the points determine the terms, in [0, 1]: the least share of a term's column that is no combination of the columns before it.
+    /// A product of two coordinates is measured against their squares.
     pub quality: f64,
     /// The share of the values' variance that the fit leaves unexplained, per degree of freedom (1 - adjusted R²): small where the field is
     /// smooth at the distance of the points, near 1 across a jump; 1 where there are no more points than terms;
@@ -49,12 +49,12 @@ pub struct Fitted {
 }
 
 impl Quadratic {
-    /// One whose fits tell what they leave unexplained, or not.
+    /// One whose fits compute [`Fitted::unexplained`], or not.
     pub fn telling(explains: bool) -> Self {
         Self { explains, ..Self::default() }
     }
 
-    /// Forgets all points, and takes the vertex itself.
+    /// Forgets all points, and adds the vertex itself.
     #[inline]
     pub fn start(&mut self) {
         self.blocks.clear();
@@ -93,7 +93,7 @@ fn fit(blocks: &[[Lanes; 5]], points: usize, columns: &mut [Lanes], explains: bo
     fill(blocks, &to_y, 0.75 / points as f64, columns);
     let (factors, pivots, quality) = orthogonalise(blocks.len(), columns);
     let unexplained = if explains { unexplained(points, blocks.len(), columns, &factors) } else { 0.0 };
-    // Back from the last term; those that are not quadratic are not asked for.
+    // Back substitution from the last term; only the quadratic terms are needed.
     let mut h = [0.0; TERMS];
     for k in (LINEAR..TERMS).rev() {
         let rest: f64 = (k + 1..TERMS).map(|j| factors[k][j] * h[j]).sum();
@@ -118,7 +118,7 @@ fn whitening(blocks: &[[Lanes; 5]]) -> Option<[f64; 6]> {
     let x = yz - l10 * xz;
     let l21 = x / d1;
     let d2 = zz - l20 * xz - l21 * x;
-    // Also where a number is none.
+    // False for NaN too.
     if !(xx > f64::MIN_POSITIVE && d1 > FLAT * yy && d2 > FLAT * zz) {
         return None;
     }
@@ -144,8 +144,8 @@ fn fill(blocks: &[[Lanes; 5]], w: &[f64; 6], soft: f64, columns: &mut [Lanes]) {
     }
 }
 
-/// Makes the columns orthogonal, one after the other. Returns how much of each is taken off those behind (row k: multiples of column k), whether
-/// no column vanished, and the least share that is left of one.
+/// Makes the columns orthogonal, one after the other. Returns the factors (row k: how many times column k was taken off each later one),
+/// whether no column vanished, and the least share that is left of a column.
 #[inline(always)]
 fn orthogonalise(height: usize, columns: &mut [Lanes]) -> ([[f64; TERMS + 1]; TERMS], bool, f64) {
     let mut factors = [[0.0; TERMS + 1]; TERMS];
@@ -153,8 +153,8 @@ fn orthogonalise(height: usize, columns: &mut [Lanes]) -> ([[f64; TERMS + 1]; TE
     for (length, column) in lengths.iter_mut().zip(columns.chunks_exact(height)) {
         *length = product(column, column);
     }
-    // At a corner of the domain, where all points may lie on its three sides, a product is nothing but the rounding of the coordinates:
-    // beside itself that is as good a column as any, so it is held against what Cauchy and Schwarz let it be.
+    // At a corner of the domain all points may lie on its three sides, and a product of coordinates is nothing but their rounding. Measured
+    // against itself it would look like a good column, so it is measured against its bound by Cauchy and Schwarz.
     for (term, [first, second]) in PRODUCTS {
         lengths[term] = lengths[term].max((lengths[first] * lengths[second]).sqrt());
     }
@@ -163,7 +163,7 @@ fn orthogonalise(height: usize, columns: &mut [Lanes]) -> ([[f64; TERMS + 1]; TE
         let (before, behind) = columns.split_at_mut((k + 1) * height);
         let pivot = &before[k * height..];
         let square = product(pivot, pivot);
-        // NaN, from no number at all, stays least.
+        // Once it is NaN it stays NaN.
         let share = square / lengths[k];
         least = if share >= least { least } else { share };
         for (j, column) in behind.chunks_exact_mut(height).enumerate() {

@@ -35,8 +35,8 @@ impl Rings {
         self.corners.row(vertex as usize).iter().map(|&corner| corner as usize / 4)
     }
 
-    /// Whether tetrahedra lie all around a vertex. Their faces opposite to it are its link, a sphere just then: of F triangles it has F + 4
-    /// halves of vertices by Euler's formula, and more where it has a border or is in several pieces.
+    /// Whether tetrahedra lie all around a vertex. Their faces opposite to it are its link, which is a sphere exactly then. By Euler's formula
+    /// a sphere of F triangles has (F + 4)/2 vertices; a link with a border, or in several pieces, has more.
     #[inline]
     pub fn is_inside(&self, vertex: u32) -> bool {
         2 * self.neighbours(vertex).len() == self.corners.row(vertex as usize).len() + 4

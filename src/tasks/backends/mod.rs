@@ -1,4 +1,4 @@
-//! Who runs tasks: one file each, behind one trait.
+//! The back-ends, which run the tasks: one file each, behind one trait.
 #[cfg(any(feature = "tbb", feature = "openmp"))]
 mod foreign;
 #[cfg(feature = "openmp")]

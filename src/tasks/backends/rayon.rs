@@ -1,4 +1,4 @@
-//! The threads of rayon. Only its `spawn` is used: its ways to wait would run whatever task comes, on top of one that waits.
+//! The threads of rayon. Only its `spawn` is used: when rayon itself waits in a task, it runs any other task on top of it.
 use super::Engine;
 use crate::tasks::core::Core;
 use crate::tasks::group::Group;

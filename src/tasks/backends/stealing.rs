@@ -1,5 +1,5 @@
-//! Our own threads, each with a queue of tasks: it takes its own newest, or else another's oldest. Who opens a loop or scope is thread 0
-//! for its length. Idle threads look for work some microseconds more and then sleep.
+//! Our own threads, each with a queue of tasks. A thread takes the newest task of its own queue, else the oldest of another's. The thread
+//! that opens a loop or scope is thread 0 while that lasts. Idle threads look for work for some microseconds, then they sleep.
 use super::Engine;
 use crate::tasks::core::Core;
 use crate::tasks::group::Group;

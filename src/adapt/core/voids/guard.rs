@@ -1,4 +1,4 @@
-//! A change of the surface is held against what is near it across a void.
+//! Tests a change of the surface against the triangles near it across a void.
 use super::Voids;
 use super::triangles::{Key, Triangle};
 use crate::adapt::core::access::Access;
@@ -36,7 +36,7 @@ impl SurfaceChange {
         self.come.push(Triangle { key: key([a, b, c]), corners: [at(a), at(c), at(b)] });
     }
 
-    /// Forgets what goes and comes again where it was.
+    /// Forgets triangles that go and come again at the same place.
     fn drop_common(&mut self) {
         let Self { gone, come, moving } = self;
         let moves = |key: &Key| moving.is_some_and(|v| key.contains(&v));
@@ -55,13 +55,13 @@ fn key(mut face: [VertexId; 3]) -> Key {
     face
 }
 
-/// Whether a change has to be noted once it is made.
+/// Whether a change has to be noted when it is made.
 #[must_use]
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Guarded {
-    /// It is far from all narrow voids.
+    /// No: it is far from all narrow voids.
     No,
-    /// It is in one.
+    /// Yes: it is in one.
     Yes,
 }
 

@@ -1,12 +1,12 @@
 //! Narrow voids: places where two parts of the boundary face each other, nearer than they may come to move.
 //!
-//! Inside, positive tetrahedra keep the mesh from overlapping itself. Across a void nothing does: the chords of its walls rise when their edges get
-//! longer, and one wall would pass through the other. So where walls are near ([`near`] finds these places between sweeps), each change of
-//! the surface is held against the triangles that are there ([`guard`]), by exact predicates, and refused where it would bring two of them
-//! through each other. Elsewhere nothing is asked, and without narrow voids nothing at all.
+//! Inside, positive tetrahedra keep the mesh from overlapping itself. Across a void nothing does: the chords of its walls rise when their
+//! edges get longer, and one wall would pass through the other. So where walls are near ([`near`] finds these places between sweeps), each
+//! change of the surface is tested against the triangles there ([`guard`]), by exact predicates, and refused where it would bring two of
+//! them through each other. Elsewhere, and where there are no narrow voids, nothing is tested.
 //!
-//! What is near another thing across a void cannot be claimed by vertices, so such changes are made by one thread alone: beside others
-//! they are a conflict, and wait until the last of a sweep, which one thread does. So the mesh does not depend on the threads.
+//! What lies across a void cannot be claimed by vertices, so one thread alone makes such changes. Beside other threads they are a conflict,
+//! and wait for the end of the sweep, which one thread does. So the mesh does not depend on the threads.
 mod guard;
 mod near;
 #[cfg(test)]

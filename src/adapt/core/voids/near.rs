@@ -14,10 +14,10 @@ use crate::tasks::{GRAIN, Team};
 /// Triangles of which another's neighbours are looked for, a task.
 const FEW: usize = 256;
 
-/// Edges get no longer than by this factor until the voids are looked for again.
+/// Until voids are looked for again, edges get longer by at most this factor.
 const GROWTH: f64 = 2.5;
 
-/// Chords rise no higher than so many times what the bend of the surface at their ends tells.
+/// Chords rise at most so many times as high as the bend of the surface at their ends tells.
 const SAFETY: f64 = 1.5;
 
 /// Part of a reach that counts across the normal: model edges move within their faces.

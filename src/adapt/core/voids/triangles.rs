@@ -1,4 +1,4 @@
-//! Triangles that come and go, found by where they are: a grid for each size, a power of two, and in it the triangles of that size.
+//! Triangles that come and go, found by their place: for each size, a power of two, there is a grid with the triangles of that size.
 use super::{bounds, overlap};
 use crate::adapt::core::ids::VertexId;
 use crate::mesh::box_tree::Bounds;

@@ -1,4 +1,4 @@
-//! What makes one triangulation of a cavity better than another: the criteria of local reconnection (METHOD.md §2).
+//! What makes one triangulation of a cavity better than another: the criteria of local reconnection (METHOD.md §2.3).
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ids::{TetId, VertexId};
 use crate::adapt::core::worker::Worker;

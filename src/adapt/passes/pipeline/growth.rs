@@ -1,9 +1,9 @@
-//! A mesh may have so many vertices as its metric can account for, and some beside; then it stops growing.
+//! A bound on growth: a mesh with more vertices than its metric accounts for gets no more.
 //!
-//! A unit mesh has about two vertices a unit of complexity (METHOD.md §1), near walls three. Some metrics can be met by no mesh, and
-//! would let it grow until memory ends: on a curved wall cells so flat that the wall rises by many of them within one edge (edges are cut
-//! until the wall is flat between their ends, whatever their length, and each cut asks for more); sizes that differ by many orders
-//! within a cell, or that are many times the domain in some directions.
+//! A unit mesh has about two vertices a unit of complexity (METHOD.md §1.5), near walls three. No mesh meets some metrics, and
+//! it would grow until memory ends. On a curved wall a metric may ask for cells so flat that the wall rises by many of them within one edge:
+//! edges are cut until the wall is flat between their ends, whatever their length, and each cut asks for more. Sizes may differ by many
+//! orders within a cell, or be many times the domain in some directions.
 use super::Pipeline;
 use crate::adapt::core::ids::{FACE, TetId, VertexId};
 use crate::mesh::vector::{area2, norm, volume6};
@@ -13,14 +13,14 @@ use crate::tasks::GRAIN;
 /// No mesh of a metric that can be met has so many vertices a unit of complexity.
 const MOST_A_COMPLEXITY: f64 = 8.0;
 
-/// Vertices a unit of area, in the two greatest sizes: a domain thinner than its cells has more surface than complexity. A surface
-/// mesh of unit edges has 1.15.
+/// Nor so many a unit of area in the two greatest sizes, which counts where a domain is thinner than its cells. A surface mesh of unit
+/// edges has 1.15.
 const MOST_AN_AREA: f64 = 4.0;
 
-/// Vertices that a mesh may have whatever its metric, beside twice those of the input.
+/// So many vertices are allowed whatever the metric, and twice those of the input.
 const ALWAYS_ALLOWED: f64 = 1_000.0;
 
-/// And where the user bounds how far the surface strays from the model: how many vertices that takes, no metric tells.
+/// So many more where the user bounds how far the surface deviates from the model: no metric tells how many that takes.
 const FOR_THE_SURFACE: f64 = 20_000.0;
 
 impl Pipeline<'_, '_> {
@@ -37,7 +37,7 @@ impl Pipeline<'_, '_> {
         })
     }
 
-    /// Complexity of the metric between the vertices of the mesh too, which where it is coarse may not know of a layer.
+    /// Complexity of the source within the mesh, between its vertices too: those of a coarse mesh may miss a layer.
     fn full_complexity(&self) -> f64 {
         let store = &self.context.store;
         let corners = |t: usize| {
@@ -47,7 +47,7 @@ impl Pipeline<'_, '_> {
         self.context.source.complexity_within(self.team(), store.tet_bound(), corners)
     }
 
-    /// Area of the boundary and of what lies between regions, in the two greatest sizes: layers across it count nothing.
+    /// Area of the boundary and of interfaces in the two greatest sizes, so that the size across does not count.
     fn area(&self) -> f64 {
         let store = &self.context.store;
         self.team().sum(GRAIN, store.tet_bound(), |range| {
@@ -85,16 +85,16 @@ impl Pipeline<'_, '_> {
         !self.overgrown
     }
 
-    /// Of the items of a sweep that each add a vertex as many as may be, the first ones: of a metric that can be met all.
+    /// Of items that each add a vertex, keeps the first ones, as many as are allowed. Where a metric can be met that is all of them.
     pub(super) fn no_more_than_allowed<T>(&self, items: &mut Vec<T>) {
         let live = self.live();
-        // What is refused is an item too, so that twice as many leave room enough.
+        // Refused items count too, so twice as many are allowed here.
         if !self.is_accounted_for((live + items.len()) / 2) {
             items.truncate(((2.0 * self.allowed()) as usize).saturating_sub(live));
         }
     }
 
-    /// Whether input and metric account for so many vertices: what is quickly known is asked first.
+    /// Whether input and metric account for so many vertices. The cheap tests come first.
     fn is_accounted_for(&self, vertices: usize) -> bool {
         let vertices = vertices as f64;
         let always = self.always_allowed();

@@ -1,14 +1,14 @@
-//! When narrow voids are looked for: before the mesh has changed so much that edges may be longer than was thought the last time.
+//! When narrow voids are looked for: before the mesh has changed so much that edges may be longer than was assumed the last time.
 use super::Pipeline;
 use crate::adapt::core::voids::Voids;
 
-/// Passes in which much changes: voids are looked for anew in each.
+/// In so many first passes much changes, and voids are looked for in each.
 const FIRST_PASSES: usize = 4;
 
-/// Changes, in parts of the vertices, after which voids are looked for anew.
+/// Voids are looked for again after changes to this share of the vertices.
 const MUCH: f64 = 0.3;
 
-/// The same where there are narrow ones: what is in them has to be known well.
+/// The same where there are narrow voids, which have to be known well.
 const SOME: f64 = 0.05;
 
 /// What is known of the voids.
