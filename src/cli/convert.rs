@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut outputs = Outputs::new();
     let lost = outputs.dataset(Team::new(&pool, Plan::default()), &target, &data, Options { text: *text })?;
     outputs.commit()?;
-    notices.iter().for_each(|notice| crate::cli::note(notice));
+    notices.iter().for_each(crate::cli::note);
     lost.iter().for_each(|notice| crate::cli::note(format_args!("{}: {notice}", output.display())));
     super::print(describe(&data, format).text())?;
     Ok(ExitCode::SUCCESS)

@@ -229,7 +229,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         let ThreadContext { state, scratch } = thread;
         let own = std::mem::take(&mut state.unprojected);
         std::mem::swap(&mut state.id_pool, &mut part.id_pool);
-        let mut worker = Worker::new(self.context, &mut **state, Owned::new(index));
+        let mut worker = Worker::new(self.context, state, Owned::new(index));
         for &number in numbers {
             let result = self.operation.attempt(&mut worker, scratch, self.item(number));
             part.counts.record(result);

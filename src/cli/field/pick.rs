@@ -48,7 +48,7 @@ impl std::str::FromStr for Take {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let target = Files::new().reads([&arguments.input]).writes(&arguments.output, "-o", SOLUTION)?;
     let read = read_solution(&arguments.input)?;
-    read.notices.iter().for_each(|notice| crate::cli::note(notice));
+    read.notices.iter().for_each(crate::cli::note);
     let solution = read.content;
     // The values of a vertex by field.
     let columns: Vec<(usize, usize)> = solution
