@@ -86,7 +86,7 @@ impl Pipeline<'_, '_> {
     }
 
     /// Of the items of a sweep that each add a vertex as many as may be, the first ones: of a metric that can be met all.
-    pub(super) fn no_more_than_allowed<T>(&self, items: &mut Vec<T>) {
+    pub(super) fn no_more_than_allowed<T>(&mut self, items: &mut Vec<T>) {
         let live = self.live();
         // What is refused is an item too, so that twice as many leave room enough.
         if !self.is_accounted_for((live + items.len()) / 2) {
@@ -95,10 +95,17 @@ impl Pipeline<'_, '_> {
     }
 
     /// Whether input and metric account for so many vertices: what is quickly known is asked first.
-    fn is_accounted_for(&self, vertices: usize) -> bool {
-        let vertices = vertices as f64;
+    fn is_accounted_for(&mut self, vertices: usize) -> bool {
         let always = self.always_allowed();
-        vertices <= always || vertices <= always + MOST_A_COMPLEXITY * self.complexity() || vertices <= self.allowed()
+        let most = |asked: f64| always + MOST_A_COMPLEXITY * asked;
+        let vertices = vertices as f64;
+        if vertices > most(self.asked) {
+            self.asked = self.asked.max(self.complexity());
+        }
+        if vertices > most(self.asked) {
+            self.asked = self.asked.max(self.full_complexity());
+        }
+        vertices <= most(self.asked) || vertices <= self.allowed()
     }
 
     /// Vertices that the mesh may have whatever its metric.
@@ -107,9 +114,9 @@ impl Pipeline<'_, '_> {
         ALWAYS_ALLOWED + for_the_surface + 2.0 * self.input as f64
     }
 
-    /// Vertices that the mesh may have.
+    /// Vertices that the mesh may have, by all that is known of the metric.
     fn allowed(&self) -> f64 {
-        self.always_allowed() + MOST_A_COMPLEXITY * self.full_complexity() + MOST_AN_AREA * self.area()
+        self.always_allowed() + MOST_A_COMPLEXITY * self.asked + MOST_AN_AREA * self.area()
     }
 }
 
