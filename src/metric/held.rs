@@ -14,8 +14,11 @@ pub const GREATEST_RATIO: f64 = 1e7;
 /// ln of the ratio of eigenvalues that belongs to [`GREATEST_RATIO`].
 const SPREAD: f64 = 32.236_191_301_916_64;
 
-/// √det M may differ from that of ln M by a factor in this range.
-const FACTOR: RangeInclusive<f64> = 0.5..=2.0;
+/// Of the spread of a logarithm that was cut, as a part.
+const ROUNDING: f64 = 1e-9;
+
+/// A pivot is known where it is no less than this part of the term that it is taken from: a thousand times the rounding.
+const KNOWN: f64 = 1e-13;
 
 /// Eigenvalues of ln M up to this belong to sizes within [`SIZES`].
 const SURELY: f64 = 460.0;
@@ -47,15 +50,24 @@ impl Sym3 {
         2.0 * s.contract(&s) <= SPREAD * SPREAD
     }
 
-    /// M = exp L, if six doubles hold it: its sizes are within [`SIZES`], it is positive definite, and it has the determinant of exp L.
+    /// M = exp L of this L, if six doubles hold it: sizes within [`SIZES`], that are no more than [`GREATEST_RATIO`] apart, or lie along the
+    /// axes so nearly that no figures are lost.
     pub fn held_exp(&self) -> Option<Self> {
         if !self.sizes_of_log().iter().all(|h| SIZES.contains(h)) {
             return None;
         }
         let m = self.exp();
-        let is_held =
-            self.is_narrow_log() || m.is_held() && FACTOR.contains(&(m.sqrt_det() / (0.5 * self.trace()).exp()));
+        let known = |(pivot, axis): (f64, usize)| pivot.is_normal() && pivot >= KNOWN * m.at(axis, axis);
+        let is_held = self.is_narrow_log()
+            || self.spread_of_log() <= SPREAD * (1.0 + ROUNDING)
+            || m.pivots().into_iter().zip(0..).all(known);
         is_held.then_some(m)
+    }
+
+    /// Difference of the greatest and the least eigenvalue.
+    fn spread_of_log(&self) -> f64 {
+        let [least, _, greatest] = self.eigen().values;
+        greatest - least
     }
 
     /// Whether a tensor is positive definite in doubles, by its pivots.
@@ -100,7 +112,7 @@ mod tests {
             let log = Sym3::from_eigen(&super::super::Eigen { values: logs, ..eigen });
             let held = log.held_log();
             let exp = held.held_exp();
-            prop_assert!(exp.is_some_and(|m| m.is_spd()), "{:?}", exp);
+            prop_assert!(exp.is_some_and(|m| m.is_spd() && m.is_held()), "{:?}", exp);
             if logs[2] - logs[0] < 30.0 {
                 prop_assert_eq!(held, log);
             }

@@ -44,7 +44,7 @@ fn simple() -> Vec<Kind> {
     let corners: Vec<Vec3> = cube(1).vertices;
     let five = vec![[0, 4, 2, 1], [6, 2, 4, 7], [5, 4, 1, 7], [3, 1, 2, 7], [1, 2, 4, 7]];
     vec![
-        Kind::new("none", TetMesh::default()).refused("no tetrahedra"),
+        Kind::new("none", TetMesh { tets: Elements::default(), ..cube(1) }).refused("no tetrahedra"),
         Kind::new(
             "one tetrahedron",
             oriented(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], vec![[0, 1, 2, 3]]),

@@ -51,6 +51,8 @@ pub struct Limits {
     pub chord: f64,
     /// Most tetrahedra in an enlarged cavity.
     pub cavity: usize,
+    /// A vertex of more tetrahedra stays where it is: to try it on each of its neighbours would take the square of their number.
+    pub ball: usize,
 }
 
 impl Default for Limits {
@@ -73,6 +75,7 @@ impl Default for Limits {
             cos_variation: 0.94,
             chord: f64::INFINITY,
             cavity: 96,
+            ball: usize::MAX,
         }
     }
 }

@@ -54,7 +54,10 @@ const REPAIR_BELOW: f64 = 0.5;
 /// at some thousand flips. Where a metric can be met, fewer tetrahedra are below the limit; where it cannot, repair would not end.
 const REPAIR_SHARE: f64 = 0.25;
 
-/// Repair may try so many tetrahedra however small the mesh is.
+/// Vertices of more tetrahedra than this the end-game does not take out: each of the tetrahedra would try it again.
+const REPAIR_BALL: usize = 256;
+
+/// Tetrahedra that the end-game tries however small the mesh.
 const REPAIR_FEW: f64 = 500.0;
 
 /// The store is renumbered when it has grown by this factor.
@@ -118,7 +121,9 @@ pub struct Pipeline<'c, 'm> {
     input: usize,
     /// Whether the mesh has more vertices than its metric accounts for, so that nothing is inserted any more.
     pub overgrown: bool,
-    /// Tetrahedra that repair has tried.
+    /// Complexity that the metric is known to ask for.
+    asked: f64,
+    /// Tetrahedra that the end-game tried.
     repaired: usize,
     /// Tetrahedra that it left untried, since there were too many.
     pub unrepaired: usize,
@@ -154,6 +159,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             pass: 0,
             input,
             overgrown: false,
+            asked: 0.0,
             repaired: 0,
             unrepaired: 0,
             ordered,
@@ -274,6 +280,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             shortest_new: 0.0,
             insert_floor: 1.0,
             insert_loss: GAIN,
+            ball: REPAIR_BALL,
             ..shape_limits()
         });
         for _ in 0..3 {
@@ -308,6 +315,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
         self.context.limits.collapse_floor = 0.0;
         self.context.limits.longest_new = f64::INFINITY;
+        self.context.limits.ball = usize::MAX;
         (self.context.limits.cos_deviation, self.context.limits.cos_variation) = (-1.0, -1.0);
         let items = std::mem::take(&mut self.unprojected);
         self.sweep(Kind::Project, &RemoveUnprojected, &items);

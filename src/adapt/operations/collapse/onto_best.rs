@@ -26,6 +26,9 @@ impl<A: Access> Worker<'_, '_, A> {
         ball: &Ball,
         floor: f64,
     ) -> Result<(), Refusal> {
+        if ball.tets.len() > self.context.limits.ball {
+            return Err(Refusal::Topology);
+        }
         let mut best: Result<(f64, VertexId), Refusal> = Err(Refusal::Shape);
         for &w in &ball.link {
             let better = best.map_or(floor, |(quality, _)| quality);

@@ -85,8 +85,8 @@ impl Pipeline<'_, '_> {
         !self.overgrown
     }
 
-    /// Of items that each add a vertex, keeps the first ones, as many as are allowed. Where a metric can be met that is all of them.
-    pub(super) fn no_more_than_allowed<T>(&self, items: &mut Vec<T>) {
+    /// Of the items of a sweep that each add a vertex as many as may be, the first ones: of a metric that can be met all.
+    pub(super) fn no_more_than_allowed<T>(&mut self, items: &mut Vec<T>) {
         let live = self.live();
         // Refused items count too, so twice as many are allowed here.
         if !self.is_accounted_for((live + items.len()) / 2) {
@@ -94,11 +94,18 @@ impl Pipeline<'_, '_> {
         }
     }
 
-    /// Whether input and metric account for so many vertices. The cheap tests come first.
-    fn is_accounted_for(&self, vertices: usize) -> bool {
-        let vertices = vertices as f64;
+    /// Whether input and metric account for so many vertices: what is quickly known is asked first.
+    fn is_accounted_for(&mut self, vertices: usize) -> bool {
         let always = self.always_allowed();
-        vertices <= always || vertices <= always + MOST_A_COMPLEXITY * self.complexity() || vertices <= self.allowed()
+        let most = |asked: f64| always + MOST_A_COMPLEXITY * asked;
+        let vertices = vertices as f64;
+        if vertices > most(self.asked) {
+            self.asked = self.asked.max(self.complexity());
+        }
+        if vertices > most(self.asked) {
+            self.asked = self.asked.max(self.full_complexity());
+        }
+        vertices <= most(self.asked) || vertices <= self.allowed()
     }
 
     /// Vertices that the mesh may have whatever its metric.
@@ -107,9 +114,9 @@ impl Pipeline<'_, '_> {
         ALWAYS_ALLOWED + for_the_surface + 2.0 * self.input as f64
     }
 
-    /// Vertices that the mesh may have.
+    /// Vertices that the mesh may have, by all that is known of the metric.
     fn allowed(&self) -> f64 {
-        self.always_allowed() + MOST_A_COMPLEXITY * self.full_complexity() + MOST_AN_AREA * self.area()
+        self.always_allowed() + MOST_A_COMPLEXITY * self.asked + MOST_AN_AREA * self.area()
     }
 }
 
