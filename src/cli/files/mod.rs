@@ -141,7 +141,7 @@ impl Files {
         let Some(identity) = Identity::of_output(path) else { return Ok(()) };
         let name = path.display();
         if let Some(input) = self.read.iter().find(|known| known.identity == identity) {
-            let also = if input.path == path {
+            let also = if input.path.as_os_str() == path.as_os_str() {
                 String::new()
             } else {
                 format!(" ({} is the same file)", input.path.display())
@@ -150,7 +150,8 @@ impl Files {
         }
         if let Some(other) = self.written.iter().find(|known| known.identity == identity) {
             let (there, before) = (other.path.display(), &other.by);
-            let also = if other.path == path { String::new() } else { format!(", which is {there},") };
+            let is_same = other.path.as_os_str() == path.as_os_str();
+            let also = if is_same { String::new() } else { format!(", which is {there},") };
             return Err(format!("{name}: {by} and {before} would write the same file{also}; give {by} another name"));
         }
         self.written.push(Known { path: path.to_owned(), by: by.to_owned(), identity });
