@@ -39,7 +39,7 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 13] = [
+    const SOURCES: [&str; 14] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
         "cpp/connect.cpp",
@@ -53,6 +53,7 @@ mod occt {
         "cpp/write.cpp",
         "cpp/save.cpp",
         "cpp/check.cpp",
+        "cpp/memory.cpp",
     ];
 
     /// Toolkits that the bridge calls, callers first.

@@ -205,6 +205,8 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
   Labels labels;
   try {
     shape = format == 0 ? read_step(path, labels) : format == 1 ? read_iges(path) : read_brep(path);
+  } catch (const Standard_OutOfMemory&) {
+    throw; // nothing is wrong with the file
   } catch (const Standard_Failure& failure) {
     const std::string reason = failure.GetMessageString();
     throw std::runtime_error("OpenCASCADE stopped reading it (" + reason +

@@ -10,6 +10,7 @@
 #include <BRepTopAdaptor_FClass2d.hxx>
 #include <Geom2d_Curve.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Shape.hxx>
 
@@ -17,17 +18,30 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 #include <unordered_map>
 #include <vector>
+
+namespace geo_adapt {
+/// OpenCASCADE was refused memory, which it does not ask C++ for: ends the program where there is none left.
+void memory_ended();
+} // namespace geo_adapt
 
 // cxx catches std::exception only; in OCCT 7.6 Standard_Failure is none, and would end the process.
 namespace rust::behavior {
 template <typename Try, typename Fail>
 static void trycatch(Try&& attempt, Fail&& fail) noexcept
 {
+  // Where memory has ended the program's handler does not come back (memory.cpp); else one request was beyond all bounds.
+  const char* beyond = "it asks for more memory than there is: it is damaged, or too large for this machine";
   try {
     attempt();
+  } catch (const Standard_OutOfMemory&) {
+    geo_adapt::memory_ended();
+    fail(beyond);
+  } catch (const std::bad_alloc&) {
+    fail(beyond);
   } catch (const Standard_Failure& failure) {
     const char* text = failure.GetMessageString();
     fail(text != nullptr && *text != '\0' ? text : failure.DynamicType()->Name());

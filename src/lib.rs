@@ -90,6 +90,9 @@ pub mod memory;
 pub mod mesh;
 #[doc(hidden)]
 pub mod metric;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod process;
 #[doc(hidden)]
 pub mod sizing;
 #[doc(hidden)]

@@ -471,7 +471,7 @@ fn a_mesher_that_crashes_hangs_or_writes_rubbish_is_told_in_one_error() {
     };
     let message = with("echo 'Error : no elements in volume 1'; exit 1", &[]);
     assert!(message.contains("Error : no elements in volume 1") && message.contains("out.log"), "{message}");
-    assert!(with("kill -KILL $$", &[]).contains("killed or crashed (signal 9)"));
+    assert!(with("kill -KILL $$", &[]).contains("was killed (signal 9)"));
     assert!(with("exec sleep 60", &["--time-limit", "0.1"]).contains("--time-limit"));
     assert!(with("exit 0", &[]).contains("it wrote no mesh"));
     let rubbish = "while [ \"$1\" != -o ]; do shift; done; echo rubbish > \"$2\"";

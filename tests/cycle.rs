@@ -85,6 +85,12 @@ fn files(folder: &Path, each: &mut impl FnMut(&Path)) {
     }
 }
 
+/// What a file says up to its first space: of a step's `pid` the number of the process.
+fn first_word(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).unwrap();
+    text.split(' ').next().unwrap().to_owned()
+}
+
 /// The moment of the last change of each done.json.
 fn finished(place: &Place) -> BTreeMap<PathBuf, std::time::SystemTime> {
     let mut found = BTreeMap::new();
@@ -148,7 +154,7 @@ fn a_loop_killed_at_twenty_moments_ends_with_the_same_bytes() {
         if kill % 2 == 1 {
             files(&killed.path("out"), &mut |path| {
                 if path.ends_with("pid") {
-                    let line = format!("kill -s KILL -- -{}", std::fs::read_to_string(path).unwrap());
+                    let line = format!("kill -s KILL -- -{}", first_word(path));
                     let _ = Command::new("sh").args(["-c", &line]).stderr(Stdio::null()).status();
                 }
             });
@@ -185,7 +191,7 @@ fn what_a_killed_run_left_working_is_ended() {
     assert!(place.refusal(&[]).contains("another run of geo-adapt cycle works in this folder"));
     child.kill().unwrap();
     child.wait().unwrap();
-    let left = std::fs::read_to_string(place.path("out/cycle-01/solve/pid")).unwrap();
+    let left = first_word(&place.path("out/cycle-01/solve/pid"));
     let alive = || {
         let state = std::fs::read_to_string(format!("/proc/{left}/stat")).unwrap_or_default();
         state.rsplit(')').next().is_some_and(|rest| !rest.trim_start().starts_with('Z') && !rest.is_empty())
@@ -463,4 +469,137 @@ pictures = false
     for (p, u) in mesh.vertices.iter().zip(last.fields[0].values.chunks(3)) {
         assert!((u[1] - p[1]).abs() < 1e-6 && (u[2] - 1.0).abs() < 1e-6, "{p:?} {u:?}");
     }
+}
+
+#[test]
+fn a_loop_of_another_version_is_not_gone_on_with() {
+    let place = Place::new(&ANALYTIC.replace("max_complexity = 400", "cycles = 1"));
+    place.run(&["--quiet"]);
+    let (state, then) = (place.path("out/loop.json"), finished(&place));
+    let text = std::fs::read_to_string(&state).unwrap();
+    let own = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
+    assert!(text.contains(&own), "{text}");
+    std::fs::write(&state, text.replace(&own, "\"version\": \"0.0.7\"")).unwrap();
+    let refused = place.refusal(&[]);
+    assert!(refused.contains("begun by geo-adapt 0.0.7") && refused.contains(env!("CARGO_PKG_VERSION")), "{refused}");
+    assert!(refused.contains("--restart") && finished(&place) == then, "{refused}");
+    // One that says what this version cannot read is told by its version too.
+    std::fs::write(&state, "{\"version\": \"9.0\", \"loops\": []}").unwrap();
+    assert!(place.refusal(&[]).contains("begun by geo-adapt 9.0"));
+    place.run(&["--quiet", "--restart"]);
+}
+
+#[test]
+fn what_follows_from_an_unreadable_step_is_done_again() {
+    let place = Place::new(&ANALYTIC.replace("max_complexity = 400", "cycles = 2"));
+    place.run(&["--quiet"]);
+    let (then, products) = (finished(&place), place.products());
+    std::fs::write(place.path("out/cycle-01/metric/done.json"), "{ \"seconds\": ").unwrap();
+    let run = place.command(&[]).output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    assert!(stderr(&run).contains("cycle-01/metric/done.json: cannot be read"), "{}", stderr(&run));
+    let now = finished(&place);
+    assert!(now.keys().eq(then.keys()), "{now:?} {then:?}");
+    for (path, time) in &then {
+        let stays =
+            ["start/", "cycle-01/solve/", "cycle-01/picture/"].iter().any(|step| path.to_string_lossy().contains(step));
+        assert_eq!(now[path] == *time, stays, "{}", path.display());
+    }
+    assert!(place.products() == products);
+}
+
+#[test]
+fn an_input_that_was_changed_in_place_is_told() {
+    let place =
+        Place::new(&ANALYTIC.replace("cube = 3", "file = 'first.meshb'").replace("max_complexity = 400", "cycles = 1"));
+    let write = |cells| {
+        geo_adapt::mesh::io::write_mesh(&place.path("first.meshb"), &geo_adapt::mesh::samples::cube(cells)).unwrap()
+    };
+    write(3);
+    place.run(&["--quiet"]);
+    let then = finished(&place);
+    write(2);
+    let refused = place.refusal(&[]);
+    assert!(refused.contains("first.meshb has changed") && refused.contains("--restart"), "{refused}");
+    assert_eq!(finished(&place), then);
+    // The names of its references are read too.
+    write(3);
+    place.write("first.names.json", "{\"triangles\": {\"1\": {\"name\": \"wall\"}}}");
+    assert!(place.refusal(&[]).contains("first.names.json was not there"));
+    std::fs::remove_file(place.path("first.names.json")).unwrap();
+    place.run(&["--quiet"]);
+    assert_eq!(finished(&place), then);
+    write(2);
+    place.run(&["--quiet", "--restart"]);
+    assert_eq!(place.report()["cycles"][0]["vertices"], 27);
+}
+
+#[test]
+fn files_that_a_killed_loop_was_writing_go_with_the_next_run() {
+    let place = Place::new(&ANALYTIC.replace("max_complexity = 400", "cycles = 1"));
+    place.run(&["--quiet"]);
+    let left = ["out/.report.html.4711-0.tmp", "out/.report.json.4711-1.tmp", "out/.loop.json.1-0.tmp"];
+    left.iter().for_each(|name| place.write(name, "half"));
+    let others = ["out/.notes.tmp", "out/.report.html"];
+    others.iter().for_each(|name| place.write(name, "mine"));
+    place.run(&["--quiet"]);
+    assert!(left.iter().all(|name| !place.path(name).exists()));
+    assert!(others.iter().all(|name| place.path(name).exists()));
+}
+
+#[test]
+fn braces_in_the_name_of_a_folder_are_no_template() {
+    let config = "[mesh]\ncube = 1\n[solver.command]\nrun = 'cp {config}/u.sol {solution_out}; echo ${{HOME:-}}'\nsolution_out = 'u.sol'\n\
+        [metric]\n[schedule]\ncomplexity = 10\ncycles = 1\n[transfer]\nmethod = 'none'\n[output]\nfolder = 'out'\npictures = false\n";
+    let place = Place::new("");
+    let folder = place.path("a}}b{{title}}");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(folder.join("loop.toml"), config).unwrap();
+    let values: String = (0..8).map(|v| format!("{}\n", v * v)).collect();
+    std::fs::write(
+        folder.join("u.sol"),
+        format!("MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n8\n1 1\n{values}End\n"),
+    )
+    .unwrap();
+    // The second solve has another mesh: what matters is how far it comes.
+    let run = program().arg("cycle").arg(folder.join("loop.toml")).output().unwrap();
+    assert!(folder.join("out/cycle-01/adapt/done.json").is_file(), "{}", stderr(&run));
+    let page = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
+    assert!(page.contains("<title>"), "{page}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_number_of_a_leftover_is_no_licence_to_kill_and_a_wait_is_told() {
+    use std::os::unix::process::CommandExt;
+    let place = Place::new(
+        "[mesh]\ncube = 1\n[solver.command]\nrun = 'exit 5'\n[metric]\n[schedule]\ncomplexity = 10\ncycles = 1\n[output]\nfolder = 'out'\n",
+    );
+    assert!(place.refusal(&[]).contains("exit code 5"));
+    // A process that has the number of a leftover by chance: it was started at another time.
+    let mut innocent = Command::new("sleep").arg("600").process_group(0).spawn().unwrap();
+    for text in [innocent.id().to_string(), format!("{} 1 of-another-start", innocent.id())] {
+        place.write("out/cycle-01/solve/pid", &text);
+        // And somebody who holds the lock: this test.
+        let lock = std::fs::File::open(place.path("out/cycle-01/solve/log.txt")).unwrap();
+        lock.lock().unwrap();
+        let said = place.path("said");
+        let mut child =
+            place.command(&[]).stdout(Stdio::null()).stderr(std::fs::File::create(&said).unwrap()).spawn().unwrap();
+        let began = Instant::now();
+        while !std::fs::read_to_string(&said).unwrap().contains("cycle-01/solve: waits for process") {
+            assert!(
+                began.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none(),
+                "it does not wait, or says nothing"
+            );
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        let told = std::fs::read_to_string(&said).unwrap();
+        assert!(told.contains(&format!("process {}", std::process::id())) && told.contains("log.txt"), "{told}");
+        assert!(innocent.try_wait().unwrap().is_none(), "somebody else's process was killed");
+        drop(lock);
+        assert_eq!(child.wait().unwrap().code(), Some(2));
+    }
+    innocent.kill().unwrap();
+    innocent.wait().unwrap();
 }

@@ -11,6 +11,9 @@ use geo_adapt::mesh::samples::cube;
 use std::path::PathBuf;
 use std::process::Output;
 
+/// Nobody ends these solves.
+static NEVER: std::sync::atomic::AtomicBool = std::sync::atomic::AtomicBool::new(false);
+
 /// A folder with a configuration, run on the unit cube. Its sides are 1 to 6: the least and the greatest x, y, z, or otherwise.
 struct Place {
     folder: tempfile::TempDir,
@@ -121,7 +124,7 @@ fn solve(place: &Place, surfaces: &str, program: &str, before: Option<&Solved>) 
     let calls = config.prepare(&job).unwrap();
     assert_eq!(calls[0].words[1..], ["openfoam".to_owned(), folder.join("case").to_string_lossy().into_owned()]);
     let mut log = Vec::new();
-    drive(&folder.join("case"), &mut |line| log.push(line.to_owned())).unwrap();
+    drive(&folder.join("case"), &NEVER, &mut |line| log.push(line.to_owned())).unwrap();
     (config.collect(&job).unwrap(), log)
 }
 

@@ -1,11 +1,13 @@
 //! The command line: one file a subcommand. Parsing, progress and printing; no algorithm lives here.
-use crate::tasks::Pool;
+use crate::tasks::{self, Pool};
+use crate::{geometry, memory};
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 use terminal::{note, print, tell};
 
 mod adapt;
 mod bootstrap;
+mod child;
 mod classify;
 mod convert;
 mod cycle;
@@ -13,6 +15,7 @@ mod field;
 mod files;
 mod image_mesh;
 mod inspect;
+mod interrupt;
 mod load;
 mod metric;
 mod model;
@@ -76,13 +79,16 @@ const BAD_INPUT: u8 = 2;
 
 /// Parses the command line, runs the subcommand, prints its error.
 pub fn main() -> ExitCode {
-    if let Some(code) = load::probe().or_else(bootstrap::domain::child) {
+    memory::end::take_over_panics();
+    geometry::on_memory_end(memory::end::leave_if_ended);
+    if let Some(code) = load::child().or_else(bootstrap::domain::child) {
         return code;
     }
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(said) => return usage(&said),
     };
+    interrupt::listen();
     let outcome = match arguments.command {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
@@ -101,8 +107,20 @@ pub fn main() -> ExitCode {
     };
     outcome.unwrap_or_else(|error| {
         tell(format_args!("geo-adapt: error: {error}"));
-        ExitCode::from(BAD_INPUT)
+        ExitCode::from(code_of(&*error))
     })
+}
+
+/// What is not the input's fault has a code of its own.
+fn code_of(error: &(dyn std::error::Error + 'static)) -> u8 {
+    let no_threads = matches!(error.downcast_ref(), Some(tasks::Error::Threads { .. }));
+    if error.is::<interrupt::Interrupted>() {
+        interrupt::EXIT_CODE
+    } else if no_threads || error.is::<child::OutOfMemory>() {
+        memory::end::EXIT_CODE
+    } else {
+        BAD_INPUT
+    }
 }
 
 /// Says what is wrong with the command line, or the help or version that it asks for.
@@ -123,7 +141,7 @@ fn cores() -> usize {
 }
 
 /// A thread for each core.
-fn pool() -> Result<Pool, crate::tasks::Error> {
+fn pool() -> Result<Pool, tasks::Error> {
     Pool::new(cores())
 }
 

@@ -1,8 +1,10 @@
 //! `geo-adapt openfoam`: runs a case that `geo-adapt cycle` has prepared.
+use super::interrupt::{self, Interrupted};
 use super::{Outcome, print};
 use crate::cycle::solver::openfoam::drive;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::Ordering::SeqCst;
 
 /// Arguments of `geo-adapt openfoam`.
 #[derive(clap::Args)]
@@ -13,11 +15,14 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let mut printed = Ok(());
-    let outcome = drive::drive(&arguments.case, &mut |line| {
+    let (stop, mut printed) = (interrupt::end_at_once(), Ok(()));
+    let outcome = drive::drive(&arguments.case, stop, &mut |line| {
         // The solver goes on: what it has done counts more than what can be said of it.
         let done = print(&format!("{line}\n"));
         printed = std::mem::replace(&mut printed, Ok(())).and(done);
+    });
+    let outcome = outcome.map_err(|error| -> Box<dyn std::error::Error> {
+        if stop.load(SeqCst) { Interrupted(error).into() } else { error.into() }
     })?;
     printed?;
     let ended = if outcome.still { "stands still" } else { "has used up its steps" };

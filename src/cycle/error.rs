@@ -6,6 +6,9 @@ pub enum Error {
     /// The user ended it: it goes on with the same command.
     #[error("interrupted")]
     Interrupted,
+    /// A program found no more memory.
+    #[error("{0}")]
+    OutOfMemory(String),
     /// Something is wrong: place and remedy.
     #[error("{0}")]
     Failed(String),

@@ -1,7 +1,7 @@
 //! What the finished steps tell, for the report and the terminal.
+use super::data::{Adapted, SolveResult};
+use super::done::finished;
 use super::layout::{Layout, STEPS};
-use super::pipeline::{Adapted, SolveResult};
-use super::step::finished;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;

@@ -7,8 +7,11 @@ pub struct Layout {
     root: PathBuf,
 }
 
+/// The step that draws.
+pub const PICTURE: &str = "picture";
+
 /// The steps of a cycle, in their order. A picture comes between solve and metric where one is drawn.
-pub const STEPS: [&str; 5] = ["solve", "picture", "metric", "adapt", "transfer"];
+pub const STEPS: [&str; 5] = ["solve", PICTURE, "metric", "adapt", "transfer"];
 
 impl Layout {
     /// Of a folder, absolute.
@@ -77,19 +80,65 @@ impl Layout {
         folder.strip_prefix(&self.root).unwrap_or(folder).display().to_string()
     }
 
-    /// All folders of steps that are there.
-    pub fn present(&self) -> Vec<PathBuf> {
+    /// The folders of the steps that follow from that of one, and are there: the last one first, so that what a kill leaves is none without
+    /// those before it. Nothing follows from a picture.
+    pub fn after(&self, folder: &Path) -> Vec<PathBuf> {
+        let inside = folder.strip_prefix(&self.root).unwrap_or(folder);
+        let mut names = inside.iter().map(|name| name.to_string_lossy());
+        let cycle = names.next().and_then(|name| number(&name)).unwrap_or(0);
+        let step = names.next().and_then(|name| STEPS.iter().position(|step| *step == name));
+        if step.is_some_and(|step| STEPS[step] == PICTURE) {
+            return Vec::new();
+        }
+        let cycles = self.cycles().into_iter().rev().filter(|&(number, _)| number >= cycle);
+        let all = cycles.flat_map(|(number, path)| {
+            let first = if number == cycle { step.map_or(0, |step| step + 1) } else { 0 };
+            STEPS[first..].iter().rev().map(move |step| path.join(step)).collect::<Vec<_>>()
+        });
+        all.filter(|path| path.is_dir()).collect()
+    }
+
+    /// All folders of cycles that are there, in their order.
+    fn cycles(&self) -> Vec<(u32, PathBuf)> {
         let entries = std::fs::read_dir(&self.root).into_iter().flatten().flatten();
-        let is_ours = |name: &str| {
-            name == "start"
-                || name.strip_prefix("cycle-").is_some_and(|number| number.bytes().all(|c| c.is_ascii_digit()))
-        };
-        let mut found: Vec<PathBuf> = entries
-            .filter(|entry| is_ours(&entry.file_name().to_string_lossy()))
-            .map(|entry| entry.path())
-            .filter(|path| path.is_dir())
-            .collect();
+        let numbered = entries.filter_map(|entry| Some((number(&entry.file_name().to_string_lossy())?, entry.path())));
+        let mut found: Vec<(u32, PathBuf)> = numbered.filter(|(_, path)| path.is_dir()).collect();
         found.sort();
         found
+    }
+
+    /// All folders of steps that are there: the start, and the cycles.
+    pub fn present(&self) -> Vec<PathBuf> {
+        let start = Some(self.start()).filter(|path| path.is_dir());
+        self.cycles().into_iter().map(|(_, path)| path).chain(start).collect()
+    }
+}
+
+/// The number of a folder of a cycle.
+fn number(name: &str) -> Option<u32> {
+    name.strip_prefix("cycle-").filter(|number| number.bytes().all(|c| c.is_ascii_digit()))?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_follows_from_a_step_is_found_last_first() {
+        let root = tempfile::tempdir().unwrap();
+        let layout = Layout::new(root.path().into());
+        let make = |path: PathBuf| std::fs::create_dir_all(path).unwrap();
+        make(layout.start());
+        for (cycle, steps) in [(1, &STEPS[..]), (99, &["solve", "adapt"]), (100, &["solve"])] {
+            steps.iter().for_each(|step| make(layout.step(cycle, step)));
+        }
+        let after =
+            |folder: PathBuf| -> Vec<String> { layout.after(&folder).iter().map(|path| layout.name(path)).collect() };
+        assert_eq!(after(layout.step(100, "solve")), [""; 0]);
+        assert_eq!(after(layout.step(99, "solve")), ["cycle-100/solve", "cycle-99/adapt"]);
+        assert_eq!(after(layout.step(1, "metric"))[3..], ["cycle-01/transfer", "cycle-01/adapt"]);
+        assert_eq!(after(layout.step(1, PICTURE)), [""; 0]);
+        assert_eq!(after(layout.start()).len(), 8);
+        assert_eq!(layout.present().len(), 4);
     }
 }

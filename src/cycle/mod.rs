@@ -1,16 +1,20 @@
 //! The loop: mesh → solver → metric → adaptation → transfer → solver, until it is fine enough or a functional does not change any more.
 //!
-//! Every step has a folder of its own and is a command that the user can type again (`step`, `process`). What is there on the disk is the
+//! Every step has a folder of its own and is a command that the user can type again (`step`). What is there on the disk is the
 //! whole state: a loop that was killed goes on after its last finished step.
 mod config;
+mod data;
+mod done;
 mod error;
 pub mod example;
 mod history;
+mod inputs;
 mod layout;
+mod leftovers;
+mod observer;
 mod picked;
 mod pipeline;
 mod probe;
-mod process;
 mod report;
 mod run;
 mod schedule;
@@ -21,5 +25,5 @@ pub use config::{Config, Loaded, Schedule, parse};
 pub use error::Error;
 pub use history::{Cycle, History, Seconds};
 pub use layout::Layout;
-pub use process::{Stop, last_line};
-pub use run::{Ended, Observer, Options, run};
+pub use observer::{Observer, Options};
+pub use run::{Ended, run};

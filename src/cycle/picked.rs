@@ -1,5 +1,5 @@
 //! From names of fields to values of a vertex.
-use super::solver::{FieldName, kind_of};
+use super::data::{FieldName, kind_of};
 use std::fmt;
 
 /// What of the values of a vertex, which are counted from 1 through all fields; as text as `field pick --take` has it.

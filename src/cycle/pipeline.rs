@@ -1,17 +1,18 @@
 //! The steps of a cycle, each by the commands that make it.
 use super::config::{Loaded, TransferMethod};
+use super::data::{Adapted, Begun, FieldName, SolveResult, text};
+use super::done::Done;
+use super::error::Error;
 use super::layout::Layout;
+use super::observer::Options;
 use super::picked::{as_words, picked};
 use super::probe;
-use super::solver::{Before, FieldName, Job, Solver};
-use super::step::{Done, Steps, text};
-use super::{Error, Options};
+use super::solver::{Before, Job, Solver};
+use super::step::Steps;
 use crate::geometry::{Names, called, names};
 use crate::mesh::io::{Solution, SolutionField, read_mesh, write_mesh, write_solution};
 use crate::mesh::samples::cube;
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Size of a picture, pixels: it goes into the report.
 const PICTURE: &str = "800x600";
@@ -26,33 +27,6 @@ pub struct Pipeline<'a> {
     pub options: &'a Options,
     /// The words that say the threads, if the configuration does.
     pub threads: Vec<String>,
-}
-
-/// The first step's result.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Begun {
-    /// The model that boundaries lie on, if any.
-    pub cad: Option<PathBuf>,
-}
-
-/// A solve's result.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SolveResult {
-    /// Vertices of its mesh.
-    pub vertices: usize,
-    /// Tetrahedra.
-    pub tets: usize,
-    /// The fields of solution.solb, in their order.
-    pub fields: Vec<FieldName>,
-    /// Functionals by name.
-    pub functionals: BTreeMap<String, f64>,
-}
-
-/// An adaptation's result.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Adapted {
-    /// The complexity that was asked for.
-    pub complexity: f64,
 }
 
 impl<'a> Pipeline<'a> {

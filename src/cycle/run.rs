@@ -1,36 +1,20 @@
 //! The loop from its beginning, or from where it was left, to its end.
 use super::config::{Config, Loaded, TransferMethod, differences};
-use super::history::{Cycle, History};
+use super::data::SolveResult;
+use super::done::write_json;
+use super::error::Error;
+use super::history::History;
+use super::inputs::{self, Fingerprints};
 use super::layout::Layout;
-use super::pipeline::{Pipeline, SolveResult};
-use super::process::Stop;
-use super::step::{Steps, write_json};
-use super::{Error, report};
+use super::observer::{Observer, Options};
+use super::pipeline::Pipeline;
+use super::step::Steps;
+use super::{leftovers, report};
+use crate::process::Stop;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File, TryLockError};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::Ordering::Relaxed;
-
-/// Who is told what happens.
-pub trait Observer {
-    /// A step begins; its log is written as it goes.
-    fn begin(&self, step: &str, log: &Path);
-    /// A step is done, after so many seconds.
-    fn end(&self, step: &str, seconds: f64);
-    /// Something that the user should know.
-    fn note(&self, text: &str);
-    /// A solve is done, by this run or one before.
-    fn cycle(&self, cycle: &Cycle);
-}
-
-/// How a run goes.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Threads that solvers are told.
-    pub threads: usize,
-    /// Whether to throw away what is there.
-    pub restart: bool,
-}
 
 /// How a loop ended.
 #[derive(Debug)]
@@ -52,6 +36,13 @@ pub struct Ended {
 struct State {
     version: String,
     config: Config,
+    inputs: Fingerprints,
+}
+
+/// What of it is known whatever else has changed from a version to the next.
+#[derive(Deserialize)]
+struct Version {
+    version: String,
 }
 
 /// Runs the loop to its end.
@@ -84,7 +75,9 @@ pub fn run(loaded: &Loaded, options: &Options, observer: &dyn Observer, stop: &S
 /// Finds what is there: nothing, or a loop of the same configuration.
 fn begin(loaded: &Loaded, options: &Options, steps: Steps<'_>) -> Result<(), Error> {
     let layout = steps.layout;
-    let state = State { version: env!("CARGO_PKG_VERSION").into(), config: loaded.config.clone() };
+    let (config, inputs) = (loaded.config.clone(), inputs::fingerprints(loaded)?);
+    let state = State { version: env!("CARGO_PKG_VERSION").into(), config, inputs };
+    leftovers::remove_temporaries(layout);
     if options.restart {
         // First what says that there is a loop: a kill on the way leaves one that asks for --restart again.
         let _ = fs::remove_file(layout.state());
@@ -106,14 +99,31 @@ fn begin(loaded: &Loaded, options: &Options, steps: Steps<'_>) -> Result<(), Err
             )));
         }
     };
-    let old: State = serde_json::from_slice(&bytes).map_err(|error| {
+    let unreadable = |error: serde_json::Error| {
         Error::Failed(format!(
             "{place}: the loop in this folder cannot be read ({error}): --restart removes it and begins anew"
         ))
-    })?;
+    };
+    let Version { version } = serde_json::from_slice(&bytes).map_err(unreadable)?;
+    if version != state.version {
+        return Err(Error::Failed(format!(
+            "{place}: this loop was begun by geo-adapt {version}, and this is {}: their steps do not make one loop. Go on with that one, \
+             give another [output] folder, or --restart to throw away what is there",
+            state.version
+        )));
+    }
+    let old: State = serde_json::from_slice(&bytes).map_err(unreadable)?;
     let changed = differences(&old.config, &loaded.config);
-    if changed.is_empty() {
+    let inputs = inputs::differences(&old.inputs, &state.inputs);
+    if changed.is_empty() && inputs.is_empty() {
         return write_json(&layout.state(), &state);
+    }
+    if changed.is_empty() {
+        return Err(Error::Failed(format!(
+            "{place}: what the loop began with is not the same any more: {}. Put it back to go on, give another [output] folder, or \
+             --restart to throw away what is there",
+            inputs.join("; ")
+        )));
     }
     Err(Error::Failed(format!(
         "{}: the loop in {} was begun with another configuration: {}. Change it back to go on, give another [output] folder, or \

@@ -1,25 +1,20 @@
 //! A step: a folder that is either done, or begun anew.
-use super::Error;
+use super::data::{Call, text};
+use super::done::{Done, read, write_json};
+use super::error::Error;
 use super::layout::Layout;
-use super::process::{self, Log, Stop};
-use super::run::Observer;
-use super::solver::Call;
-use crate::mesh::io::write_beside;
+use super::leftovers;
+use super::observer::Observer;
+use crate::memory;
+use crate::process::{Log, Outcome, Runner, Stop, Tie, last_lines};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
-
-/// What `done.json` says.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Done<T> {
-    /// Seconds, of the attempt that came to its end.
-    pub seconds: f64,
-    /// What came of it.
-    pub result: T,
-}
 
 /// The loop as its steps see it.
 #[derive(Clone, Copy)]
@@ -40,34 +35,39 @@ pub struct Running<'a> {
     log: Log,
 }
 
-/// What a finished step left, if it is finished.
-pub fn finished<T: DeserializeOwned>(folder: &Path) -> Option<Done<T>> {
-    serde_json::from_slice(&fs::read(folder.join("done.json")).ok()?).ok()
-}
-
 impl<'a> Steps<'a> {
-    /// What a step gave: of the one that was done before, or else by doing it now, in an empty folder.
+    /// What a step gave: of the one that was done before, or else by doing it now, in an empty folder. What follows from it is done after it:
+    /// whatever is there of that goes first.
     pub fn step<T: Serialize + DeserializeOwned>(
         self,
         folder: PathBuf,
         work: impl FnOnce(&mut Running<'a>) -> Result<T, Error>,
     ) -> Result<Done<T>, Error> {
         let name = self.layout.name(&folder);
-        if let Some(done) = finished(&folder) {
-            return Ok(done);
+        match read(&folder) {
+            Ok(Some(done)) => return Ok(done),
+            Ok(None) => {}
+            Err(error) => self.observer.note(&format!(
+                "{}: cannot be read ({error}): this step is done again, and all that follow from it",
+                folder.join("done.json").display()
+            )),
         }
-        if self.stop.asked.load(std::sync::atomic::Ordering::Relaxed) {
+        if self.stop.asked.load(Relaxed) {
             return Err(Error::Interrupted);
+        }
+        for later in self.layout.after(&folder) {
+            self.clear(&later)?;
         }
         self.clear(&folder)?;
         let named = |error: io::Error| Error::Failed(format!("{}: {error}", folder.display()));
         fs::create_dir_all(&folder).map_err(named)?;
-        let log = Log::create(&folder.join("log.txt")).map_err(named)?;
+        let log = Log::open(&folder.join("log.txt")).map_err(named)?;
         self.observer.begin(&name, &folder.join("log.txt"));
         let start = Instant::now();
         let mut running = Running { folder: folder.clone(), steps: self, log };
         let result = work(&mut running).map_err(|error| match error {
             Error::Failed(message) => Error::Failed(format!("{name}: {message}")),
+            Error::OutOfMemory(message) => Error::OutOfMemory(format!("{name}: {message}")),
             Error::Interrupted => Error::Interrupted,
         })?;
         let done = Done { seconds: start.elapsed().as_secs_f64(), result };
@@ -81,9 +81,9 @@ impl<'a> Steps<'a> {
         if !folder.exists() {
             return Ok(());
         }
-        if process::end_leftovers(folder, self.stop)? {
-            self.observer
-                .note(&format!("{}: ended what a killed run had left working there", self.layout.name(folder)));
+        let tell = |text: &str| self.observer.note(&format!("{}: {text}", self.layout.name(folder)));
+        if leftovers::end(folder, self.stop, &tell)? {
+            tell("ended what a killed run had left working there");
         }
         fs::remove_dir_all(folder).map_err(|error| Error::Failed(format!("{}: {error}", folder.display())))
     }
@@ -101,20 +101,40 @@ impl Running<'_> {
         let failed = |error: io::Error| Error::Failed(format!("{}: {error}", self.folder.display()));
         let open = OpenOptions::new().create(true).append(true).open(self.folder.join("command.txt"));
         open.and_then(|mut file| writeln!(file, "{line}")).map_err(failed)?;
-        self.log.line(&format!("$ {line}")).map_err(failed)?;
-        let status = process::run(call, &mut self.log, &self.folder, self.steps.stop)?;
-        if status.success() {
+        self.log.command(&line).map_err(failed)?;
+        let outcome = self.start(call)?;
+        if outcome == Outcome::Done {
             return Ok(());
         }
+        if outcome == Outcome::Interrupted && self.steps.stop.now.load(Relaxed) {
+            return Err(Error::Interrupted);
+        }
         let log = self.folder.join("log.txt");
-        Err(Error::Failed(format!(
-            "{} {}; the last lines of {}:\n{}\nits command is in {}; finished steps are kept: mend the cause and start the loop again",
+        let message = format!(
+            "{} {outcome}; the last lines of {}:\n{}\nits command is in {}; finished steps are kept: mend the cause and start the loop again",
             call.words.iter().take(2).cloned().collect::<Vec<_>>().join(" "),
-            process::describe(status),
             log.display(),
-            process::last_lines(&log),
+            last_lines(&log),
             self.folder.join("command.txt").display()
-        )))
+        );
+        let is_memory =
+            outcome == Outcome::Killed || is_own(call) && outcome == Outcome::Code(memory::end::EXIT_CODE.into());
+        Err(if is_memory { Error::OutOfMemory(message) } else { Error::Failed(message) })
+    }
+
+    /// Runs a program to its end, its output in the log, its process group in a file of the folder.
+    fn start(&self, call: &Call) -> Result<Outcome, Error> {
+        let [program, words @ ..] = &call.words[..] else { return Err(Error::Failed("no program is named".into())) };
+        let mut command = Command::new(program);
+        command.args(words).envs(call.env.iter().map(|(name, value)| (name, value))).current_dir(&call.folder);
+        let runner = Runner { tie: Tie::Loose, limit: None, stop: &self.steps.stop.now, log: Some(&self.log) };
+        let file = self.folder.join(leftovers::PID);
+        // Whoever comes after a kill before this is written waits until the program has ended.
+        let outcome = runner.run(&mut command, |group| drop(fs::write(&file, group.text())));
+        let _ = fs::remove_file(&file);
+        outcome.map_err(|error| {
+            Error::Failed(format!("{program} could not be started ({error}): is it installed and on the PATH?"))
+        })
     }
 
     /// Runs a subcommand of this program.
@@ -126,14 +146,7 @@ impl Running<'_> {
     }
 }
 
-/// A path as a word of a command.
-pub fn text(path: &Path) -> String {
-    path.to_string_lossy().into_owned()
-}
-
-/// Writes JSON beside, then renames.
-pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Error> {
-    let bytes =
-        serde_json::to_vec_pretty(value).map_err(|error| Error::Failed(format!("{}: {error}", path.display())))?;
-    Ok(write_beside(path, |file| file.write_all(&bytes).and_then(|()| file.write_all(b"\n")))?)
+/// Whether a command is one of this program.
+fn is_own(call: &Call) -> bool {
+    std::env::current_exe().is_ok_and(|program| call.words.first() == Some(&text(&program)))
 }

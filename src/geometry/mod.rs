@@ -22,3 +22,12 @@ pub use names::{Label, Names, called};
 pub use occt::{OcctEvaluator, OcctModel};
 pub(crate) use principal::principal;
 pub use traits::{CurveFrame, Evaluate, Geometry, OnCurve, OnSurface, SurfaceFrame};
+
+/// Has OpenCASCADE, and all C++, call this where it finds no memory, before it answers by an error of its own. It comes back only where one
+/// request was too large for a machine that has memory left.
+pub fn on_memory_end(leave: extern "C" fn()) {
+    #[cfg(feature = "occt")]
+    occt::on_memory_end(leave);
+    #[cfg(not(feature = "occt"))]
+    let _ = leave;
+}

@@ -97,7 +97,7 @@ const AT_ONCE: usize = 16;
 /// the old array gives back its memory as it gets shorter, so that they never are there twice. Without memory for that array they stay
 /// where they are, and the answer is no.
 fn rehouse<T: Zeroable + Send>(team: Team<'_>, records: &mut Vec<T>, used: usize, capacity: usize) -> bool {
-    let Ok(mut roomy) = bytemuck::allocation::try_zeroed_vec::<T>(capacity.max(used)) else { return false };
+    let Some(mut roomy) = crate::memory::try_zeroed_vec::<T>(capacity.max(used)) else { return false };
     records.truncate(used);
     while !records.is_empty() {
         let start = (records.len() - 1) / (AT_ONCE * MOVED) * (AT_ONCE * MOVED);
@@ -170,8 +170,8 @@ impl Store {
 
     /// An array of owners for so many vertices, which means nothing between sweeps.
     fn make_owners(&mut self, vertices: usize) -> bool {
-        let made = bytemuck::allocation::try_zeroed_vec(vertices);
-        made.map(|owners| self.owners = owners).is_ok()
+        let made = crate::memory::try_zeroed_vec(vertices);
+        made.map(|owners| self.owners = owners).is_some()
     }
 
     /// Gives back what the live records leave of the memory, room for more included. Between sweeps only.

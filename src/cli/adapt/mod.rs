@@ -6,7 +6,7 @@ pub mod parts;
 pub mod progress;
 pub mod report;
 
-use super::Outcome;
+use super::{Outcome, interrupt};
 use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
 use crate::metric::Field;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
@@ -17,9 +17,6 @@ use report::{Asked, Report};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
-
-/// Exit code after an interrupt: 128 + SIGINT, as shells have it. The last valid mesh is written all the same.
-pub const INTERRUPTED: u8 = 130;
 
 /// Arguments of `geo-adapt adapt`.
 #[derive(clap::Args)]
@@ -94,7 +91,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.cycles > 1 && !arguments.input.field.field.is_empty() {
         return Err("--cycles: the field of --field lies on the first mesh alone; give one cycle, or a --metric".into());
     }
-    let stop = progress::stop_on_interrupt();
     let threads = arguments.threads.map_or_else(super::cores, usize::from);
     let pool = Pool::new(threads)?;
     pool.prepare(arguments.backend)?;
@@ -112,7 +108,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
             crate::cli::note(notice);
         }
         let prepared = start.elapsed();
-        let progress = Progress::new(!arguments.quiet, stop.clone());
+        // What comes now is worth to be written.
+        let progress = Progress::new(!arguments.quiet, progress::finish_on_interrupt());
         let Input { mesh, place, model, source, .. } = &input;
         let named = |error| format!("{}: {error}", arguments.input.mesh.display());
         let options = arguments.options(plan, parts::frozen(&arguments.freeze, mesh, &input.names).map_err(named)?);
@@ -131,7 +128,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             super::print(&report.text())?;
         }
         if progress.interrupted() {
-            return Ok(ExitCode::from(INTERRUPTED));
+            return Ok(interrupt::exit_code());
         }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
         given = Given { mesh: std::mem::take(&mut report.mesh), logs, names: report.names.clone() };

@@ -1,32 +1,20 @@
 //! Progress on the terminal: a bar a pass, with counts; and the interrupt.
 use crate::adapt::{Counts, KINDS, Kind, Observer};
+use crate::cli::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// Set by the first interrupt.
-pub type Stop = Arc<AtomicBool>;
-
 /// Lets the first interrupt end the work after the running sweep, and a second one end the program at once.
-pub fn stop_on_interrupt() -> Stop {
-    let stop = Stop::default();
-    let seen = Arc::clone(&stop);
-    let handler = move || {
-        if seen.swap(true, Relaxed) {
-            std::process::exit(i32::from(super::INTERRUPTED));
-        }
-        crate::cli::tell("\ngeo-adapt: interrupted: ends after this sweep and writes the mesh (again: ends at once)");
-    };
-    // Where no handler can be set an interrupt ends the program, and the inputs are untouched all the same.
-    let _ = ctrlc::set_handler(handler);
-    stop
+pub fn finish_on_interrupt() -> &'static AtomicBool {
+    interrupt::finish_on("ends after this sweep and writes the mesh (again: ends at once)")
 }
 
 /// Shows what the adapter does.
 pub struct Progress {
     shown: bool,
-    stop: Stop,
+    stop: &'static AtomicBool,
     state: Mutex<State>,
 }
 
@@ -40,7 +28,7 @@ struct State {
 
 impl Progress {
     /// Draws if `wanted` and standard error is a terminal.
-    pub fn new(wanted: bool, stop: Stop) -> Self {
+    pub fn new(wanted: bool, stop: &'static AtomicBool) -> Self {
         let state = State {
             bar: ProgressBar::hidden(),
             pass: None,

@@ -1,8 +1,12 @@
 //! `--far-field`: the domain around a body, built by a child process, since OpenCASCADE can crash on a shape that it cannot cut.
+use super::solids::check_solids;
+use crate::cli::child::{self, Answer, Task};
+use crate::cli::workplace::Workplace;
 use crate::geometry::{Evaluate, FaceEntity, FarField, Geometry, Model, SurfaceKind, Topology, names};
 use crate::mesh::vector::{Vec3, distance};
+use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, Stdio};
+use std::process::ExitCode;
 use std::str::FromStr;
 
 /// First argument of the child; then the body's model, the domain's file, the far field and the axis of symmetry or `-`.
@@ -71,46 +75,37 @@ impl Axis {
 ///
 /// # Errors
 /// When the body has no solid or no plane side where the symmetry is, reaches beyond the far field, or cannot be subtracted.
-pub fn build(body: &Path, spec: &Spec, symmetry: Option<Axis>, file: &Path) -> Result<PathBuf, String> {
+pub fn build(body: &Path, spec: &Spec, symmetry: Option<Axis>, file: &Path) -> Result<PathBuf, Box<dyn Error>> {
     let axis = Axis::ALL.iter().find(|(axis, _)| Some(*axis) == symmetry).map_or("-", |(_, name)| name);
-    let program = std::env::current_exe().map_err(|error| format!("geo-adapt cannot start itself: {error}"))?;
-    let mut command = Command::new(program);
-    command.arg(CHILD).arg(body).arg(file).args([&spec.text, axis]).stdin(Stdio::null()).stdout(Stdio::null());
-    let ended =
-        command.stderr(Stdio::piped()).output().map_err(|error| format!("geo-adapt cannot start itself: {error}"))?;
-    if ended.status.success() {
-        return Ok(file.to_owned());
-    }
-    let told = String::from_utf8_lossy(&ended.stderr);
-    match ended.status.code() {
-        Some(code) if code == i32::from(crate::cli::BAD_INPUT) => Err(told.trim().into()),
-        _ => Err(format!(
-            "{}: OpenCASCADE crashes on the subtraction of the body from the far field; repair the body's solid in the CAD program",
-            body.display()
-        )),
+    let place = Workplace::new().map_err(|error| format!("no folder for temporary files: {error}"))?;
+    let task = Task {
+        name: CHILD,
+        arguments: &[body.as_os_str(), file.as_os_str(), spec.text.as_ref(), axis.as_ref()],
+        file: body,
+        doing: "making the far field around it",
+        crash: "OpenCASCADE crashes on the subtraction of the body from the far field; repair the body's solid in the CAD program",
+    };
+    match task.run(&place)? {
+        Answer::Done => Ok(file.to_owned()),
+        Answer::Refused(told) => Err(told.into()),
+        Answer::NotStarted => Err("geo-adapt cannot start itself".into()),
     }
 }
 
-/// If this process is the child of [`build`]: builds the domain and exits.
+/// If this process is the child of [`build`]: builds the domain and tells the exit code.
 pub fn child() -> Option<ExitCode> {
-    let mut arguments = std::env::args_os().skip(1);
-    if arguments.next()? != CHILD {
-        return None;
-    }
-    let (body, file) = (PathBuf::from(arguments.next()?), PathBuf::from(arguments.next()?));
-    let (spec, axis) = (arguments.next()?.into_string().ok()?, arguments.next()?.into_string().ok()?);
-    Some(match write(&body, &file, &spec, &axis) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            crate::cli::tell(error);
-            ExitCode::from(crate::cli::BAD_INPUT)
-        }
+    child::answer(CHILD, |arguments| {
+        let [body, file, spec, axis] = arguments else {
+            return Err("a body, a file, a far field and an axis are wanted".into());
+        };
+        let [spec, axis] = [spec, axis].map(|word| word.to_string_lossy());
+        write(Path::new(body), Path::new(file), &spec, &axis).map_err(|error| error.to_string())
     })
 }
 
-fn write(body: &Path, file: &Path, spec: &str, axis: &str) -> Result<(), Box<dyn std::error::Error>> {
+fn write(body: &Path, file: &Path, spec: &str, axis: &str) -> Result<(), Box<dyn Error>> {
     let model = Model::read(body)?;
-    super::check_solids(body, &model)?;
+    check_solids(body, &model)?;
     let symmetry = Axis::ALL.iter().find(|(_, name)| *name == axis).map(|(axis, _)| *axis);
     let named = |error: String| format!("{}: {error}", body.display());
     let far = spec.parse::<Spec>().and_then(|spec| place(&model, &spec.kind, symmetry)).map_err(named)?;

@@ -1,38 +1,17 @@
 //! gmsh, version 4 (GPL: started, never linked).
-use super::driver::Least;
-use super::ladder::Wish;
+use super::rung::Least;
+use super::wish::Wish;
 use crate::cli::workplace::Workplace;
 use crate::geometry::Model;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
-/// What it is called.
-pub const NAME: &str = "gmsh";
-
 /// Names the program, where it is not in the search path.
 pub const VARIABLE: &str = "GEO_ADAPT_GMSH";
 
 /// What to do where it is missing.
 pub const REMEDY: &str = "sudo apt install gmsh";
-
-/// Its name of an algorithm for surfaces.
-pub fn algorithm(number: u32) -> &'static str {
-    match number {
-        1 => "MeshAdapt",
-        5 => "Delaunay",
-        _ => "frontal-Delaunay",
-    }
-}
-
-/// Its name of an algorithm for volumes.
-pub fn algorithm_3d(number: u32) -> &'static str {
-    match number {
-        4 => "frontal",
-        10 => "HXT",
-        _ => "Delaunay",
-    }
-}
 
 /// Its command: meshes `model` (BREP) into `out` (MSH 4.1). Curved parts get as many segments as the metric of the geometry wants.
 pub fn command(

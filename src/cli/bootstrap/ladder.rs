@@ -1,9 +1,9 @@
 //! One mesher after the other, one algorithm after the other, until a mesh is valid and lies on the whole model.
-use super::driver::{Choice, Rung, gmsh_places, netgen_places};
-use super::process::{self, Failure};
+use super::places::{gmsh_places, netgen_places};
 use super::queue::Queue;
+use super::rung::{Choice, Rung};
+use super::wish::Wish;
 use super::{gmsh, netgen};
-use crate::cli::adapt::progress::Stop;
 use crate::cli::table;
 use crate::cli::workplace::Workplace;
 use crate::formats;
@@ -13,25 +13,11 @@ use crate::mesh::split_nonmanifold::split_nonmanifold;
 use crate::mesh::validity;
 use crate::mesh::vector::lerp;
 use crate::mesh::{FlawKind, TetMesh};
+use crate::process::{Log, Outcome, Runner, Tie, errors_or_last_lines};
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
-
-/// What the mesh should be like.
-pub struct Wish {
-    /// Greatest size, model units.
-    pub greatest: f64,
-    /// Least size: the curvature at an apex has no bound.
-    pub least: f64,
-    /// Diagonal of the model's box.
-    pub diagonal: f64,
-    /// Segments for a radian of curvature.
-    pub segments: f64,
-    /// How long a run may take.
-    pub limit: Duration,
-    /// Set when the user ends it.
-    pub stop: Stop,
-}
 
 /// A mesh on its model.
 pub struct Meshed {
@@ -43,6 +29,14 @@ pub struct Meshed {
     pub by: Rung,
     /// What the user should know.
     pub notices: Vec<String>,
+}
+
+/// Why there is no mesh.
+pub enum Stopped {
+    /// The user ended this program.
+    Interrupted(&'static str),
+    /// No rung gave a good one.
+    Failed(String),
 }
 
 /// Why a rung gave nothing.
@@ -84,7 +78,7 @@ impl<'a> Ladder<'a> {
         choice: Choice,
         (place, log): (&'a Workplace, &'a Path),
     ) -> Result<Self, String> {
-        process::begin(log).map_err(|error| error.to_string())?;
+        Log::create(log).map_err(|error| format!("{}: {error}", log.display()))?;
         let brep = place.file("model.brep");
         model.write_brep(&brep).map_err(|error| error.to_string())?;
         let queue = Queue::new(Rung::of(choice), wish.limit);
@@ -96,7 +90,7 @@ impl<'a> Ladder<'a> {
     ///
     /// # Errors
     /// When none is left, with what the last ones said; when there is no mesher, with what to install; when the user ended it.
-    pub fn climb(&mut self) -> Result<Meshed, String> {
+    pub fn climb(&mut self) -> Result<Meshed, Stopped> {
         while let Some((rung, limit)) = self.queue.next() {
             let program = rung.program();
             match self.attempt(rung, limit) {
@@ -109,7 +103,7 @@ impl<'a> Ladder<'a> {
                     self.queue.is_gone(program);
                     self.missing.push(why);
                 }
-                Err(Miss::Interrupted) => return Err(format!("{program} was interrupted; no mesh was written")),
+                Err(Miss::Interrupted) => return Err(Stopped::Interrupted(program)),
                 Err(Miss::TooLong(why)) => {
                     self.queue.took_too_long(rung, limit);
                     self.failed.push((rung, why));
@@ -117,7 +111,7 @@ impl<'a> Ladder<'a> {
                 Err(Miss::Failed(why)) => self.failed.push((rung, why)),
             }
         }
-        Err(describe(&self.missing, &self.failed, self.log, self.model))
+        Err(Stopped::Failed(describe(&self.missing, &self.failed, self.log, self.model)))
     }
 
     /// One rung: the mesh, valid and on the model.
@@ -129,7 +123,7 @@ impl<'a> Ladder<'a> {
         }
         start((self.wish, limit), rung, self.place, [&self.brep, &out], self.log)?;
         let failed = |why: String| {
-            let told = process::last_lines(self.log);
+            let told = last_words(self.log);
             Miss::Failed(if told.contains("rror") { format!("{why} ({told})") } else { why })
         };
         if !out.is_file() {
@@ -190,25 +184,30 @@ fn start(
         Rung::Gmsh { .. } | Rung::Triangles => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
         Rung::Netgen { .. } => (netgen::VARIABLE, netgen::REMEDY, netgen_places()),
     };
+    let failed = |error: std::io::Error| Miss::Failed(format!("no file for it: {error}"));
     for program in places {
-        let command = command(&program, wish, rung, place, files);
-        let mut command = command.map_err(|error| Miss::Failed(format!("no file for it: {error}")))?;
-        match process::run(&mut command, log, limit, &wish.stop) {
-            Ok(()) => return Ok(()),
-            Err(Failure::NotStarted(_)) => {}
-            Err(Failure::Interrupted) => return Err(Miss::Interrupted),
-            Err(Failure::Ended(status)) if status.code() == Some(NO_MODULE) && matches!(rung, Rung::Netgen { .. }) => {}
-            Err(failure) => {
-                let why = format!("it {failure}: {}", process::last_lines(log));
-                return Err(if matches!(failure, Failure::TooLong(_)) {
-                    Miss::TooLong(why)
-                } else {
-                    Miss::Failed(why)
-                });
+        let mut command = command(&program, wish, rung, place, files).map_err(failed)?;
+        let mut said = Log::open(log).map_err(failed)?;
+        said.command(&format!("{command:?}")).map_err(failed)?;
+        let runner = Runner { tie: Tie::Bound, limit: Some(limit), stop: wish.stop, log: Some(&said) };
+        let Ok(outcome) = runner.run(&mut command, |_| ()) else { continue };
+        let why = || format!("it {outcome}: {}", last_words(log));
+        match outcome {
+            Outcome::Done => return Ok(()),
+            Outcome::Interrupted if wish.stop.load(Ordering::SeqCst) => return Err(Miss::Interrupted),
+            Outcome::Code(NO_MODULE) if matches!(rung, Rung::Netgen { .. }) => {}
+            Outcome::TooLong(_) => {
+                return Err(Miss::TooLong(format!("it {outcome} (--time-limit): {}", last_words(log))));
             }
+            _ => return Err(Miss::Failed(why())),
         }
     }
     Err(Miss::NotThere(format!("{} was not found ({remedy}, or let {variable} name it)", rung.program())))
+}
+
+/// What the mesher said last. Behind its errors gmsh writes a summary, which tells their number.
+fn last_words(log: &Path) -> String {
+    errors_or_last_lines(log, &["error summary", "Check the full log", " warnings", " errors"])
 }
 
 /// Exit code of netgen.py where its Python has no netgen.

@@ -1,11 +1,8 @@
 //! netgen (LGPL: started in a Python of its own, never linked).
-use super::ladder::Wish;
+use super::wish::Wish;
 use crate::cli::workplace::Workplace;
 use std::path::Path;
 use std::process::Command;
-
-/// What it is called.
-pub const NAME: &str = "netgen";
 
 /// Names a Python that has it, where the one in the search path has not.
 pub const VARIABLE: &str = "GEO_ADAPT_NETGEN_PYTHON";

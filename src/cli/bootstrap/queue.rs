@@ -1,5 +1,5 @@
 //! In which order the rungs are tried, and how long each may take.
-use super::driver::Rung;
+use super::rung::Rung;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -51,7 +51,7 @@ impl Queue {
 
 #[cfg(test)]
 mod tests {
-    use super::super::driver::Choice;
+    use super::super::rung::Choice;
     use super::*;
 
     const WHOLE: Duration = Duration::from_secs(100);

@@ -1,15 +1,15 @@
 //! The mesher's mesh, adapted to the metric of the geometry.
-use super::driver::Rung;
+use super::arguments::Arguments;
+use super::domain;
 use super::ladder::Meshed;
-use super::{Arguments, domain};
+use super::rung::Rung;
 use crate::adapt::{self, Adapted, Options};
 use crate::cli::Outcome;
-use crate::cli::adapt::INTERRUPTED;
 use crate::cli::adapt::files::Targets;
 use crate::cli::adapt::input::Input;
-use crate::cli::adapt::progress::{Progress, Stop};
+use crate::cli::adapt::progress::{Progress, finish_on_interrupt};
 use crate::cli::adapt::report::{Asked, Report};
-use crate::cli::table;
+use crate::cli::{interrupt, table};
 use crate::geometry::classify::Classification;
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Geometry, Model};
@@ -49,11 +49,11 @@ pub fn run(
     pool: &Pool,
     meshed: Meshed,
     model: &Model,
-    (start, stop): (Instant, &Stop),
+    start: Instant,
 ) -> Result<Refined, String> {
     let team = Team::new(pool, Plan::default());
     let named = |error: String| format!("{}: {error}", arguments.model.display());
-    let prepared = start.elapsed();
+    let (prepared, stop) = (start.elapsed(), finish_on_interrupt());
     let Meshed { mesh: first, place, by, mut notices } = meshed;
     let first = Arc::new(first);
     let (mut mesh, mut place) = (Arc::clone(&first), place);
@@ -64,7 +64,7 @@ pub fn run(
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let source = Source::Background(Background::on(team, Arc::clone(&mesh), faces, logs));
         stage("geometry");
-        let progress = Progress::new(!arguments.quiet, stop.clone());
+        let progress = Progress::new(!arguments.quiet, stop);
         let adapted = adapt::adapt(&mesh, &place, model, &source, &Options::default(), pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
@@ -133,7 +133,7 @@ impl Refined {
         if !arguments.quiet {
             crate::cli::print(&format!("{:<26} {}\n{}", "mesher", self.by, report.text()))?;
         }
-        Ok(if self.interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+        Ok(if self.interrupted { interrupt::exit_code() } else { ExitCode::SUCCESS })
     }
 }
 

@@ -1,15 +1,13 @@
 //! `geo-adapt cycle`: the loop of solver and adaptation.
 mod progress;
 
-use super::adapt::INTERRUPTED;
+use super::child::OutOfMemory;
 use super::table::figure;
-use super::{Outcome, print};
-use crate::cycle::{self, Error, Loaded, Options, Stop, example};
+use super::{Outcome, interrupt, print};
+use crate::cycle::{self, Error, Loaded, Options, example};
 use progress::Progress;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::Ordering::Relaxed;
 
 /// Arguments of `geo-adapt cycle`.
 #[derive(clap::Args)]
@@ -37,11 +35,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let Some(path) = &arguments.config else { return Err("give a configuration".into()) };
     let loaded = Loaded::read(path)?;
-    let stop = stop_on_interrupt();
+    interrupt::finish_on("ends after this step (again: ends it at once)");
     let threads = loaded.config.threads.map_or_else(super::cores, usize::from);
     let options = Options { threads, restart: arguments.restart };
     let progress = Progress::new(!arguments.quiet, &loaded.config.schedule);
-    let ended = cycle::run(&loaded, &options, &progress, &stop);
+    let ended = cycle::run(&loaded, &options, &progress, interrupt::stop());
     let printed = progress.finish();
     match ended {
         Ok(ended) => {
@@ -60,24 +58,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
         Err(Error::Interrupted) => {
             crate::cli::tell("geo-adapt: interrupted; the same command goes on after the last finished step");
-            Ok(ExitCode::from(INTERRUPTED))
+            Ok(interrupt::exit_code())
         }
+        Err(Error::OutOfMemory(message)) => Err(OutOfMemory(message).into()),
         Err(error) => Err(error.into()),
     }
-}
-
-/// Lets the first interrupt end the loop after the running child, and a second one end that too.
-fn stop_on_interrupt() -> Arc<Stop> {
-    let stop = Arc::new(Stop::default());
-    let seen = Arc::clone(&stop);
-    let handler = move || {
-        if seen.asked.swap(true, Relaxed) {
-            seen.now.store(true, Relaxed);
-        } else {
-            crate::cli::tell("\ngeo-adapt: interrupted: ends after this step (again: ends it at once)");
-        }
-    };
-    // Where no handler can be set an interrupt ends the program, and the loop goes on from there all the same.
-    let _ = ctrlc::set_handler(handler);
-    stop
 }

@@ -2,7 +2,8 @@
 use crate::cli::print;
 use crate::cli::table::figure;
 use crate::cli::terminal::PrintError;
-use crate::cycle::{Cycle, Observer, Schedule, last_line};
+use crate::cycle::{Cycle, Observer, Schedule};
+use crate::process::last_line;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};

@@ -4,8 +4,8 @@ mod bars;
 mod curve;
 mod text;
 
-use super::Error;
 use super::config::Config;
+use super::error::Error;
 use super::history::{Cycle, History};
 use super::layout::Layout;
 use crate::mesh::io::write_beside;

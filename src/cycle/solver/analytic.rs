@@ -1,6 +1,6 @@
 //! An analytic function in place of a solver: nothing to install, and the error is known.
-use super::{Call, Job, Solved, Solver};
-use crate::cycle::step::text;
+use super::{Job, Solver};
+use crate::cycle::data::{Call, Solved, text};
 use crate::formats::NamedField;
 use crate::mesh::io::{FieldKind, read_solution};
 use crate::metric::Scalar;

@@ -1,6 +1,6 @@
 //! Any program: a command for the shell that is told where the mesh is and where its solution shall go.
-use super::{Call, Job, Solved, Solver, handover, quoted};
-use crate::cycle::step::text;
+use super::{Job, Solver, handover};
+use crate::cycle::data::{Call, Solved, quoted, text};
 use regex_lite::Regex;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -64,11 +64,12 @@ impl Config {
         self.replace(|name| PLACES.iter().position(|place| *place == name).map(|at| quoted(&values[at])))
     }
 
-    /// The command with each {name} replaced; {{ is a brace.
+    /// The command with each {name} replaced; {{ is a brace, and so is }}. What comes in for a name stays as it is.
     fn replace(&self, value: impl Fn(&str) -> Option<String>) -> Result<String, String> {
         let (mut filled, mut rest) = (String::new(), self.run.as_str());
+        let plain = |text: &str| text.replace("}}", "}");
         while let Some(at) = rest.find('{') {
-            filled.push_str(&rest[..at]);
+            filled += &plain(&rest[..at]);
             rest = &rest[at + 1..];
             if let Some(after) = rest.strip_prefix('{') {
                 filled.push('{');
@@ -84,7 +85,7 @@ impl Config {
             })?;
             rest = after;
         }
-        Ok((filled + rest).replace("}}", "}"))
+        Ok(filled + &plain(rest))
     }
 
     fn patterns(&self) -> Result<Vec<(&String, Regex)>, String> {
@@ -188,6 +189,13 @@ mod tests {
         let filled =
             config("python {config}/s.py {mesh} {solution_in} -n {threads} ${{HOME}} {cycle}").filled(&job()).unwrap();
         assert_eq!(filled, "python /case/s.py '/out/a b/mesh.meshb' none -n 2 ${HOME} 3");
+    }
+
+    #[test]
+    fn braces_in_the_name_of_a_folder_stay() {
+        let job = Job { folder: Path::new("/out/{{a}}"), base: Path::new("/ca}}se"), ..job() };
+        let filled = config("cd {folder}; {config}/s ${{HOME}} {cycle}}}").filled(&job).unwrap();
+        assert_eq!(filled, "cd '/out/{{a}}'; '/ca}}se'/s ${HOME} 3}");
     }
 
     #[test]

@@ -29,6 +29,16 @@ use surface::Surface;
 use tree::Tree;
 use trim::Trim;
 
+unsafe extern "C" {
+    fn geo_adapt_on_memory_end(leave: extern "C" fn());
+}
+
+/// See [`super::on_memory_end`].
+pub fn on_memory_end(leave: extern "C" fn()) {
+    // SAFETY: cpp/memory.cpp keeps the function, which is there as long as the program, and calls it as what it is.
+    unsafe { geo_adapt_on_memory_end(leave) };
+}
+
 /// A copy, and the pieces for the global search, made when first asked for.
 struct Shape<T> {
     form: T,

@@ -54,7 +54,7 @@ fn in_parts(team: Team<'_>, path: &Path) -> Option<Vec<u8>> {
     if !metadata.is_file() || size < 2 * PART {
         return None;
     }
-    let mut bytes: Vec<u8> = bytemuck::allocation::try_zeroed_vec(size).ok()?;
+    let mut bytes: Vec<u8> = crate::memory::try_zeroed_vec(size)?;
     let is_whole = AtomicBool::new(true);
     team.fill(PART, &mut bytes, |start, part| {
         if file.read_exact_at(part, start as u64).is_err() {

@@ -7,13 +7,14 @@ use super::marks::Marks;
 use super::mean::Mean;
 use super::method::{Method, Scheme, Stage};
 use super::pace::Pace;
-use super::programs::solve;
+use super::programs::{Failure, solve};
 use super::state::{State, field};
 use crate::formats::foam;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::volume6;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 /// The file of the plan in the folder of the case.
 pub const PLAN: &str = "plan.json";
@@ -81,17 +82,17 @@ impl Outcome {
     }
 }
 
-/// Runs the case in the folder as its plan says; `tell` is given a line a block.
+/// Runs the case in the folder as its plan says, until `stop` is set; `tell` is given a line a block.
 ///
 /// # Errors
 /// When a file is not there or cannot be written, or it blows up however small the steps are: with the last lines of its log.
-pub fn drive(case: &Path, tell: &mut dyn FnMut(&str)) -> Result<Outcome, String> {
+pub fn drive(case: &Path, stop: &AtomicBool, tell: &mut dyn FnMut(&str)) -> Result<Outcome, String> {
     let path = case.join(PLAN);
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let text = std::fs::read_to_string(&path).map_err(|error| named(&error))?;
     let plan: Plan = serde_json::from_str(&text).map_err(|error| named(&error))?;
     let (mesh, _) = foam::read_mesh(case).map_err(|error| error.to_string())?;
-    let mut run = Run::new(case, &plan, &mesh)?;
+    let mut run = Run::new(case, &plan, &mesh, stop)?;
     let first = Stage { scheme: Scheme::Upwind, ..plan.stage };
     while run.at < plan.start_steps {
         run.block(first, plan.start_steps, tell)?;
@@ -126,6 +127,7 @@ struct Run<'a> {
     case: &'a Path,
     plan: &'a Plan,
     mesh: &'a TetMesh,
+    stop: &'a AtomicBool,
     walls: Walls,
     volumes: Vec<f64>,
     /// The step whose fields are there.
@@ -140,7 +142,7 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(case: &'a Path, plan: &'a Plan, mesh: &'a TetMesh) -> Result<Self, String> {
+    fn new(case: &'a Path, plan: &'a Plan, mesh: &'a TetMesh, stop: &'a AtomicBool) -> Result<Self, String> {
         let volume = |nodes: &[u32; 4]| {
             let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
             volume6(a, b, c, d).abs()
@@ -155,6 +157,7 @@ impl<'a> Run<'a> {
             case,
             plan,
             mesh,
+            stop,
             walls,
             volumes,
             at: 0,
@@ -197,7 +200,8 @@ impl<'a> Run<'a> {
                     ));
                     return Ok(self.change < self.plan.still);
                 }
-                Err(error) => error,
+                Err(Failure::BlewUp(error)) => error,
+                Err(Failure::Stopped(error)) => return Err(error),
             };
             self.repeated += 1;
             let blew_up = format!("step {end:>6}  blew up at {}", slower.pace());
@@ -237,11 +241,11 @@ impl<'a> Run<'a> {
     }
 
     /// Makes the steps up to `end`: the fields there.
-    fn start(&self, end: usize) -> Result<State, String> {
+    fn start(&self, end: usize) -> Result<State, Failure> {
         let log = self.case.join(format!("log.{end}"));
-        solve(self.case, self.plan, &log)?;
+        solve(self.case, self.plan, &log, self.stop)?;
         let _ = std::fs::remove_file(&log); // of no use any more
-        State::read(&self.case.join(end.to_string()), self.volumes.len())
+        State::read(&self.case.join(end.to_string()), self.volumes.len()).map_err(Failure::BlewUp)
     }
 
     /// Takes over a block that ended well, and drops the one before.

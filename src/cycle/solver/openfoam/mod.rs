@@ -19,7 +19,8 @@ pub use flow::{Flow, Kind};
 pub use forces::{Coefficients, Walls};
 pub use method::{Method, Scheme, Stage};
 
-use super::{Call, Job, Solved, Solver, find_program};
+use super::{Job, Solver, find_program};
+use crate::cycle::data::{Call, Solved};
 use crate::formats::foam::{self, CellField};
 use crate::formats::{self, Dataset, NamedField};
 use crate::mesh::TetMesh;

@@ -1,9 +1,9 @@
 //! Starts OpenFOAM's programs, the solver alone or in several processes.
 use super::drive::Plan;
-use crate::cycle::process::last_lines;
-use std::fs::{File, OpenOptions};
+use crate::process::{Log, Outcome, Runner, Tie, last_lines};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
+use std::sync::atomic::AtomicBool;
 
 /// Where OpenFOAM's own settings lie: its variable, or where Debian has them.
 fn installation() -> Option<PathBuf> {
@@ -11,14 +11,24 @@ fn installation() -> Option<PathBuf> {
     std::env::var_os("WM_PROJECT_DIR").map(PathBuf::from).or_else(debian)
 }
 
+/// Why a solve came to no good end.
+pub enum Failure {
+    /// It failed: other steps may do.
+    BlewUp(String),
+    /// It was ended, or could not be begun: nothing else will do.
+    Stopped(String),
+}
+
 /// Runs the solver as `system/` of the case says; what the programs say goes to `log`.
 ///
 /// # Errors
 /// With the last lines of the log, where one of them fails.
-pub fn solve(case: &Path, plan: &Plan, log: &Path) -> Result<(), String> {
-    File::create(log).map_err(|error| format!("{}: {error}", log.display()))?;
+pub fn solve(case: &Path, plan: &Plan, log: &Path, stop: &AtomicBool) -> Result<(), Failure> {
+    let named = |path: &Path, error: std::io::Error| Failure::Stopped(format!("{}: {error}", path.display()));
+    Log::create(log).map_err(|error| named(log, error))?;
+    let run = |words: &[&str]| run(case, log, stop, words);
     if plan.processes < 2 {
-        return run(case, log, &[&plan.program]);
+        return run(&[&plan.program]);
     }
     let count = plan.processes.to_string();
     let dictionary = format!(
@@ -26,25 +36,23 @@ pub fn solve(case: &Path, plan: &Plan, log: &Path) -> Result<(), String> {
          numberOfSubdomains {count};\nmethod simple;\ncoeffs {{ n ({count} 1 1); delta 0.001; }}\n"
     );
     let path = case.join("system/decomposeParDict");
-    std::fs::write(&path, dictionary).map_err(|error| format!("{}: {error}", path.display()))?;
+    std::fs::write(&path, dictionary).map_err(|error| named(&path, error))?;
     // The other programs lie beside the solver.
     let beside = |name: &str| Path::new(&plan.program).with_file_name(name).to_string_lossy().into_owned();
-    run(case, log, &[&beside("decomposePar"), "-force", "-latestTime"])?;
-    let solved = run(case, log, &["mpirun", "-np", &count, &plan.program, "-parallel"]);
+    run(&[&beside("decomposePar"), "-force", "-latestTime"])?;
+    let solved = run(&["mpirun", "-np", &count, &plan.program, "-parallel"]);
     // Of a solve that failed too, where it can be: it shows where.
-    let joined = solved.and(run(case, log, &[&beside("reconstructPar"), "-latestTime"]));
+    let joined = solved.and(run(&[&beside("reconstructPar"), "-latestTime"]));
     for process in 0..plan.processes {
         let _ = std::fs::remove_dir_all(case.join(format!("processor{process}"))); // made anew each time
     }
     joined
 }
 
-fn run(case: &Path, log: &Path, words: &[&str]) -> Result<(), String> {
-    let named = |error: std::io::Error| format!("{}: {error}", log.display());
-    let sink = OpenOptions::new().append(true).open(log).map_err(named)?;
+fn run(case: &Path, log: &Path, stop: &AtomicBool, words: &[&str]) -> Result<(), Failure> {
+    let said = Log::open(log).map_err(|error| Failure::Stopped(format!("{}: {error}", log.display())))?;
     let mut command = Command::new(words[0]);
-    command.args(&words[1..]).current_dir(case).stdin(Stdio::null());
-    command.stdout(sink.try_clone().map_err(named)?).stderr(sink);
+    command.args(&words[1..]).current_dir(case);
     // Ends where a number is none, instead of going on with it. The others let OpenMPI work for root, as in containers, and start more
     // processes than there are cores, as it was asked to.
     command.env("FOAM_SIGFPE", "true").env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
@@ -52,10 +60,14 @@ fn run(case: &Path, log: &Path, words: &[&str]) -> Result<(), String> {
     if let Some(folder) = installation() {
         command.env("WM_PROJECT_DIR", folder);
     }
-    let status =
-        command.status().map_err(|error| format!("{} could not be started ({error}): is it installed?", words[0]))?;
-    if status.success() {
-        return Ok(());
+    // In the group that the loop gave us, which ends as one.
+    let outcome = Runner { tie: Tie::Shared, limit: None, stop, log: Some(&said) }.run(&mut command, |_| ());
+    let outcome = outcome
+        .map_err(|error| Failure::Stopped(format!("{} could not be started ({error}): is it installed?", words[0])))?;
+    let told = || format!("{} {outcome}; the end of {}:\n{}", words.join(" "), log.display(), last_lines(log));
+    match outcome {
+        Outcome::Done => Ok(()),
+        Outcome::Code(_) | Outcome::Crashed(_) => Err(Failure::BlewUp(told())),
+        _ => Err(Failure::Stopped(told())),
     }
-    Err(format!("{} failed ({status}); the end of {}:\n{}", words.join(" "), log.display(), last_lines(log)))
 }

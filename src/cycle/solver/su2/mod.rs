@@ -7,7 +7,8 @@ mod history;
 
 pub use conditions::{Conditions, Model};
 
-use super::{Call, Job, Solved, Solver, find_program, handover};
+use super::{Job, Solver, find_program, handover};
+use crate::cycle::data::{Call, Solved};
 use cfg::Cfg;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -102,6 +103,10 @@ impl Solver for Config {
             return Err("[solver.su2] processes is above 1, but there is no mpirun on the PATH".into());
         }
         Ok(())
+    }
+
+    fn inputs(&self, base: &Path) -> Vec<PathBuf> {
+        self.config.iter().map(|path| base.join(path)).collect()
     }
 
     fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {

@@ -1,9 +1,10 @@
-//! The meshers that we can start, and where they are looked for.
-use super::{gmsh, netgen};
-use std::path::{Path, PathBuf};
+//! What may be tried in turn to make a mesh.
 
-/// The Python of the virtual environment that scripts/setup.sh makes for netgen, from the root of the project.
-const ENVIRONMENT: &str = ".venv/mesher/bin/python3";
+/// What gmsh is called.
+pub const GMSH: &str = "gmsh";
+
+/// What netgen is called.
+pub const NETGEN: &str = "netgen";
 
 /// Which meshers may be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -65,8 +66,8 @@ impl Rung {
     /// The program.
     pub fn program(self) -> &'static str {
         match self {
-            Self::Gmsh { .. } | Self::Triangles => gmsh::NAME,
-            Self::Netgen { .. } => netgen::NAME,
+            Self::Gmsh { .. } | Self::Triangles => GMSH,
+            Self::Netgen { .. } => NETGEN,
         }
     }
 
@@ -84,7 +85,7 @@ impl std::fmt::Display for Rung {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let finer = match *self {
             Self::Gmsh { surface, volume, finer, least } => {
-                write!(f, "gmsh ({} surfaces, {} volumes", gmsh::algorithm(surface), gmsh::algorithm_3d(volume))?;
+                write!(f, "gmsh ({} surfaces, {} volumes", algorithm(surface), algorithm_3d(volume))?;
                 if least == Least::Large {
                     write!(f, ", no small sizes")?;
                 }
@@ -106,24 +107,20 @@ impl std::fmt::Display for Rung {
     }
 }
 
-/// Where gmsh is: what its variable names, else in the search path.
-pub fn gmsh_places() -> Vec<PathBuf> {
-    vec![named(gmsh::VARIABLE).unwrap_or_else(|| gmsh::NAME.into())]
-}
-
-/// Where a Python with netgen may be: what its variable names; else the project's virtual environment (looked for from the program's own
-/// place and from the working folder upwards), then the system's Python.
-pub fn netgen_places() -> Vec<PathBuf> {
-    if let Some(python) = named(netgen::VARIABLE) {
-        return vec![python];
+/// gmsh's name of an algorithm for surfaces.
+fn algorithm(number: u32) -> &'static str {
+    match number {
+        1 => "MeshAdapt",
+        5 => "Delaunay",
+        _ => "frontal-Delaunay",
     }
-    let own = std::env::current_exe().ok();
-    let here = std::env::current_dir().ok();
-    let roots = own.iter().chain(&here).flat_map(|path| path.ancestors().map(Path::to_owned).collect::<Vec<_>>());
-    let local = roots.map(|root| root.join(ENVIRONMENT)).find(|path| path.is_file());
-    local.into_iter().chain([PathBuf::from("python3")]).collect()
 }
 
-fn named(variable: &str) -> Option<PathBuf> {
-    std::env::var_os(variable).filter(|value| !value.is_empty()).map(PathBuf::from)
+/// gmsh's name of an algorithm for volumes.
+fn algorithm_3d(number: u32) -> &'static str {
+    match number {
+        4 => "frontal",
+        10 => "HXT",
+        _ => "Delaunay",
+    }
 }

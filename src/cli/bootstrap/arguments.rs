@@ -1,0 +1,78 @@
+//! What can be asked of `geo-adapt bootstrap`.
+use super::domain;
+use super::rung::Choice;
+use crate::cli::adapt::files::Targets;
+use crate::cli::files::{Files, JSON, Target};
+use crate::cli::metric::geometry::GeometryArguments;
+use crate::cli::workplace::Workplace;
+use std::path::PathBuf;
+
+/// Help on --far-field.
+const FAR_FIELD: &str = "Mesh the space around the solids instead, for external flow: box:XMIN,YMIN,ZMIN,XMAX,YMAX,ZMAX, or box:FACTOR \
+(so many extents of the body beyond it on all sides), sphere:RADIUS (about the body's middle) or sphere:X,Y,Z,RADIUS, without them. Its \
+faces are called farfield, those of the body as in the model, else wall. This domain is written beside the mesh as .brep, with its names \
+as .names.json, for `adapt --cad`. On the body sizes are at most a tenth of its diagonal";
+
+/// The domain of a far field in the workplace, until it is written with the mesh.
+pub const DOMAIN: &str = "domain.brep";
+
+/// Arguments of `geo-adapt bootstrap`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The model, of one or several solids: .step, .stp, .iges, .igs, .brep or .egads
+    pub model: PathBuf,
+    /// Where the mesh goes: .mesh or .meshb; its metric is written beside it as .solb, what the mesher said as .log
+    #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
+    pub output: PathBuf,
+    /// Greatest size, in model units [default: a tenth of the diagonal of the model's box]
+    #[arg(long, value_name = "H", value_parser = crate::cli::positive, allow_negative_numbers = true)]
+    pub size: Option<f64>,
+    #[command(flatten)]
+    pub sizes: GeometryArguments,
+    /// Greatest complexity, about half the number of vertices: where the geometry asks for more its sizes are enlarged
+    #[arg(long, value_name = "C", value_parser = crate::cli::positive, default_value = "100000", allow_negative_numbers = true)]
+    pub complexity: f64,
+    /// Mesh the space around the solids instead, for external flow: a box or a sphere without them
+    #[arg(long, value_name = "box:…|sphere:…", long_help = FAR_FIELD)]
+    pub far_field: Option<domain::Spec>,
+    /// The body is one half: cut the far field at the plane face where the body ends in this direction, and call that symmetry
+    #[arg(long, value_enum, value_name = "AXIS", requires = "far_field")]
+    pub symmetry: Option<domain::Axis>,
+    /// Leave the mesh as the mesher made it
+    #[arg(long)]
+    pub no_adapt: bool,
+    /// Who makes the mesh that is adapted; by default gmsh, and netgen where gmsh fails
+    #[arg(long, value_enum, default_value_t = Choice::default())]
+    pub mesher: Choice,
+    /// Seconds that one run of the mesher may take, without waiting for a busy machine; a third of them at first, all where nothing else
+    /// made a mesh
+    #[arg(long, value_name = "S", value_parser = crate::cli::positive, default_value = "120", allow_negative_numbers = true)]
+    pub time_limit: f64,
+    /// Threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    pub threads: Option<u16>,
+    /// Write what was done as JSON
+    #[arg(long, value_name = "FILE.json", conflicts_with = "no_adapt")]
+    pub report: Option<PathBuf>,
+    /// No progress and no table; errors only
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl Arguments {
+    /// The files that are written, refused before the work where that would fail after it: those of the mesh, and the mesher's log.
+    pub fn targets(&self, place: &Workplace) -> Result<(Targets, Target), String> {
+        let mut files = Files::new().reads_models([&self.model]);
+        let mut targets = Targets::of(&mut files, &self.output, self.report.as_ref(), JSON)?;
+        let log = files.writes(&self.output.with_extension("log"), "the log beside -o", &[])?;
+        if self.far_field.is_some() {
+            let domain = files.writes(&self.output.with_extension("brep"), "the domain beside -o", &[])?;
+            targets.with_model(place.file(DOMAIN), domain);
+        }
+        Ok((targets, log))
+    }
+
+    pub fn limits(&self) -> crate::metric::Limits {
+        crate::metric::Limits { hmax: self.size, ..Default::default() }
+    }
+}

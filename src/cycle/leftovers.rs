@@ -1,0 +1,65 @@
+//! What a killed run has left: programs that still work, and files that were being written.
+use super::error::Error;
+use super::layout::Layout;
+use crate::process::{Group, Stop, who_has_open};
+use std::fs::{self, File, TryLockError};
+use std::path::Path;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::{Duration, Instant};
+
+/// The file with the group of the program that runs in a step.
+pub const PID: &str = "pid";
+
+/// How long between two looks.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// After so long the user is told what is waited for.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Ends what still works in the folder of a step, and writes to its log. Whether there was something; `tell` is told what is waited for.
+///
+/// # Errors
+/// [`Error::Interrupted`] when the user does not want to wait.
+pub fn end(folder: &Path, stop: &Stop, tell: &dyn Fn(&str)) -> Result<bool, Error> {
+    let log = folder.join("log.txt");
+    let Ok(file) = File::open(&log) else { return Ok(false) };
+    match file.try_lock() {
+        Ok(()) => return Ok(false),
+        Err(TryLockError::WouldBlock) => {}
+        // A file system without locks.
+        Err(TryLockError::Error(_)) => return Ok(false),
+    }
+    let text = fs::read_to_string(folder.join(PID)).ok();
+    if let Some(group) = text.as_deref().and_then(Group::parse).filter(|group| group.is_there(&log)) {
+        group.kill();
+    }
+    let (began, mut is_told) = (Instant::now(), false);
+    while matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
+        if stop.asked.load(Relaxed) {
+            return Err(Error::Interrupted);
+        }
+        if !is_told && began.elapsed() > PATIENCE {
+            is_told = true;
+            let who = who_has_open(&log).unwrap_or_else(|| "a program on another machine, or of another user".into());
+            tell(&format!("waits for {who}, which still writes to {}: end it, or end this (Ctrl-C)", log.display()));
+        }
+        std::thread::sleep(LOOK);
+    }
+    Ok(true)
+}
+
+/// Removes files of the loop's own folder that a killed run was writing. Only for who holds the lock of the loop.
+pub fn remove_temporaries(layout: &Layout) {
+    let ours = [layout.state(), layout.page(), layout.figures()];
+    let ours = ours.iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
+    let ours: Vec<String> = ours.collect();
+    for entry in fs::read_dir(layout.root()).into_iter().flatten().flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let inside = name.strip_prefix('.').and_then(|rest| rest.strip_suffix(".tmp"));
+        if inside.is_some_and(|inside| {
+            ours.iter().any(|ours| inside.strip_prefix(ours.as_str()).is_some_and(|rest| rest.starts_with('.')))
+        }) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Groups of processes: ended together, and found again by a later run.
+use std::path::Path;
+use std::time::Duration;
+
+/// A group of processes, by its first one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    id: u32,
+    /// When its first process was started, in ticks since the system was, and which start of the system that was. Numbers of processes
+    /// are used again, but not with the same times. Empty where the system does not tell.
+    since: String,
+}
+
+impl Group {
+    /// Of a process that was just started as the first of its group.
+    pub fn of(id: u32) -> Self {
+        Self { id, since: since(id).unwrap_or_default() }
+    }
+
+    /// The number of its first process.
+    pub fn id(&self) -> u32 {
+        self.id
+    }
+
+    /// For a file; [`Self::parse`] reads it.
+    pub fn text(&self) -> String {
+        format!("{} {}", self.id, self.since)
+    }
+
+    /// Of a file.
+    pub fn parse(text: &str) -> Option<Self> {
+        let (id, since) = text.trim().split_once(' ')?;
+        Some(Self { id: id.parse().ok()?, since: since.into() })
+    }
+
+    /// Whether one of its processes is still there. A number says nothing by itself: it must be the process of that time, or, where that
+    /// one has ended, a process of the group that has the file open that the group writes to.
+    pub fn is_there(&self, file: &Path) -> bool {
+        match since(self.id) {
+            _ if self.since.is_empty() => false,
+            Some(since) => since == self.since,
+            None => self.boot() == boot() && members(self.id).any(|process| has_open(process, file)),
+        }
+    }
+
+    fn boot(&self) -> Option<String> {
+        self.since.split_once(' ').map(|(_, boot)| boot.into())
+    }
+
+    /// Asks all its processes to end.
+    pub fn ask_to_end(&self) {
+        #[cfg(unix)]
+        signal(self.id, libc::SIGTERM);
+    }
+
+    /// Ends all its processes at once.
+    pub fn kill(&self) {
+        #[cfg(unix)]
+        signal(self.id, libc::SIGKILL);
+    }
+}
+
+#[cfg(unix)]
+fn signal(group: u32, signal: i32) {
+    // 0 is our own group, and −1 everybody.
+    if let Some(group) = libc::pid_t::try_from(group).ok().filter(|&group| group > 1) {
+        // SAFETY: a call without memory; where there is no such group, or it is not ours, it does nothing.
+        unsafe { libc::kill(-group, signal) };
+    }
+}
+
+/// Has this process killed by the system when its parent has ended, so that it never works for nobody. Called first in a process that
+/// `parent` has started. On systems other than Linux nothing happens.
+///
+/// Only calls that are allowed between fork and exec.
+pub(super) fn end_with_parent(parent: u32) {
+    #[cfg(target_os = "linux")]
+    // SAFETY: calls without memory.
+    unsafe {
+        libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
+        // It may have ended before.
+        if u32::try_from(libc::getppid()) != Ok(parent) {
+            libc::_exit(0);
+        }
+    }
+    #[cfg(not(target_os = "linux"))]
+    let _ = parent;
+}
+
+/// The words of /proc/ID/stat behind the name, which is in parentheses and may hold anything (proc(5)): from the third, the state.
+fn stat(id: u32) -> Option<Vec<String>> {
+    let text = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
+    Some(text.rsplit_once(')')?.1.split_ascii_whitespace().map(str::to_owned).collect())
+}
+
+/// Of a process that works: one that has ended and was not waited for does not.
+fn since(id: u32) -> Option<String> {
+    let words = stat(id).filter(|words| words[0] != "Z")?;
+    Some(format!("{} {}", words.get(19)?, boot()?))
+}
+
+/// Which start of the system this is.
+fn boot() -> Option<String> {
+    std::fs::read_to_string("/proc/sys/kernel/random/boot_id").ok().map(|id| id.trim().to_owned())
+}
+
+/// The processes of a group.
+fn members(group: u32) -> impl Iterator<Item = u32> {
+    let all = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let numbers = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
+    let group = group.to_string();
+    numbers.filter(move |&id| stat(id).is_some_and(|words| words[0] != "Z" && words.get(2) == Some(&group)))
+}
+
+/// Whether a process has a file open.
+#[cfg(unix)]
+fn has_open(process: u32, file: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let Ok(wanted) = std::fs::metadata(file) else { return false };
+    let open = std::fs::read_dir(format!("/proc/{process}/fd")).into_iter().flatten().flatten();
+    let mut found = open.filter_map(|entry| std::fs::metadata(entry.path()).ok());
+    found.any(|found| (found.dev(), found.ino()) == (wanted.dev(), wanted.ino()))
+}
+
+#[cfg(not(unix))]
+fn has_open(_: u32, _: &Path) -> bool {
+    false
+}
+
+/// Who has a file open, other than this process, by number and command; none where the system does not tell.
+pub fn who_has_open(file: &Path) -> Option<String> {
+    let all = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let mut numbers = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
+    let found = numbers.find(|&id| id != std::process::id() && has_open(id, file))?;
+    Some(format!("process {found} ({})", command(found).unwrap_or_default()))
+}
+
+/// The command of a process; nothing where it has ended.
+fn command(id: u32) -> Option<String> {
+    let bytes = std::fs::read(format!("/proc/{id}/cmdline")).ok()?;
+    let words: Vec<_> = bytes.split(|byte| *byte == 0).map(String::from_utf8_lossy).collect();
+    let line = words.join(" ").trim().to_owned();
+    (!line.is_empty()).then_some(line)
+}
+
+/// Processor time of a process so far, with what it has waited for, in ticks of 1/100 s; none on other systems than Linux.
+pub(super) fn processor_time(id: u32) -> Option<Duration> {
+    let words = stat(id)?;
+    let ticks: u64 = words.get(11..15)?.iter().filter_map(|word| word.parse::<u64>().ok()).sum();
+    Some(Duration::from_millis(10 * ticks))
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use std::process::{Command, Stdio};
+
+    #[test]
+    fn a_number_alone_is_no_group() {
+        let folder = tempfile::tempdir().unwrap();
+        let log = folder.path().join("log");
+        let file = std::fs::File::create(&log).unwrap();
+        let mut command = Command::new("sh");
+        command.args(["-c", "sleep 60 & echo $!; read line"]).stdin(Stdio::piped()).stderr(file).stdout(Stdio::piped());
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut child = command.spawn().unwrap();
+        let group = Group::of(child.id());
+        assert_eq!(Group::parse(&group.text()), Some(group.clone()));
+        assert!(group.is_there(&log) && who_has_open(&log).unwrap().contains("(s"));
+        // The number of another time, or of nobody knows when.
+        let other = Group { since: format!("1 {}", boot().unwrap()), ..group.clone() };
+        assert!(!other.is_there(&log) && !Group { since: String::new(), ..group.clone() }.is_there(&log));
+        // The first process has ended, and one of its children works on: it is known by the file that it has open.
+        let mut line = String::new();
+        std::io::BufRead::read_line(&mut std::io::BufReader::new(child.stdout.take().unwrap()), &mut line).unwrap();
+        drop(child.stdin.take());
+        child.wait().unwrap();
+        assert!(group.is_there(&log) && !group.is_there(&folder.path().join("other")));
+        group.kill();
+        let sleeper: u32 = line.trim().parse().unwrap();
+        let began = std::time::Instant::now();
+        while since(sleeper).is_some() {
+            assert!(began.elapsed() < Duration::from_secs(20), "it was not ended");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert!(!group.is_there(&log));
+    }
+}

@@ -1,0 +1,31 @@
+//! Other programs, run to their end: whatever this program starts, it starts here.
+//!
+//! [`Runner`] starts a program, waits for it, ends it with all that it has started where the user or a limit of time says so, and tells how it
+//! ended ([`Outcome`]). [`Group`] is a group of processes that a later run finds again, [`Log`] a file for what programs say.
+mod group;
+mod log;
+mod outcome;
+mod run;
+
+pub use group::{Group, who_has_open};
+pub use log::{Log, errors_or_last_lines, last_line, last_lines};
+pub use outcome::Outcome;
+pub use run::{Runner, Tie, is_running};
+
+use std::sync::atomic::AtomicBool;
+
+/// What the user wants to end.
+#[derive(Debug, Default)]
+pub struct Stop {
+    /// The work, where it can be ended in good order.
+    pub asked: AtomicBool,
+    /// The program that runs, too.
+    pub now: AtomicBool,
+}
+
+impl Stop {
+    /// Nothing yet.
+    pub const fn new() -> Self {
+        Self { asked: AtomicBool::new(false), now: AtomicBool::new(false) }
+    }
+}

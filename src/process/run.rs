@@ -1,0 +1,281 @@
+//! Runs a program to its end.
+use super::group::{Group, end_with_parent, processor_time};
+use super::log::Log;
+use super::outcome::Outcome;
+use std::io;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// Most time between two looks at a program. One that has just begun is looked at sooner.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// How long a program that was asked to end may take for it.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// A program that waits for a busy machine has so many times its limit.
+const WAITING: u32 = 4;
+
+/// How a program belongs to this one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tie {
+    /// In a group of its own, so that an interrupt at the terminal is for us alone; it ends with us, however we end (on Linux).
+    Bound,
+    /// In a group of its own, which goes on where we are killed: a later run ends it ([`Group`]).
+    Loose,
+    /// In our group: who ends that ends us both.
+    Shared,
+}
+
+/// How a program is run.
+pub struct Runner<'a> {
+    /// How it belongs to us.
+    pub tie: Tie,
+    /// Processor time that it may take.
+    pub limit: Option<Duration>,
+    /// Set when it shall end.
+    pub stop: &'a AtomicBool,
+    /// Where what it says goes: nowhere without.
+    pub log: Option<&'a Log>,
+}
+
+/// How many programs run.
+static RUNNING: AtomicUsize = AtomicUsize::new(0);
+
+/// Whether a program runs that this one has started, and waits for.
+pub fn is_running() -> bool {
+    RUNNING.load(Ordering::SeqCst) > 0
+}
+
+/// Counts a program as long as it runs.
+struct Counted;
+
+impl Counted {
+    fn new() -> Self {
+        RUNNING.fetch_add(1, Ordering::SeqCst);
+        Self
+    }
+}
+
+impl Drop for Counted {
+    fn drop(&mut self) {
+        RUNNING.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+impl Runner<'_> {
+    /// Starts the program and waits until it has ended, with all of its group; `started` is told the group.
+    ///
+    /// # Errors
+    /// When it cannot be started.
+    pub fn run(&self, command: &mut Command, started: impl FnOnce(&Group)) -> io::Result<Outcome> {
+        let _counted = Counted::new();
+        let sink = || self.log.map_or_else(|| Ok(Stdio::null()), Log::sink);
+        command.stdin(Stdio::null()).stdout(sink()?).stderr(sink()?);
+        self.tie(command);
+        let mut child = command.spawn()?;
+        let group = Group::of(child.id());
+        started(&group);
+        let outcome = self.wait(&mut child, &group);
+        if outcome.is_err() {
+            // Nothing is left behind, whatever went wrong.
+            self.end(&mut child, &group);
+        }
+        outcome
+    }
+
+    #[cfg(unix)]
+    fn tie(&self, command: &mut Command) {
+        use std::os::unix::process::CommandExt;
+        if self.tie != Tie::Shared {
+            command.process_group(0);
+        }
+        if self.tie == Tie::Bound && cfg!(target_os = "linux") {
+            let parent = std::process::id();
+            // SAFETY: it makes system calls only.
+            unsafe { command.pre_exec(move || Ok(end_with_parent(parent))) };
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn tie(&self, _: &mut Command) {}
+
+    fn wait(&self, child: &mut Child, group: &Group) -> io::Result<Outcome> {
+        let began = Instant::now();
+        loop {
+            if has_ended(child)? {
+                // While the child was not waited for, its number is its group's: what is left there ends too.
+                self.kill(child, group);
+                return Ok(Outcome::of(child.wait()?));
+            }
+            let elapsed = began.elapsed();
+            if self.stop.load(Ordering::SeqCst) {
+                self.end(child, group);
+                return Ok(Outcome::Interrupted);
+            }
+            if let Some(limit) = self.limit.filter(|&limit| is_over(child.id(), elapsed, limit)) {
+                self.end(child, group);
+                return Ok(Outcome::TooLong(limit));
+            }
+            std::thread::sleep(LOOK.min(elapsed / 8 + Duration::from_micros(500)));
+        }
+    }
+
+    /// Asks a program to end, and ends it where it does not.
+    fn end(&self, child: &mut Child, group: &Group) {
+        if self.tie != Tie::Shared {
+            group.ask_to_end();
+            let asked = Instant::now();
+            while asked.elapsed() < PATIENCE && !has_ended(child).unwrap_or(true) {
+                std::thread::sleep(LOOK / 4);
+            }
+        }
+        self.kill(child, group);
+        let _ = child.wait();
+    }
+
+    fn kill(&self, child: &mut Child, group: &Group) {
+        if self.tie != Tie::Shared {
+            group.kill();
+        }
+        // Not of a group, where there are none.
+        let _ = child.kill();
+    }
+}
+
+/// Whether a program has ended; it is not waited for, so its number stays its own.
+#[cfg(unix)]
+fn has_ended(child: &mut Child) -> io::Result<bool> {
+    let mut info = std::mem::MaybeUninit::<libc::siginfo_t>::zeroed();
+    let options = libc::WEXITED | libc::WNOHANG | libc::WNOWAIT;
+    // SAFETY: waitid writes to a record of its own kind, which is ours; all zeroes are a value of it.
+    let (code, info) =
+        unsafe { (libc::waitid(libc::P_PID, child.id(), info.as_mut_ptr(), options), info.assume_init()) };
+    if code != 0 {
+        let error = io::Error::last_os_error();
+        return if error.kind() == io::ErrorKind::Interrupted { Ok(false) } else { Err(error) };
+    }
+    // SAFETY: waitid has filled the record, or left it as it was: zeroes.
+    Ok(unsafe { info.si_pid() } != 0)
+}
+
+#[cfg(not(unix))]
+fn has_ended(child: &mut Child) -> io::Result<bool> {
+    child.try_wait().map(|status| status.is_some())
+}
+
+/// Whether a program has had its time. What it waits for a busy machine counts by a quarter: else what comes of it would depend on what
+/// else runs.
+fn is_over(id: u32, elapsed: Duration, limit: Duration) -> bool {
+    elapsed > limit && processor_time(id).is_none_or(|time| time.max(elapsed / WAITING) > limit)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use crate::process::{last_line, last_lines};
+    use std::path::Path;
+
+    static NEVER: AtomicBool = AtomicBool::new(false);
+
+    fn shell(script: &str, limit: f64, log: Option<&Log>) -> Outcome {
+        let runner = Runner { tie: Tie::Bound, limit: Some(Duration::from_secs_f64(limit)), stop: &NEVER, log };
+        runner.run(Command::new("sh").args(["-c", script]), |_| ()).unwrap()
+    }
+
+    #[test]
+    fn how_a_program_ends_is_told() {
+        let crash = Outcome::Crashed(libc::SIGSEGV);
+        for (script, outcome, words) in [
+            ("true", Outcome::Done, "ended well"),
+            ("exit 3", Outcome::Code(3), "exit code 3"),
+            ("kill -SEGV $$", crash, "crashed (signal 11)"),
+            ("kill -KILL $$", Outcome::Killed, "where memory ends"),
+            ("kill -INT $$", Outcome::Interrupted, "was interrupted"),
+            ("kill -TERM $$", Outcome::Interrupted, "was interrupted"),
+            ("ulimit -c 0; kill -XCPU $$", Outcome::OutOfTime, "ulimit -t"),
+        ] {
+            let found = shell(script, 60.0, None);
+            assert_eq!(found, outcome, "{script}");
+            assert!(found.to_string().contains(words), "{found}");
+        }
+    }
+
+    #[test]
+    fn the_log_has_what_was_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log");
+        let log = Log::create(&path).unwrap();
+        assert_eq!(shell("echo one; echo two >&2", 60.0, Some(&log)), Outcome::Done);
+        assert_eq!(last_lines(&path), "    one\n    two");
+        assert_eq!(last_line(&path).unwrap(), "two");
+    }
+
+    #[test]
+    fn what_hangs_is_ended_also_where_it_does_not_listen() {
+        let began = Instant::now();
+        assert_eq!(shell("exec sleep 60", 0.1, None), Outcome::TooLong(Duration::from_millis(100)));
+        assert!(began.elapsed() < Duration::from_secs(30));
+        assert!(matches!(shell("trap '' TERM; while true; do sleep 0.1; done", 0.1, None), Outcome::TooLong(_)));
+        assert!(began.elapsed() < Duration::from_secs(30));
+    }
+
+    fn is_alive(id: &str) -> bool {
+        let state = std::fs::read_to_string(format!("/proc/{}/stat", id.trim())).unwrap_or_default();
+        state.rsplit(')').next().is_some_and(|rest| !rest.is_empty() && !rest.trim_start().starts_with('Z'))
+    }
+
+    fn ends(path: &Path) {
+        let (id, began) = (std::fs::read_to_string(path).unwrap(), Instant::now());
+        while is_alive(&id) {
+            assert!(began.elapsed() < Duration::from_secs(20), "{id} is still there");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_whole_group_ends_with_its_first_process() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("id");
+        let script = format!("sleep 60 & echo $! > {}", path.display());
+        assert_eq!(shell(&script, 60.0, None), Outcome::Done);
+        ends(&path);
+        assert!(matches!(shell(&format!("{script}; wait"), 0.2, None), Outcome::TooLong(_)));
+        ends(&path);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_waits_for_the_machine_has_more_time() {
+        let own = || processor_time(std::process::id()).unwrap();
+        let before = own();
+        let began = Instant::now();
+        while own() < before + Duration::from_millis(100) {
+            std::hint::black_box((0..10_000).sum::<u64>());
+        }
+        assert!(began.elapsed() < Duration::from_secs(60));
+        let second = Duration::from_secs(1);
+        let mut child = Command::new("sleep").arg("60").spawn().unwrap();
+        let is_over = |elapsed: Duration| is_over(child.id(), elapsed, second);
+        assert!(!is_over(second / 2) && !is_over(3 * second) && is_over(5 * second));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+
+    #[test]
+    fn what_runs_ends_with_an_interrupt() {
+        let stop = AtomicBool::new(true);
+        let runner = Runner { tie: Tie::Loose, limit: None, stop: &stop, log: None };
+        assert_eq!(runner.run(Command::new("sleep").arg("60"), |_| ()).unwrap(), Outcome::Interrupted);
+    }
+
+    #[test]
+    fn a_program_that_is_not_there_is_told_so() {
+        let runner = Runner { tie: Tie::Bound, limit: None, stop: &NEVER, log: None };
+        assert_eq!(
+            runner.run(&mut Command::new("/nowhere/mesher"), |_| ()).unwrap_err().kind(),
+            io::ErrorKind::NotFound
+        );
+    }
+}
