@@ -93,7 +93,12 @@ impl Runner<'_> {
         if self.tie == Tie::Bound && cfg!(target_os = "linux") {
             let parent = std::process::id();
             // SAFETY: it makes system calls only.
-            unsafe { command.pre_exec(move || Ok(end_with_parent(parent))) };
+            unsafe {
+                command.pre_exec(move || {
+                    end_with_parent(parent);
+                    Ok(())
+                })
+            };
         }
     }
 
