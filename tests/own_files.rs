@@ -265,9 +265,8 @@ fn nothing_else_in_the_command_line_writes_files() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli");
     let mut sources = Vec::new();
     collect(&root, &mut sources);
-    // What goes to a folder of the run's own: meshers' scripts and logs, the model for a child, the domain for its parent.
-    let own =
-        ["workplace.rs", "bootstrap/process.rs", "bootstrap/netgen.rs", "bootstrap/gmsh.rs", "bootstrap/domain.rs"];
+    // What goes to a folder of the run's own: meshers' scripts, what a child answers, the domain for its parent.
+    let own = ["workplace.rs", "child.rs", "bootstrap/netgen.rs", "bootstrap/gmsh.rs", "bootstrap/domain.rs"];
     let ways =
         ["write_", "Batch", "names::write", "formats::write", "fs::write", "File::create", "OpenOptions", "fs::copy"];
     let ways = [&ways[..], &["fs::rename", "println!", "print!(", "stdout()"]].concat();
