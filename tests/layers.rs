@@ -1,5 +1,5 @@
-//! Imports go one way: cli → cycle → { adapt, image } → sizing → { metric, geometry } → mesh → tasks. Within some rooms no files name each
-//! other in a circle.
+//! Imports go one way, as [`ALLOWED`] says: { cli → cycle, api } → { adapt, sizing, view, formats, image } → { metric → transfer, geometry }
+//! → mesh → tasks. In the rooms of [`ROOMS`] no files name each other in a circle.
 #[path = "common/imports.rs"]
 mod imports;
 

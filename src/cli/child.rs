@@ -1,8 +1,8 @@
-//! Work of OpenCASCADE in a process of its own: this same program. OpenCASCADE can crash on a damaged file, or never come back from it, and
-//! neither can be caught in one's own process.
+//! Work of OpenCASCADE in a child process, which is this same program. On a damaged file OpenCASCADE can crash, or never come back, and
+//! neither can be caught within a process.
 //!
-//! The child gets a file for its answer: what is wrong with its input, where something is. How it ended says the rest ([`Outcome`]), and each
-//! end is told for what it is: an interrupt, the end of memory, a limit of time, or else a crash.
+//! The child writes what is wrong with its input, if anything, into a file. How it ended tells the rest ([`Outcome`]): an interrupt, the end
+//! of memory, a limit of time, or else a crash.
 use super::interrupt::{self, Interrupted};
 use super::workplace::Workplace;
 use crate::memory::end;

@@ -57,7 +57,7 @@ pub fn finish_on(says: &'static str) -> &'static AtomicBool {
     &STOP.asked
 }
 
-/// From now on an interrupt ends the program at once again. What is returned is set where that has to wait for a program that runs.
+/// From now on an interrupt ends the program at once again. The flag returned is set when that has to wait for a program that runs.
 pub fn end_at_once() -> &'static AtomicBool {
     *FINISHES.lock().unwrap_or_else(PoisonError::into_inner) = None;
     &STOP.now

@@ -1,5 +1,5 @@
-//! Reading a CAD model without being at the mercy of its file: a child process reads it ([`super::child`]). What it has read it hands over in
-//! a file of its own: joining the solids of an assembly takes seconds, so it is done once.
+//! Reads CAD models in a child process ([`super::child`]), so that a damaged file does no harm. The child hands over what it has read in a file
+//! of its own: to join the solids of an assembly takes seconds, so it is done once.
 use super::child::{self, Answer, Task};
 use super::workplace::Workplace;
 use crate::geometry::{Error, Model, names};

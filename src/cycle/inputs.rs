@@ -1,5 +1,5 @@
-//! The files that a loop begins with, by what is in them: one that is changed while the loop is not at its end would make steps that do not
-//! belong together.
+//! The files that a loop begins with, by their content. If one were changed before the loop has ended, later steps would not fit the
+//! earlier ones.
 use super::config::Loaded;
 use super::error::Error;
 use crate::geometry::names;
@@ -28,7 +28,7 @@ pub fn fingerprints(loaded: &Loaded) -> Result<Fingerprints, Error> {
     files.iter().map(of).collect()
 }
 
-/// What of the files is not as it was: which, and how.
+/// The files that are not as they were, and how they changed.
 pub fn differences(old: &Fingerprints, new: &Fingerprints) -> Vec<String> {
     let changed = new.iter().filter_map(|(path, print)| match old.get(path) {
         Some(before) if before == print => None,

@@ -1,4 +1,4 @@
-//! What a killed run has left: programs that still work, and files that were being written.
+//! What a killed run has left behind: programs that still run, and files that were being written.
 use super::error::Error;
 use super::layout::Layout;
 use crate::process::{Group, Stop, who_has_open};
@@ -16,7 +16,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// After so long the user is told what is waited for.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Ends what still works in the folder of a step, and writes to its log. Whether there was something; `tell` is told what is waited for.
+/// Ends programs that still run in the folder of a step and write to its log. Returns whether there were any; `tell` is told about a wait.
 ///
 /// # Errors
 /// [`Error::Interrupted`] when the user does not want to wait.
@@ -48,7 +48,7 @@ pub fn end(folder: &Path, stop: &Stop, tell: &dyn Fn(&str)) -> Result<bool, Erro
     Ok(true)
 }
 
-/// Removes files of the loop's own folder that a killed run was writing. Only for who holds the lock of the loop.
+/// Removes files of the loop's own folder that a killed run was writing. Only while the lock of the loop is held.
 pub fn remove_temporaries(layout: &Layout) {
     let ours = [layout.state(), layout.page(), layout.figures()];
     let ours = ours.iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());

@@ -1,4 +1,4 @@
-//! Who is told what happens, and how a run goes.
+//! The observer of a loop, and the options of a run.
 use super::history::Cycle;
 use std::path::Path;
 

@@ -36,8 +36,8 @@ pub struct Running<'a> {
 }
 
 impl<'a> Steps<'a> {
-    /// What a step gave: of the one that was done before, or else by doing it now, in an empty folder. What follows from it is done after it:
-    /// whatever is there of that goes first.
+    /// The result of a step. If the step was done before, it is that result; else the step is done now, in an empty folder, and whatever is
+    /// there of later steps is removed first.
     pub fn step<T: Serialize + DeserializeOwned>(
         self,
         folder: PathBuf,

@@ -2,7 +2,7 @@
 //!
 //! An allocation that fails would make the standard library abort, or panic on the way to it, and what a panic prints is allocated too: in
 //! the worst case one thread waits for ever for a lock that it holds itself. So the program's allocator ([`super::HugePages`]) does not
-//! answer that there is no memory. It writes a line from the stack and leaves, from whichever thread. Who can do with less asks by
+//! answer that there is no memory. It writes a line from the stack and ends the program, from any thread. Code that can do with less calls
 //! [`try_zeroed_vec`].
 //!
 //! The start of a thread that fails comes here by [`take_over_panics`], C++ by `geometry::on_memory_end`.
@@ -38,7 +38,7 @@ pub(super) fn may_fail<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// What the allocator answers: where there is nothing, it ends the program, unless the request may fail.
+/// The answer of the allocator. Without memory it ends the program, unless the request may fail.
 pub(super) fn checked(start: *mut u8, size: usize) -> *mut u8 {
     if start.is_null() && !MAY_FAIL.get() {
         leave(Some(size));
@@ -46,7 +46,7 @@ pub(super) fn checked(start: *mut u8, size: usize) -> *mut u8 {
     start
 }
 
-/// Makes a panic where memory has ended an end like any other: a thread that finds no room to begin panics, and so does who starts one.
+/// Ends the program at a panic where memory has ended: a thread without room to begin panics, and so does code that starts one.
 pub fn take_over_panics() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
@@ -109,7 +109,7 @@ pub extern "C" fn leave_if_ended() {
 #[cold]
 pub fn leave(size: Option<usize>) -> ! {
     static BEGUN: AtomicBool = AtomicBool::new(false);
-    // One line is enough; whoever comes second waits for the end that the first one brings.
+    // One line is enough: a second thread waits until the first one has ended the program.
     while BEGUN.swap(true, Ordering::SeqCst) {
         #[cfg(unix)]
         // SAFETY: a call without memory. What the standard library has for this may allocate.

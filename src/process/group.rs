@@ -33,8 +33,8 @@ impl Group {
         Some(Self { id: id.parse().ok()?, since: since.into() })
     }
 
-    /// Whether one of its processes is still there. A number says nothing by itself: it must be the process of that time, or, where that
-    /// one has ended, a process of the group that has the file open that the group writes to.
+    /// Whether one of its processes is still there. The number alone proves nothing. The process must have started at that time; if it has
+    /// ended, some process of the group must have the file open that the group writes to.
     pub fn is_there(&self, file: &Path) -> bool {
         match since(self.id) {
             _ if self.since.is_empty() => false,
@@ -69,7 +69,7 @@ fn signal(group: u32, signal: i32) {
     }
 }
 
-/// Has this process killed by the system when its parent has ended, so that it never works for nobody. Called first in a process that
+/// Asks the system to kill this process when its parent has ended, so that no orphan goes on. It is the first call in a process that
 /// `parent` has started. On systems other than Linux nothing happens.
 ///
 /// Only calls that are allowed between fork and exec.
@@ -99,7 +99,7 @@ fn since(id: u32) -> Option<String> {
     Some(format!("{} {}", words.get(19)?, boot()?))
 }
 
-/// Which start of the system this is.
+/// The identity of this start of the system.
 fn boot() -> Option<String> {
     std::fs::read_to_string("/proc/sys/kernel/random/boot_id").ok().map(|id| id.trim().to_owned())
 }

@@ -1,4 +1,4 @@
-//! What programs say, in a file.
+//! Logs: the output of programs, in a file.
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -91,7 +91,8 @@ pub fn last_lines(log: &Path) -> String {
         .join("\n")
 }
 
-/// In one line what the last program said last: errors before all else, but not lines with one of these words, which sum errors up.
+/// The last lines of the last program, in one line. Errors come first, but lines with one of these words, which only sum errors up, do
+/// not count as errors.
 pub fn errors_or_last_lines(log: &Path, sums: &[&str]) -> String {
     let text = end_of(log);
     let from = text.rfind(&format!("\n{COMMAND}")).map_or(0, |at| at + 1);

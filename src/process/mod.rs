@@ -1,7 +1,7 @@
-//! Other programs, run to their end: whatever this program starts, it starts here.
+//! Other programs. Everything that this program starts, it starts here.
 //!
-//! [`Runner`] starts a program, waits for it, ends it with all that it has started where the user or a limit of time says so, and tells how it
-//! ended ([`Outcome`]). [`Group`] is a group of processes that a later run finds again, [`Log`] a file for what programs say.
+//! [`Runner`] starts a program and waits for it. At an interrupt or a limit of time it ends the program with all that this has started. It
+//! returns how the program ended ([`Outcome`]). [`Group`] is a group of processes that a later run finds again, [`Log`] a file for what programs say.
 mod group;
 mod log;
 mod outcome;

@@ -10,7 +10,7 @@ pub enum Outcome {
     Done,
     /// With another exit code.
     Code(i32),
-    /// By the user: by our order, or by a signal that asks a program to end.
+    /// By the user: by us, or by a signal that asks a program to end.
     Interrupted,
     /// It took longer than this, and we ended it.
     TooLong(Duration),

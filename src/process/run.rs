@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// Most time between two looks at a program. One that has just begun is looked at sooner.
+/// Longest time between two looks at a program. One that has just begun is looked at sooner.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// How long a program that was asked to end may take for it.
@@ -23,7 +23,7 @@ pub enum Tie {
     Bound,
     /// In a group of its own, which goes on where we are killed: a later run ends it ([`Group`]).
     Loose,
-    /// In our group: who ends that ends us both.
+    /// In our group: whoever ends that group ends us both.
     Shared,
 }
 
@@ -169,8 +169,8 @@ fn has_ended(child: &mut Child) -> io::Result<bool> {
     child.try_wait().map(|status| status.is_some())
 }
 
-/// Whether a program has had its time. What it waits for a busy machine counts by a quarter: else what comes of it would depend on what
-/// else runs.
+/// Whether a program has used up its time. The time that it waits for a busy machine counts by a quarter, so that the result hardly depends
+/// on what else runs.
 fn is_over(id: u32, elapsed: Duration, limit: Duration) -> bool {
     elapsed > limit && processor_time(id).is_none_or(|time| time.max(elapsed / WAITING) > limit)
 }
