@@ -149,8 +149,7 @@ fn quality(c: &mut Criterion) {
             (corners, [0.0, 0.1, 0.2, 0.3].map(|x| log.times(1.0 + x)))
         })
         .collect();
-    let theirs: Vec<([Vector3<f64>; 4], [Matrix3<f64>; 4])> =
-        tets.iter().map(|(p, logs)| (p.map(Into::into), logs.map(Into::into))).collect();
+    let theirs: Vec<_> = tets.iter().map(|(p, logs)| (p.map(Vector3::from), logs.map(Matrix3::from))).collect();
     for ((p, logs), (q, matrices)) in tets.iter().zip(&theirs) {
         let [ours, theirs] = [mean_ratio(*p, logs.each_ref()), mean_ratio_by_nalgebra(q, matrices)];
         assert!((ours - theirs).abs() < 1e-9, "{ours} {theirs}");
