@@ -61,7 +61,7 @@ mod tests {
     fn a_change_of_one_byte_is_seen() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mesh");
-        let mut print = |bytes: &[u8]| {
+        let print = |bytes: &[u8]| {
             std::fs::write(&path, bytes).unwrap();
             fingerprint(&path).unwrap()
         };
