@@ -12,7 +12,7 @@ use robust::Coord;
 pub type Corners = [Vec3; 3];
 
 /// What a triangle draws back by, in parts of its size.
-const DRAWN_BACK: f64 = 1e-9;
+pub const DRAWN_BACK: f64 = 1e-9;
 
 /// The same in parts of its distance from the origin, which is rounded.
 const ROUNDING: f64 = 4e-15;
@@ -28,15 +28,21 @@ pub fn crossing<I: PartialEq>((nodes_a, a): (&[I; 3], &Corners), (nodes_b, b): (
     if of_a.iter().filter(|shared| **shared).count() > 1 {
         return meeting(a, b);
     }
-    meeting(&drawn_back(a, of_a), &drawn_back(b, of_b))
+    // Both by the same, so that two in one plane which look the same way stay in one.
+    let step = drawing_back(a).max(drawing_back(b));
+    meeting(&drawn_back(a, of_a, step), &drawn_back(b, of_b, step))
+}
+
+/// How far a triangle has to draw back at least.
+fn drawing_back(a: &Corners) -> f64 {
+    let size = norm(sub(a[1], a[0])).max(norm(sub(a[2], a[0])));
+    let from = a.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+    (DRAWN_BACK * size).max(ROUNDING * from)
 }
 
 /// A triangle drawn back against its normal, all but the corners that stay.
-fn drawn_back(a: &Corners, stays: [bool; 3]) -> Corners {
-    let [p, q, r] = *a;
-    let size = norm(sub(q, p)).max(norm(sub(r, p)));
-    let from = a.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let step = scale(unit(area2(p, q, r)), -(DRAWN_BACK * size).max(ROUNDING * from));
+fn drawn_back(a: &Corners, stays: [bool; 3], step: f64) -> Corners {
+    let step = scale(unit(area2(a[0], a[1], a[2])), -step);
     [0, 1, 2].map(|k| if stays[k] { a[k] } else { add(a[k], step) })
 }
 
@@ -367,11 +373,11 @@ mod tests {
             (seed >> 33) % n
         };
         let mut counts = [0; 2];
-        for _ in 0..20_000 {
+        for _ in 0..5000 {
             let mut corners = || [0, 1, 2].map(|_| [0, 1, 2].map(|_| next(4) as f64));
             let (a, b) = (corners(), corners());
             counts[usize::from(meet(a, b))] += 1;
         }
-        assert!(counts[0] > 2000 && counts[1] > 2000, "{counts:?}");
+        assert!(counts[0] > 500 && counts[1] > 500, "{counts:?}");
     }
 }

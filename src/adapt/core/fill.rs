@@ -8,8 +8,8 @@ use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, Side, TriangleIndex, sorted3};
 use crate::mesh::crossing::crossings_of;
 use crate::mesh::predicate::is_positive;
-use crate::mesh::triangle_pair::crossing;
-use crate::mesh::vector::Vec3;
+use crate::mesh::triangle_pair::{DRAWN_BACK, crossing};
+use crate::mesh::vector::{Vec3, distance};
 use crate::metric::{Source, Sym3, mean_ratios};
 use crate::tasks::{GRAIN, Team};
 
@@ -268,8 +268,13 @@ impl Filling<'_> {
             }
         });
         let at = |v| self.store.position(v);
-        let crossings =
-            crossings_of(self.team, &walls, at, |i| walls[i].into_iter().any(is_moved), crossing, usize::MAX);
+        // What moves by less than a triangle draws back cannot bring it through another: most meshes are on their model to rounding.
+        let is_asked = |i: usize| {
+            let [a, b, c] = walls[i].map(at);
+            let size = distance(a, b).max(distance(a, c));
+            walls[i].into_iter().any(|v| distance(at(v), before(v)) > DRAWN_BACK * size)
+        };
+        let crossings = crossings_of(self.team, &walls, at, is_asked, crossing, usize::MAX);
         let many = unprojected.len();
         for v in crossings.first.iter().flat_map(|crossing| crossing.triangles).flat_map(|i| walls[i]) {
             if is_moved(v) {

@@ -5,7 +5,7 @@ use crate::adapt::core::fill::{self, Filled};
 use crate::adapt::core::ids::VertexId;
 use crate::geometry::discrete::DEFAULT_RIDGE_ANGLE;
 use crate::geometry::{Discrete, Model};
-use crate::mesh::triangle_pair::meeting;
+use crate::mesh::triangle_pair::crossing;
 use crate::mesh::{TetMesh, samples};
 use crate::metric::{Background, Source, Sym3};
 use crate::tasks::Team;
@@ -65,7 +65,10 @@ fn triangles_are_found_as_they_come_and_go() {
     for triangle in &all {
         assert_eq!(triangles.get(&triangle.key).map(|t| t.corners), Some(triangle.corners));
         let others = all.iter().filter(|other| other.key != triangle.key);
-        let expected = others.filter(|other| meeting(&triangle.corners, &other.corners).is_some()).count();
+        let of = |t: &Triangle| (t.key, t.corners);
+        let (key, corners) = of(triangle);
+        let is_met = |other: &&Triangle| crossing((&key, &corners), (&other.key, &other.corners)).is_some();
+        let expected = others.filter(is_met).count();
         assert_eq!(triangles.crossings(&[*triangle], |key| *key == triangle.key), expected);
         met += expected;
     }
