@@ -59,6 +59,25 @@ fn edge_removal_takes_no_tetrahedron_from_the_boundary_of_a_frozen_region() {
     assert_eq!(of_reference(&frozen, &frozen.tets, 2), of_reference(&input, &input.tets, 2));
 }
 
+#[test]
+fn a_required_vertex_of_no_tetrahedron_does_not_count() {
+    let work = Workplace::new();
+    let mut input = cube(2, |_| 1);
+    let hanging = input.vertices.len() as u32;
+    input.vertices.push([3.0; 3]);
+    input.vertex_refs.push(0);
+    input.edges.push([0, hanging], 4);
+    input.edges.push([0, 1], 5);
+    input.required_edges = vec![0, 1];
+    input.required_vertices = vec![hanging, 13];
+    let metric = work.metric(&input, |_| isotropic(0.2));
+    let mesh = work.adapt(&work.mesh(&input), &["--metric", &metric]).mesh;
+    let required = |mesh: &TetMesh, v: usize| bits(mesh.vertices[mesh.required_vertices[v] as usize]);
+    assert_eq!((mesh.required_vertices.len(), required(&mesh, 0)), (1, bits([0.5; 3])));
+    let [edge] = mesh.required_edges[..] else { panic!("{:?}", mesh.required_edges) };
+    assert_eq!(points(&mesh, &mesh.edges.nodes[edge as usize]), points(&input, &[0, 1]));
+}
+
 #[cfg(feature = "occt")]
 mod on_cad {
     use super::*;
@@ -180,5 +199,21 @@ mod on_cad {
             // The place of what came out goes in again.
             adapted = adapter.adapt(&adapted.view(), &metric(mesh)).unwrap();
         }
+    }
+
+    #[test]
+    fn what_is_frozen_by_a_reference_that_the_first_cycle_replaces_is_refused() {
+        let mut input = cylinder();
+        input.triangles.refs.fill(1);
+        let work = Workplace::new();
+        let model = text(&at("geometry/cube-cylinder.step"));
+        let arguments = ["--cad", &model, "--analytic", "polar-2", "--complexity", "50", "--freeze", "1"];
+        let message = work.refusal(&work.mesh(&input), &[&arguments[..], &["--cycles", "2"]].concat());
+        assert!(message.contains("--freeze") && message.contains("classify"), "{message}");
+        // In one cycle all of the surface stays.
+        let found = work.adapt(&work.path("in.meshb"), &arguments);
+        let all =
+            |mesh: &TetMesh| mesh.triangles.nodes.iter().map(|nodes| points(mesh, nodes)).collect::<BTreeSet<_>>();
+        assert_eq!(all(&found.mesh), all(&input));
     }
 }

@@ -1,14 +1,17 @@
 //! The adapter in memory: the same meshes as by the program, meshes that go in again, and an error for whatever is wrong with the slices.
 #![cfg(feature = "cli")]
 mod common;
+mod support;
 
 use common::adapting::{Workplace, cube, isotropic, volumes};
 use geo_adapt::api::{AdaptedMesh, Adapter, Error, MeshView, Settings};
 use geo_adapt::geometry::Entity;
+use geo_adapt::geometry::classify::Classification;
 use geo_adapt::mesh::vector::{Vec3, add, distance, scale};
 use geo_adapt::mesh::{TetMesh, io, validity};
 use geo_adapt::metric::Sym3;
 use nalgebra::{Matrix3, Point3};
+use support::Random;
 
 fn settings() -> Settings {
     Settings { threads: 1, complexity: Some(300.0), ..Settings::default() }
@@ -213,6 +216,164 @@ fn a_place_of_another_mesh_is_an_error() {
     let bare = MeshView { triangles: &[], triangle_refs: &[], required_triangles: &[], ..mine.view() };
     assert!(matches!(adapter.adapt(&bare, &mine.metric), Err(Error::Place { .. })));
     assert!(adapter.adapt(&mine.view(), &mine.metric).is_ok());
+}
+
+/// A mesh that came out of an adapter, and the adapter: a ball of two regions in a cube.
+fn with_place() -> (Adapter, AdaptedMesh) {
+    let mut adapter = Adapter::discrete(Settings { complexity: Some(40.0), ..settings() }).unwrap();
+    let input = cube(2, |p| if p[2] < 0.5 { 1 } else { 2 });
+    let adapted = adapt(&mut adapter, &MeshView::of(&input), &front(&input, 0.5));
+    (adapter, adapted)
+}
+
+#[test]
+fn a_vertex_on_a_model_edge_with_three_ridges_is_an_error() {
+    let (mut adapter, mine) = with_place();
+    let mut place = mine.place.clone();
+    let at = place.entities.iter().position(|entity| matches!(entity, Entity::Edge(_))).unwrap() as u32;
+    let Entity::Edge(edge) = place.entities[at as usize] else { unreachable!() };
+    let corner = place.entities.iter().position(|entity| matches!(entity, Entity::Vertex(_))).unwrap() as u32;
+    place.ridges.push(([at, corner], edge));
+    let error = adapter.adapt(&MeshView { place: Some(&place), ..mine.view() }, &mine.metric).err().unwrap();
+    assert!(matches!(error, Error::Place { .. }), "{error}");
+    assert!(
+        error.to_string().contains(&format!("vertex {at} lies on edge {edge}, and has more than two ridges")),
+        "{error}"
+    );
+}
+
+#[test]
+fn whatever_is_wrong_with_a_place_is_told_and_what() {
+    let (mut adapter, mine) = with_place();
+    let entities = &mine.place.entities;
+    let first = |is: fn(&Entity) -> bool| entities.iter().position(is).unwrap();
+    let on_face = first(|entity| matches!(entity, Entity::Face(_)));
+    let on_edge = first(|entity| matches!(entity, Entity::Edge(_)));
+    let inside = first(|entity| *entity == Entity::Interior);
+    let Entity::Face(face) = entities[on_face] else { unreachable!() };
+    let corners: Vec<usize> = (0..entities.len()).filter(|&v| matches!(entities[v], Entity::Vertex(_))).collect();
+    let ridge = mine.place.ridges[0];
+    type Change<'a> = &'a dyn Fn(&mut Classification);
+    let changes: [(Change, &str); 10] = [
+        (&|place| place.entities[on_face] = Entity::Interior, "lies inside, and is in triangle"),
+        (&|place| place.entities[on_face] = Entity::Face(u32::from(face == 0)), "and is in triangle"),
+        (&|place| place.entities[on_face] = Entity::Edge(0), "has no ridge"),
+        (&|place| place.entities[inside] = Entity::Face(0), "is in no triangle of the surface"),
+        (&|place| place.entities[on_edge] = Entity::Face(face), ""),
+        (&|place| place.entities[corners[0]] = place.entities[corners[1]], "both lie on vertex"),
+        (&|place| place.ridges.push((ridge.0, ridge.1)), ""),
+        (&|place| place.ridges.push(([corners[0] as u32, corners[0] as u32], 0)), "is no edge of the surface"),
+        (&|place| place.ridges.retain(|other| *other != ridge), "where there is no ridge"),
+        (&|place| place.faces[0] = u32::from(place.faces[0] == 0), ""),
+    ];
+    for (number, (change, expected)) in changes.into_iter().enumerate() {
+        let mut place = mine.place.clone();
+        change(&mut place);
+        let error = adapter.adapt(&MeshView { place: Some(&place), ..mine.view() }, &mine.metric).err();
+        let Some(Error::Place { message }) = &error else { panic!("{number}: {error:?}") };
+        assert!(message.contains(expected), "{number}: {message}");
+    }
+    assert!(adapter.adapt(&mine.view(), &mine.metric).is_ok());
+}
+
+/// How often something is damaged at random: 30 times, or as GEO_ADAPT_MUTATIONS says.
+fn mutations() -> usize {
+    std::env::var("GEO_ADAPT_MUTATIONS").ok().and_then(|text| text.parse().ok()).unwrap_or(30)
+}
+
+fn below(random: &mut Random, n: usize) -> usize {
+    ((random.next() * n as f64) as usize).min(n.saturating_sub(1))
+}
+
+/// A number that is likely to be in range, at its end, or far beyond.
+fn index(random: &mut Random, n: usize) -> u32 {
+    match below(random, 8) {
+        0 => n as u32,
+        1 => u32::MAX,
+        _ => below(random, n) as u32,
+    }
+}
+
+fn coordinate(random: &mut Random) -> f64 {
+    [0.0, 0.5, 1.0, -1.0, 1e-17, 3.0, f64::INFINITY, f64::NAN][below(random, 8)]
+}
+
+#[test]
+fn no_place_makes_the_adapter_panic() {
+    let (mut adapter, mine) = with_place();
+    let mut random = Random(7);
+    let mut taken = 0;
+    for _ in 0..mutations() {
+        let mut place = mine.place.clone();
+        let entities = place.entities.len();
+        for _ in 0..=below(&mut random, 3) {
+            let v = below(&mut random, entities);
+            let ridge = below(&mut random, place.ridges.len());
+            match below(&mut random, 10) {
+                0 => place.entities[v] = Entity::Vertex(index(&mut random, 12)),
+                1 => place.entities[v] = Entity::Edge(index(&mut random, 20)),
+                2 => place.entities[v] = Entity::Face(index(&mut random, 7)),
+                3 => place.entities[v] = Entity::Interior,
+                4 => place.ridges[ridge].1 = index(&mut random, 20),
+                5 => place.ridges[ridge].0[below(&mut random, 2)] = index(&mut random, entities),
+                6 => {
+                    place.ridges.remove(ridge);
+                }
+                7 => {
+                    let triangle = below(&mut random, place.faces.len());
+                    place.faces[triangle] = index(&mut random, 7);
+                }
+                8 => place.projected[v][below(&mut random, 3)] = coordinate(&mut random),
+                _ => place.parameters[v][below(&mut random, 2)] = coordinate(&mut random),
+            }
+        }
+        if let Ok(adapted) = adapter.adapt(&MeshView { place: Some(&place), ..mine.view() }, &mine.metric) {
+            assert!(validity::check(&adapted.mesh).is_valid());
+            taken += 1;
+        }
+    }
+    assert!(taken > 0, "other parameters and points on the model do no harm");
+}
+
+#[test]
+fn no_mesh_makes_the_adapter_panic() {
+    let input = cube(2, |p| if p[2] < 0.5 { 1 } else { 2 });
+    let mut random = Random(11);
+    for _ in 0..mutations() {
+        let mut mesh = input.clone();
+        mesh.edges.push([0, 1], 1);
+        let mut metric: Vec<[f64; 6]> = front(&mesh, 0.5);
+        let n = mesh.vertices.len();
+        for _ in 0..=below(&mut random, 4) {
+            let at = below(&mut random, n);
+            let (tet, triangle) =
+                (below(&mut random, mesh.tets.len()), below(&mut random, mesh.triangles.len().max(1)));
+            match below(&mut random, 15) {
+                0 => mesh.vertices[at][below(&mut random, 3)] = coordinate(&mut random),
+                1 => mesh.tets.nodes[tet][below(&mut random, 4)] = index(&mut random, n),
+                2 => drop((mesh.tets.nodes.remove(tet), mesh.tets.refs.remove(tet))),
+                3 => mesh.tets.push(mesh.tets.nodes[tet], i32::MIN),
+                4 => mesh.triangles.push([0; 3].map(|_| index(&mut random, n)), i32::MAX),
+                5 => drop((mesh.triangles.nodes.remove(triangle), mesh.triangles.refs.remove(triangle))),
+                6 => mesh.triangles.push(mesh.triangles.nodes[triangle], -3),
+                7 => mesh.edges.push([0; 2].map(|_| index(&mut random, n)), 9),
+                8 => mesh.corners.push(index(&mut random, n)),
+                9 => mesh.required_vertices.push(index(&mut random, n)),
+                10 => mesh.required_edges.push(index(&mut random, mesh.edges.len())),
+                11 => mesh.required_triangles.push(index(&mut random, mesh.triangles.len())),
+                12 => mesh.vertices.push([coordinate(&mut random); 3]),
+                13 => mesh.tets.refs[tet] = coordinate(&mut random) as i32,
+                _ => metric[at.min(26)][below(&mut random, 6)] *= coordinate(&mut random),
+            }
+        }
+        mesh.vertex_refs.resize(mesh.vertices.len(), 0);
+        metric.resize(mesh.vertices.len(), isotropic(0.5).0);
+        let mut adapter = Adapter::discrete(Settings { complexity: Some(40.0), ..settings() }).unwrap();
+        if let Ok(adapted) = adapter.adapt(&MeshView::of(&mesh), &metric) {
+            // What is in range was taken: if it was a mesh, it is one still.
+            assert!(!validity::check(&mesh).is_valid() || validity::check(&adapted.mesh).is_valid());
+        }
+    }
 }
 
 #[cfg(feature = "occt")]

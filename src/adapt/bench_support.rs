@@ -216,7 +216,7 @@ impl<'m> Workbench<'m> {
     pub fn reorder(&mut self) -> usize {
         // Else a store that was just renumbered would be left as it is.
         self.context.store.tick();
-        self.context.reorder(Team::alone());
+        self.context.reorder(Team::alone()).expect("the mesh is whole");
         self.states[0].id_pool.clear();
         self.context.store.vertex_bound()
     }

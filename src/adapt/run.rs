@@ -105,6 +105,9 @@ pub fn adapt(
     pipeline.crowded = crowded;
     pipeline.surface = options.surface;
     pipeline.run();
+    if pipeline.torn {
+        return Err(fill::Error::Torn);
+    }
     let (work, unprojected, overgrown) = (pipeline.work, std::mem::take(&mut pipeline.unprojected), pipeline.overgrown);
     let unrepaired = pipeline.unrepaired;
     let geometry = pipeline.states.iter().map(|state| state.evaluator.spent).sum();

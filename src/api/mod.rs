@@ -34,6 +34,7 @@
 mod error;
 pub mod io;
 mod output;
+mod place;
 mod report;
 mod view;
 
@@ -67,6 +68,7 @@ use crate::geometry::Discrete;
 use crate::geometry::classify;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
 use crate::mesh::adjacency::MatchedFaces;
+use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::metric::{Background, Field, Source, field};
 use crate::tasks::{Pool, Team};
 use std::path::Path;
@@ -157,12 +159,14 @@ impl Adapter {
     pub fn report(&self, adapted: &AdaptedMesh) -> Result<Report, Error> {
         let model = self.model().ok_or_else(|| Error::place("no mesh came before it".into()))?;
         view::fits("metrics", adapted.metric.len(), adapted.mesh.vertices.len())?;
-        view::check_place(&adapted.place, &adapted.mesh, model)?;
-        Ok(Report::of(Team::new(&self.pool, self.settings.options.plan), adapted, model))
+        let team = Team::new(&self.pool, self.settings.options.plan);
+        place::check(team, &adapted.place, &adapted.mesh, model)?;
+        Ok(Report::of(team, adapted, model))
     }
 
     /// Adapts a mesh to a metric at its vertices, a tensor each, in 1/length²: [`Sym3`], its terms 11 12 22 13 23 33, or nalgebra's
-    /// `Matrix3<f64>`. Triangles that are missing on the boundary or between regions are added.
+    /// `Matrix3<f64>`. Triangles that are missing on the boundary or between regions are added. Where the mesh hangs together in edges or
+    /// vertices alone it is taken apart: each side gets vertices of its own.
     ///
     /// # Errors
     /// [`Error`], by what is wrong with the input. The adapter can be used again.
@@ -182,22 +186,30 @@ impl Adapter {
     ) -> Result<AdaptedMesh, Error> {
         let Self { ground, settings, pool } = self;
         let team = Team::new(pool, settings.options.plan);
-        let logs = logs(team, view, metric)?;
+        let mut logs = logs(team, view, metric)?;
         let mut mesh = view.mesh()?;
         if mesh.tets.is_empty() {
             return Err(Error::Mesh(adapt::Error::Empty));
         }
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let added = complete_matched(team, &mut mesh, &faces);
+        let copies = split_nonmanifold(team, &mut mesh, &faces).map_err(adapt::Error::from)?;
+        copy_values(&mut logs, &copies);
         let mesh = Arc::new(mesh);
         let place = match view.place {
             Some(_) if added > 0 => return Err(Error::place(format!("{added} triangles of the boundary are missing"))),
+            Some(_) if !copies.is_empty() => {
+                return Err(Error::place(format!(
+                    "the mesh hangs together in edges or vertices alone, as in vertex {}",
+                    copies[0]
+                )));
+            }
             Some(place) => {
                 let model = match &*ground {
                     Ground::Cad(model) | Ground::Surface(Some(model)) => model,
                     Ground::Surface(None) => return Err(Error::place("no mesh came before it".into())),
                 };
-                view::check_place(place, &mesh, model)?;
+                place::check(team, place, &mesh, model)?;
                 place.clone()
             }
             None => placed(team, ground, &mesh, settings)?,
@@ -209,7 +221,7 @@ impl Adapter {
         scale(team, &mesh, &mut source, settings.complexity)?;
         let adapted = adapt::adapt(&mesh, &place, model, &source, &settings.options, pool, observer)?;
         let Source::Background(background) = &source else { unreachable!("made above") };
-        Ok(output::AdaptedMesh::of(team, adapted, model, background))
+        Ok(output::AdaptedMesh::of(team, adapted, model, background, copies))
     }
 }
 

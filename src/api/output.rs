@@ -26,6 +26,9 @@ pub struct AdaptedMesh {
     pub off_model: Vec<u32>,
     /// Boundary vertices that had to stay, being required or frozen: they are as far from the model as they were.
     pub held: Vec<u32>,
+    /// Vertices of the mesh that went in, in which alone its parts hung together there: each part got one of its own. One that was
+    /// shared by three parts is listed twice.
+    pub doubled: Vec<u32>,
     /// Whether the mesh stopped growing, having far more vertices than the metric accounts for, or no memory for more.
     pub overgrown: bool,
     /// Surface triangles beyond the bounds of the surface that were set.
@@ -71,8 +74,8 @@ impl AdaptedMesh {
         MeshView { place: Some(&self.place), ..MeshView::of(&self.mesh) }
     }
 
-    /// Of what the kernel gives; `old` is the mesh that went in.
-    pub(super) fn of(team: Team<'_>, adapted: Adapted, model: &Model, old: &Background) -> Self {
+    /// Of what the kernel gives; `old` is the mesh that went in, taken apart at `doubled`.
+    pub(super) fn of(team: Team<'_>, adapted: Adapted, model: &Model, old: &Background, doubled: Vec<u32>) -> Self {
         let Extracted { mut mesh, mut classification, metrics, off_model, held, crossings } = adapted.extracted;
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &classification),
@@ -90,6 +93,7 @@ impl AdaptedMesh {
             mesh,
             off_model,
             held,
+            doubled,
             overgrown: adapted.overgrown,
             deviating: adapted.deviating,
             crossings,

@@ -20,7 +20,7 @@ impl Report {
         let metrics: Vec<Sym3> = adapted.metric.iter().map(|&terms| Sym3(terms)).collect();
         Self {
             statistics: Statistics::in_metric(team, &adapted.mesh, &metrics),
-            fidelity: fidelity::measure(team, &adapted.mesh, model, &adapted.place),
+            fidelity: fidelity::measure_adapted(team, &adapted.mesh, model, &adapted.place, &adapted.held),
         }
     }
 }

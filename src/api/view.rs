@@ -1,7 +1,6 @@
 //! The mesh that goes in: slices of the caller's, checked.
 use super::Error;
 use crate::geometry::classify::Classification;
-use crate::geometry::{Entity, Geometry, Model};
 use crate::mesh::vector::Vec3;
 use crate::mesh::{Association, Elements, TetMesh};
 use nalgebra::Point3;
@@ -140,7 +139,8 @@ pub fn fits(what: &'static str, found: usize, expected: usize) -> Result<(), Err
     if found == expected { Ok(()) } else { Err(Error::Length { what, found, expected }) }
 }
 
-fn in_range<const N: usize>(
+/// Refuses elements that refer to what is not there.
+pub fn in_range<const N: usize>(
     what: &'static str,
     elements: impl Iterator<Item = [u32; N]>,
     count: usize,
@@ -148,34 +148,6 @@ fn in_range<const N: usize>(
     for (element, nodes) in elements.enumerate() {
         if let Some(index) = nodes.into_iter().find(|&index| index as usize >= count) {
             return Err(Error::OutOfRange { what, element, index, count });
-        }
-    }
-    Ok(())
-}
-
-/// Refuses a place that is not of this mesh on this model.
-pub fn check_place(place: &Classification, mesh: &TetMesh, model: &Model) -> Result<(), Error> {
-    let (vertices, topology) = (mesh.vertices.len(), model.topology());
-    fits("entities", place.entities.len(), vertices)?;
-    fits("parameters", place.parameters.len(), vertices)?;
-    fits("points on the model", place.projected.len(), vertices)?;
-    fits("model faces of triangles", place.faces.len(), mesh.triangles.len())?;
-    in_range("the face of triangle", place.faces.iter().map(|&face| [face]), topology.faces.len())?;
-    in_range("ridge", place.ridges.iter().map(|&(nodes, _)| nodes), vertices)?;
-    in_range("the edge of ridge", place.ridges.iter().map(|&(_, edge)| [edge]), topology.edges.len())?;
-    let is_finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
-    for (v, entity) in place.entities.iter().enumerate() {
-        let (index, count) = match *entity {
-            Entity::Vertex(i) => (i, topology.vertices.len()),
-            Entity::Edge(i) => (i, topology.edges.len()),
-            Entity::Face(i) => (i, topology.faces.len()),
-            Entity::Interior => (0, 1),
-        };
-        if index as usize >= count {
-            return Err(Error::OutOfRange { what: "the entity of vertex", element: v, index, count });
-        }
-        if !is_finite(&place.parameters[v]) || !is_finite(&place.projected[v]) {
-            return Err(Error::place(format!("the parameters of vertex {v} are not finite")));
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! What all threads share during a run: the mesh, the metric, the model, the limits.
 use super::ids::VertexId;
 use super::required::Required;
-use super::store::Store;
+use super::store::{Store, Torn};
 use super::voids::Voids;
 use crate::geometry::{Evaluate, Geometry, Model, SurfaceKind};
 use crate::mesh::vector::Vec3;
@@ -124,8 +124,11 @@ impl<'m> Context<'m> {
     }
 
     /// Renumbers the mesh along a space-filling curve; returns the new id of each old one. Pools of free ids must be emptied.
-    pub fn reorder(&mut self, team: Team<'_>) -> Vec<VertexId> {
-        let number = self.store.reorder(team);
+    ///
+    /// # Errors
+    /// [`Torn`], and nothing is done, where a tetrahedron has a dead vertex.
+    pub fn reorder(&mut self, team: Team<'_>) -> Result<Vec<VertexId>, Torn> {
+        let number = self.store.reorder(team)?;
         self.required.renumber(&number);
         // Its triangles are known by the old ids.
         self.voids = Voids::default();
@@ -134,7 +137,7 @@ impl<'m> Context<'m> {
                 *id = number[id.index()];
             }
         });
-        number
+        Ok(number)
     }
 
     /// Whether the vertex must neither move nor go.

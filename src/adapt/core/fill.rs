@@ -1,13 +1,14 @@
 //! From the plain mesh to the store.
 use super::ids::{TetId, VertexId};
 use super::numbering::Numbering;
-use super::store::{ROOM, Store};
+use super::store::Store;
 use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, Side, TriangleIndex, sorted3};
 use crate::mesh::crossing::crossings_of;
 use crate::mesh::predicate::is_positive;
+use crate::mesh::split_nonmanifold::Touching;
 use crate::mesh::triangle_pair::{DRAWN_BACK, crossing};
 use crate::mesh::vector::{Vec3, distance};
 use crate::metric::{Source, Sym3, mean_ratios};
@@ -44,6 +45,15 @@ pub enum Error {
         /// How many share it.
         tets: usize,
     },
+    /// The boundary touches itself in an edge.
+    #[error(transparent)]
+    Touching(#[from] Touching),
+    /// The mesh came apart while it was adapted.
+    #[error(
+        "the mesh hangs together at a vertex otherwise than by the faces of its tetrahedra: do parts of it overlap? `geo-adapt inspect` lists \
+         what is wrong with a mesh"
+    )]
+    Torn,
     /// A boundary face without a triangle.
     #[error("the boundary face of nodes {} {} {} has no triangle", nodes[0], nodes[1], nodes[2])]
     Open {
@@ -101,7 +111,7 @@ pub fn fill_known(
     }
     let order = Numbering::along_curve(team, &place.projected, &mesh.tets.nodes);
     let (nv, nt) = (mesh.vertices.len(), mesh.tets.len());
-    let store = Store::with_capacity(2 * nv + ROOM, 2 * nt + 6 * ROOM);
+    let store = Store::with_room(nv, nt);
     let mut filling = Filling { team, mesh, place, order, store };
     filling.write_vertices();
     filling.write_tets(faces);

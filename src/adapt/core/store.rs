@@ -6,6 +6,8 @@
 //! The arrays are reserved with room (zero pages that cost no memory until touched) and grow only between sweeps.
 mod order;
 
+pub use order::Torn;
+
 use super::ids::{TetId, VertexId};
 use crate::geometry::Entity;
 use crate::mesh::vector::Vec3;
@@ -114,6 +116,19 @@ fn rehouse<T: Zeroable + Send>(team: Team<'_>, records: &mut Vec<T>, used: usize
     true
 }
 
+/// How much to ask memory for, in turn: what is wished; what is needed with half of the rest, a quarter, and so on; at last what is needed
+/// alone. Where memory is not lent beyond what there is, room for later counts as used.
+fn capacities(needed: usize, wished: usize) -> impl Iterator<Item = usize> {
+    let rest = wished.saturating_sub(needed);
+    (0..6).map(move |halvings| needed + (rest >> halvings)).chain([needed])
+}
+
+/// As many empty records as there is memory for, from what is wished down to what is needed.
+fn roomy<T: Zeroable>(needed: usize, wished: usize) -> Vec<T> {
+    let some = capacities(needed, wished).find_map(|count| bytemuck::allocation::try_zeroed_vec(count).ok());
+    some.unwrap_or_else(|| bytemuck::allocation::zeroed_vec(needed))
+}
+
 const INDEX_BITS: u32 = 30;
 
 fn pack(entity: Entity) -> u32 {
@@ -136,13 +151,23 @@ fn unpack(word: u32) -> Entity {
 }
 
 impl Store {
+    /// An empty store for so many vertices and tetrahedra, with room for as many again and some more if there is memory for it.
+    pub fn with_room(vertices: usize, tets: usize) -> Self {
+        Self::of(roomy(vertices, 2 * vertices + ROOM), roomy(tets, 2 * tets + 6 * ROOM))
+    }
+
     /// An empty store with room for so many vertices and tetrahedra.
+    #[cfg(test)]
     pub fn with_capacity(vertices: usize, tets: usize) -> Self {
+        Self::of(bytemuck::allocation::zeroed_vec(vertices), bytemuck::allocation::zeroed_vec(tets))
+    }
+
+    fn of(vertices: Vec<VertexRecord>, tets: Vec<TetRecord>) -> Self {
         Self {
-            vertices: bytemuck::allocation::zeroed_vec(vertices),
-            owners: bytemuck::allocation::zeroed_vec(vertices),
-            places: bytemuck::allocation::zeroed_vec(vertices),
-            tets: bytemuck::allocation::zeroed_vec(tets),
+            owners: bytemuck::allocation::zeroed_vec(vertices.len()),
+            places: bytemuck::allocation::zeroed_vec(vertices.len()),
+            vertices,
+            tets,
             corners: Vec::new(),
             next_vertex: AtomicUsize::new(0),
             next_tet: AtomicUsize::new(0),
@@ -151,21 +176,27 @@ impl Store {
         }
     }
 
-    /// Makes room for at least so many more vertices and tetrahedra, and where that takes growth for thrice as many, so that it is
-    /// seldom; whether there was memory for it: if not, what has no room is refused. Between sweeps only.
+    /// Makes room for at least so many more vertices and tetrahedra, and where that takes growth for several times as many if there is
+    /// memory for it, so that it is seldom: untouched pages cost none. Whether there was memory for what is needed: if not, what has no
+    /// room is refused. Between sweeps only.
     pub fn reserve(&mut self, team: Team<'_>, vertices: usize, tets: usize) -> bool {
         let used = self.vertex_bound();
-        let room = used + 3 * vertices;
-        // Ids go as far as the vertices' own array, so the others grow before it.
-        if used + vertices > self.vertices.len()
-            && !(self.make_owners(room)
-                && rehouse(team, &mut self.places, used, room)
-                && rehouse(team, &mut self.vertices, used, room))
-        {
-            return false;
+        let needed = used + vertices;
+        if needed > self.vertices.len() {
+            // Ids go as far as the vertices' own array, so the others grow before it.
+            let has_grown = capacities(needed, used + 3 * needed).any(|room| {
+                self.make_owners(room)
+                    && rehouse(team, &mut self.places, used, room)
+                    && rehouse(team, &mut self.vertices, used, room)
+            });
+            if !has_grown {
+                return false;
+            }
         }
         let used = self.tet_bound();
-        used + tets <= self.tets.len() || rehouse(team, &mut self.tets, used, used + 3 * tets)
+        let needed = used + tets;
+        needed <= self.tets.len()
+            || capacities(needed, used + 3 * needed).any(|room| rehouse(team, &mut self.tets, used, room))
     }
 
     /// An array of owners for so many vertices, which means nothing between sweeps.

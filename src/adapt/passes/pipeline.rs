@@ -127,6 +127,8 @@ pub struct Pipeline<'c, 'm> {
     repaired: usize,
     /// Tetrahedra that it left untried, since there were too many.
     pub unrepaired: usize,
+    /// Whether a tetrahedron was left at a vertex that has gone: nothing is done any more.
+    pub torn: bool,
     /// Tetrahedra when the store was last renumbered.
     ordered: usize,
     /// When the narrow voids were last looked for.
@@ -162,6 +164,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             asked: 0.0,
             repaired: 0,
             unrepaired: 0,
+            torn: false,
             ordered,
             voids: voids::Known::default(),
         }
@@ -242,7 +245,10 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Renumbers the store, so that what is near in space is near in memory.
     fn reorder(&mut self) {
         self.collect_unprojected();
-        let number = self.context.reorder(self.team());
+        let Ok(number) = self.context.reorder(self.team()) else {
+            self.torn = true;
+            return;
+        };
         self.unprojected.iter_mut().for_each(|v| *v = number[v.index()]);
         self.unprojected.retain(|v| v.is_some());
         self.states.iter_mut().for_each(|state| state.id_pool.clear());
@@ -310,16 +316,28 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Brings unprojected vertices to the model; after some passes they are removed instead.
     fn settle(&mut self, pass: usize) {
         self.project();
-        if self.unprojected.is_empty() || pass < PATIENCE {
-            return;
+        if !self.unprojected.is_empty() && pass >= PATIENCE {
+            self.remove_unprojected();
         }
-        self.context.limits.collapse_floor = 0.0;
-        self.context.limits.longest_new = f64::INFINITY;
-        self.context.limits.ball = usize::MAX;
-        (self.context.limits.cos_deviation, self.context.limits.cos_variation) = (-1.0, -1.0);
+    }
+
+    /// Takes out the vertices that found no room on the model.
+    fn remove_unprojected(&mut self) {
+        let limits = self.context.limits;
+        // They go at any price: a coarse surface can be refined again, one beside the model stays there.
+        self.context.limits = Limits {
+            collapse_floor: 0.0,
+            longest_new: f64::INFINITY,
+            cos_deviation: -1.0,
+            cos_variation: -1.0,
+            chord: f64::INFINITY,
+            ball: usize::MAX,
+            ..limits
+        };
         let items = std::mem::take(&mut self.unprojected);
         self.sweep(Kind::Project, &RemoveUnprojected, &items);
         self.collect_unprojected();
+        self.context.limits = limits;
     }
 
     /// Whether so many changes are few for a mesh of this size.
@@ -475,15 +493,14 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
         let room = store.room();
         if room.0 < vertices || room.1 < tets {
-            // More than is needed, so that it is not needed again soon: untouched pages cost no memory. Without memory the mesh stays
-            // as large as it is.
-            self.overgrown |= !store.reserve(team, vertices + store.vertex_bound(), tets + store.tet_bound());
+            // Without memory the mesh stays as large as it is.
+            self.overgrown |= !store.reserve(team, vertices, tets);
         }
     }
 
     /// One sweep of an operation over its items.
     fn sweep<O: Operation>(&mut self, kind: Kind, operation: &O, items: &[O::Item]) -> Counts {
-        if items.is_empty() {
+        if items.is_empty() || self.torn {
             return Counts::default();
         }
         self.make_room(if kind == Kind::Split { items.len() } else { 0 });

@@ -31,6 +31,11 @@ pub struct WorstDeviation {
 /// A triangle whose normal has a greater cosine than this with that of another lies as the other does.
 const STILL: f64 = 0.97;
 
+/// A distance; one that is no number is beyond any bound.
+fn or_far(distance: f64) -> f64 {
+    if distance.is_nan() { f64::INFINITY } else { distance }
+}
+
 impl<A: Access> Worker<'_, '_, A> {
     /// The deviation of a triangle from its face. The `cos_deviation` is negative when the triangle looks to the model's inside.
     pub fn surface_deviation(&mut self, triangle: [VertexId; 3], face: u32) -> SurfaceDeviation {
@@ -66,7 +71,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if self.context.limits.chord == f64::INFINITY {
             return 0.0;
         }
-        [[a, b], [b, c], [c, a]].into_iter().fold(centroid, |most, edge| self.chord_of(edge, face).max(most))
+        [[a, b], [b, c], [c, a]].into_iter().fold(or_far(centroid), |most, edge| self.chord_of(edge, face).max(most))
     }
 
     /// Distance of the middle of a triangle's edge from the face, or from the model edge where it is a ridge.
@@ -76,7 +81,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if entity == Entity::Face(face) && self.context.planes[face as usize].is_some() {
             return 0.0;
         }
-        distance(middle, self.place(entity, middle, &[a, b]).point)
+        or_far(distance(middle, self.place(entity, middle, &[a, b]).point))
     }
 
     /// Normal of a face at a vertex, at the vertex' parameters if they are known. At a pole or an apex, where there is no normal, it is taken
@@ -167,5 +172,32 @@ impl<A: Access> Worker<'_, '_, A> {
                 || deviation.chord > chord
         });
         if turned { Err(Refusal::Normal) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::core::access::Exclusive;
+    use crate::adapt::core::ids::FACE;
+    use crate::adapt::tests::bench::{Bench, Shape, sample};
+
+    #[test]
+    fn a_distance_that_is_no_number_is_beyond_any_bound() {
+        let sample = sample(Shape::Round, 2, 0.5);
+        let mut bench = Bench::new(&sample, 1, 3);
+        bench.context.limits.chord = 1.0;
+        let store = &bench.context.store;
+        let (t, i) =
+            store.live_tets().find_map(|t| Some((t, store.tags(t).iter().position(|&tag| tag != 0)?))).unwrap();
+        let (triangle, tag) = (FACE[i].map(|k| store.vertices(t)[k]), store.tags(t)[i]);
+        let mut worker = Worker::new(&bench.context, &mut bench.states[0], Exclusive);
+        let before = worker.worst_deviation(&[(triangle, tag)]);
+        let sound = worker.surface_deviation(triangle, tag - 1);
+        assert!(sound.chord <= 1.0 && !worker.deviates(sound));
+        store.displace(triangle[0], [f64::NAN; 3]);
+        let lost = worker.surface_deviation(triangle, tag - 1);
+        assert!(lost.chord == f64::INFINITY && worker.deviates(lost), "{lost:?}");
+        assert_eq!(worker.compare_normals(before, &[(triangle, tag)], 0.0), Err(Refusal::Normal));
     }
 }

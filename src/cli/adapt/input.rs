@@ -12,6 +12,7 @@ use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
 use crate::geometry::{Discrete, Model, Names, names};
 use crate::mesh::adjacency::MatchedFaces;
+use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::mesh::{TetMesh, crossing, io};
 use crate::metric::held::GREATEST_RATIO;
 use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
@@ -26,6 +27,10 @@ const GREATEST_COMPLEXITY: f64 = 2e8;
 
 /// The sizes of the geometry take at most this share of the complexity, so that some is left for the field.
 const GEOMETRY_SHARE: f64 = 0.5;
+
+/// What to do where a mesh that was taken apart does not fit its model.
+const APART: &str = "The mesh hangs together in edges or vertices alone, where it was taken apart: on such a model each body needs edges and \
+                     vertices of its own, as `geo-adapt bootstrap` writes it beside its mesh";
 
 /// The inputs of a run.
 #[derive(clap::Args)]
@@ -113,7 +118,7 @@ impl InputArguments {
         cad: Option<Model>,
         notices: &mut Vec<String>,
     ) -> Result<Input, Error> {
-        let Given { mut mesh, logs, mut names } = given;
+        let Given { mut mesh, mut logs, mut names } = given;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let added = complete_matched(team, &mut mesh, &faces);
         stage("boundary complete");
@@ -131,13 +136,18 @@ impl InputArguments {
             ));
         }
         stage("boundary held against itself");
+        let copies = self.take_apart(team, &mut mesh, &faces, notices)?;
+        logs.iter_mut().for_each(|logs| copy_values(logs, &copies));
         let mesh = Arc::new(mesh);
-        let (model, place) = self.place(team, &mesh, cad, notices)?;
+        let (model, place) = self.place(team, &mesh, cad, notices).map_err(|error| match copies.is_empty() {
+            true => error,
+            false => format!("{error}. {APART}").into(),
+        })?;
         stage("classified");
         if names.is_empty() {
             names = on_mesh(&mesh, &place, &model);
         }
-        let (mut source, made) = self.source(team, (&mesh, faces), logs, (&place, &model, &names), notices)?;
+        let (mut source, made) = self.source(team, (&mesh, faces, &copies), logs, (&place, &model, &names), notices)?;
         stage("metric ready");
         if source.cut() > 0 {
             notices.push(format!(
@@ -151,12 +161,35 @@ impl InputArguments {
         Ok(Input { mesh, place, model, source, made, names })
     }
 
+    /// Takes the mesh apart where it hangs together in edges or vertices alone: the new vertices' origins.
+    fn take_apart(
+        &self,
+        team: Team<'_>,
+        mesh: &mut TetMesh,
+        faces: &MatchedFaces,
+        notices: &mut Vec<String>,
+    ) -> Result<Vec<u32>, Error> {
+        let copies =
+            split_nonmanifold(team, mesh, faces).map_err(|error| format!("{}: {error}", self.mesh.display()))?;
+        stage("taken apart");
+        if let Some(first) = copies.iter().min() {
+            let at = place(mesh.vertices[*first as usize]);
+            notices.push(format!(
+                "the mesh hangs together in edges or vertices alone, the first is vertex {} at {at}: each side has vertices of its own \
+                 there now, {} more",
+                first + 1,
+                copies.len()
+            ));
+        }
+        Ok(copies)
+    }
+
     /// The metric's source: the analytic field, or the mesh as background with the metric of a file or the one made from a field; and
     /// what was done to make it.
     fn source(
         &self,
         team: Team<'_>,
-        (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
+        (mesh, faces, copies): (&Arc<TetMesh>, MatchedFaces, &[u32]),
         logs: Option<Vec<Sym3>>,
         on: (&Classification, &Model, &Names),
         notices: &mut Vec<String>,
@@ -176,7 +209,7 @@ impl InputArguments {
                 let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
                 let wanted = (complexity, Measure::Between);
                 let (logs, made) =
-                    self.multiscale.make(team, mesh, &self.field.field, wanted, fixed.as_deref(), notices)?;
+                    self.multiscale.make(team, (mesh, copies), &self.field.field, wanted, fixed.as_deref(), notices)?;
                 (logs, Some(made))
             }
         };

@@ -8,6 +8,7 @@ pub mod report;
 
 use super::{Outcome, interrupt};
 use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
+use crate::geometry::classify::keeps_references;
 use crate::metric::Field;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
 use files::Targets;
@@ -113,6 +114,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let Input { mesh, place, model, source, .. } = &input;
         let named = |error| format!("{}: {error}", arguments.input.mesh.display());
         let options = arguments.options(plan, parts::frozen(&arguments.freeze, mesh, &input.names).map_err(named)?);
+        if cycle < arguments.cycles && !options.freeze.surfaces.is_empty() {
+            arguments.check_references(&input).map_err(named)?;
+        }
         let adapted = adapt::adapt(mesh, place, model, source, &options, &pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
@@ -142,6 +146,17 @@ impl Arguments {
     fn asked(&self, threads: usize) -> Asked {
         let (input, output) = (self.input.mesh.clone(), self.output.clone());
         Asked { input, output, threads, complexity_wanted: self.input.complexity }
+    }
+
+    /// Refuses references that the next cycle would not find again: on a CAD model they become the numbers of its faces where they do
+    /// not stand for one face each.
+    fn check_references(&self, input: &Input) -> Result<(), String> {
+        if self.input.cad.is_none() || keeps_references(&input.mesh, &input.place) {
+            return Ok(());
+        }
+        Err("its references do not stand for one face each, so the first cycle replaces them by the numbers of the faces, and --freeze would \
+             name other surfaces after it; give it the references of `geo-adapt classify`, or one cycle"
+            .into())
     }
 
     fn options(&self, plan: Plan, freeze: Freeze) -> Options {

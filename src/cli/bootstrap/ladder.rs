@@ -9,6 +9,7 @@ use crate::cli::workplace::Workplace;
 use crate::formats;
 use crate::geometry::classify::{Classification, Error, Options, classify};
 use crate::geometry::{Geometry, Model};
+use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::split_nonmanifold::split_nonmanifold;
 use crate::mesh::validity;
 use crate::mesh::vector::lerp;
@@ -233,7 +234,14 @@ fn command(
 fn judge(team: Team<'_>, mut mesh: TetMesh, model: &Model) -> Result<(TetMesh, Classification), String> {
     let topology = model.topology();
     // Solids that touch in an edge or a vertex alone: the mesher joins them there, our kernel and our model have them apart.
-    split_nonmanifold(&mut mesh);
+    let faces = MatchedFaces::of(team, &mesh.tets.nodes);
+    let doubled =
+        split_nonmanifold(team, &mut mesh, &faces).map_err(|error| format!("its mesh is not valid: {error}"))?;
+    if !doubled.is_empty() {
+        // What it says of edges and vertices is of the sides together.
+        (mesh.edges, mesh.association) = Default::default();
+        [&mut mesh.corners, &mut mesh.ridges, &mut mesh.required_edges].into_iter().for_each(Vec::clear);
+    }
     // Seams and poles are no features: what is listed on them would be taken for ridges.
     let is_ridge = |id: i32| {
         let edge = id as usize;

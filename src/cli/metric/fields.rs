@@ -2,6 +2,7 @@
 use super::common::{Failure, GradationArgument, LimitArguments};
 use crate::mesh::TetMesh;
 use crate::mesh::io::{FieldKind, Read, Solution, SolutionField, read_solution_on};
+use crate::mesh::split_nonmanifold::copy_values;
 use crate::metric::multiscale::{self, Bounds, Measure, Norm, Options, Summary, multiscale};
 use crate::metric::recovery::Recovery;
 use crate::metric::{Limits, Sym3};
@@ -85,11 +86,11 @@ impl MultiscaleArguments {
     }
 
     /// ln M at the vertices of the mesh, shape (n,), made from the fields of these files, and what was done; `fixed`, ln of
-    /// another metric, is intersected at any scale. Notices are added.
+    /// another metric, is intersected at any scale. The last vertices are `copies`, on which the files have nothing. Notices are added.
     pub fn make(
         &self,
         team: Team<'_>,
-        mesh: &TetMesh,
+        (mesh, copies): (&TetMesh, &[u32]),
         paths: &[PathBuf],
         (complexity, measure): (f64, Measure),
         fixed: Option<&[Sym3]>,
@@ -100,7 +101,9 @@ impl MultiscaleArguments {
         for path in paths {
             let Read { content, notices: found } = read_solution_on(team, path)?;
             notices.extend(found);
-            files.push(self.scalars(path, content, mesh.vertices.len())?);
+            let mut scalars = self.scalars(path, content, mesh.vertices.len() - copies.len())?;
+            scalars.iter_mut().for_each(|values| copy_values(values, copies));
+            files.push(scalars);
         }
         let (sensors, names) = self.sensors(paths, &files)?;
         let (norm, recovery, gradation) = (self.norm, self.hessian, self.gradation.ratio());

@@ -22,11 +22,16 @@ pub struct Associated {
 pub fn associate(mesh: &mut TetMesh, classification: &Classification) -> Associated {
     write_vertices(mesh, classification);
     let edges_dropped = write_edges(mesh, classification);
-    let references_replaced = !is_one_to_one(&mesh.triangles.refs, &classification.faces);
+    let references_replaced = !keeps_references(mesh, classification);
     if references_replaced {
         mesh.triangles.refs = classification.faces.iter().map(|&face| face as i32 + 1).collect();
     }
     Associated { references_replaced, edges_dropped }
+}
+
+/// Whether the references of the triangles stand for one face each, so that [`associate`] keeps them.
+pub fn keeps_references(mesh: &TetMesh, classification: &Classification) -> bool {
+    is_one_to_one(&mesh.triangles.refs, &classification.faces)
 }
 
 fn write_vertices(mesh: &mut TetMesh, classification: &Classification) {

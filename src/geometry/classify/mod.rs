@@ -21,7 +21,7 @@ mod tests;
 mod triangles;
 mod units;
 
-pub use associate::{Associated, associate};
+pub use associate::{Associated, associate, keeps_references};
 pub use error::Error;
 pub use fit::{Options, classify};
 pub use report::{Dimension, Offset, Report};

@@ -1,14 +1,18 @@
 //! Renumbering along a space-filling curve: what is near in space comes near in memory, and dead records go.
 //!
 //! Tetrahedra are most of the memory. They are moved by halves of their records, through a list half as large as they are.
-use super::{PlaceRecord, ROOM, Store, TetRecord, VertexRecord, rehouse};
+use super::{PlaceRecord, ROOM, Store, TetRecord, VertexRecord, rehouse, roomy};
 use crate::adapt::core::ids::{TetId, VertexId};
 use crate::adapt::core::numbering::{by_first, inverse};
 use crate::geometry::Entity;
 use crate::mesh::hilbert;
 use crate::tasks::{GRAIN, Rows, Team};
 use bytemuck::allocation::zeroed_vec;
-use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
+
+/// A tetrahedron is left at a vertex that has gone: the mesh hung together there otherwise than by faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Torn;
 
 /// Memory is given back when at least one in so many records is dead.
 const DEAD: usize = 8;
@@ -16,14 +20,17 @@ const DEAD: usize = 8;
 impl Store {
     /// Numbers the mesh along the Hilbert curve; returns for each old vertex id the new one (`NONE` for dead ones). Blocks of ids
     /// that were taken before mean nothing any more. Between sweeps only.
-    pub fn reorder(&mut self, team: Team<'_>) -> Vec<VertexId> {
+    ///
+    /// # Errors
+    /// [`Torn`], and nothing is done, where a tetrahedron has a dead vertex.
+    pub fn reorder(&mut self, team: Team<'_>) -> Result<Vec<VertexId>, Torn> {
         if self.ordered == Some(self.clock()) {
-            return (0..self.vertex_bound() as u32).map(VertexId).collect();
+            return Ok((0..self.vertex_bound() as u32).map(VertexId).collect());
         }
         let bounds = [self.vertex_bound(), self.tet_bound()];
         let vertices = self.vertices_along_curve(team);
         let number = inverse(team, &vertices, bounds[0], VertexId);
-        let tets = self.tets_by_first(team, &number, vertices.len());
+        let tets = self.tets_by_first(team, &number, vertices.len())?;
         let tet_number = inverse(team, &tets, bounds[1], TetId);
         self.move_vertices(team, &vertices, &number);
         self.move_tets(team, &tets, &number, &tet_number);
@@ -33,7 +40,7 @@ impl Store {
             rehouse(team, &mut self.tets, tets.len(), 2 * tets.len() + 6 * ROOM);
         }
         self.note_order();
-        number
+        Ok(number)
     }
 
     /// Notes that the ids are in the order of the curve, until the next sweep.
@@ -51,19 +58,28 @@ impl Store {
     }
 
     /// The live tetrahedra in the order of their first vertex by its new number.
-    fn tets_by_first(&self, team: Team<'_>, number: &[VertexId], vertices: usize) -> Vec<u32> {
-        by_first(team, self.tet_bound(), vertices, |t| {
-            let numbers =
-                self.peek(TetId(t as u32)).map(|v| if v.is_some() { number[v.index()].0 } else { Rows::NOWHERE });
+    fn tets_by_first(&self, team: Team<'_>, number: &[VertexId], vertices: usize) -> Result<Vec<u32>, Torn> {
+        let torn = AtomicBool::new(false);
+        let tets = by_first(team, self.tet_bound(), vertices, |t| {
+            let of = self.peek(TetId(t as u32));
+            if !of[0].is_some() {
+                return Rows::NOWHERE;
+            }
+            let numbers = of.map(|v| number.get(v.index()).map_or(VertexId::NONE.0, |number| number.0));
+            if numbers.contains(&VertexId::NONE.0) {
+                torn.store(true, Relaxed);
+            }
             numbers.into_iter().min().unwrap_or(Rows::NOWHERE)
-        })
+        });
+        if torn.into_inner() { Err(Torn) } else { Ok(tets) }
     }
 
     /// Brings the vertices into an order, with the ridges renumbered; they do not know their tetrahedra then.
     fn move_vertices(&mut self, team: Team<'_>, order: &[u32], number: &[VertexId]) {
         let many_dead = order.len() < self.vertex_bound() - self.vertex_bound() / DEAD;
         let room = if many_dead { 2 * order.len() + ROOM } else { self.vertices.len() };
-        let mut vertices: Vec<VertexRecord> = zeroed_vec(room);
+        let mut vertices: Vec<VertexRecord> = roomy(order.len(), room);
+        let room = vertices.len();
         team.fill(GRAIN, &mut vertices[..order.len()], |start, chunk| {
             for (to, &old) in chunk.iter_mut().zip(&order[start..]) {
                 *to = self.vertices[old as usize].moved();
@@ -151,5 +167,28 @@ impl PlaceRecord {
             entity: AtomicU32::new(entity),
             hint: AtomicU32::new(self.hint.load(Relaxed)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::tests::bench::{Bench, Shape, sample};
+
+    #[test]
+    fn a_tetrahedron_at_a_dead_vertex_is_told_and_nothing_is_moved() {
+        let sample = sample(Shape::Cube, 2, 0.5);
+        let mut bench = Bench::new(&sample, 1, 3);
+        let store = &mut bench.context.store;
+        let before: Vec<_> = store.live_tets().map(|t| store.vertices(t)).collect();
+        let (v, t) = (VertexId(5), store.tet_of(VertexId(5)));
+        store.set_tet_of(v, TetId::NONE);
+        store.tick();
+        assert_eq!(store.reorder(Team::alone()), Err(Torn));
+        store.set_tet_of(v, t);
+        assert!(store.live_tets().map(|t| store.vertices(t)).eq(before));
+        bench.check("a refused renumbering");
+        bench.context.store.tick();
+        assert!(bench.context.store.reorder(Team::alone()).is_ok());
     }
 }

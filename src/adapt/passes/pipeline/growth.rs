@@ -165,4 +165,19 @@ mod tests {
         bench.check("a reserve without memory");
         assert!(bench.context.store.reserve(Team::alone(), 1 << 16, 1 << 16));
     }
+
+    #[test]
+    fn where_there_is_no_memory_for_much_a_store_grows_by_what_is_needed() {
+        // The largest array of records of a vertex, 128 bytes each, to a power of two.
+        let fits = |count: usize| bytemuck::allocation::try_zeroed_vec::<[u64; 16]>(count).is_ok();
+        let mut most = 1 << 20;
+        while fits(2 * most) {
+            most *= 2;
+        }
+        let sample = sample(Shape::Cube, 2, 0.5);
+        let mut bench = Bench::new(&sample, 1, 3);
+        assert!(bench.context.store.reserve(Team::alone(), most / 2, 1 << 16));
+        assert!(bench.context.store.room().0 >= most / 2);
+        bench.check("a reserve with little memory");
+    }
 }
