@@ -6,10 +6,9 @@
 use super::interrupt::{self, Interrupted};
 use super::workplace::Workplace;
 use crate::memory::end;
-use crate::process::{Outcome, Runner, Tie};
+use crate::process::{Outcome, Runner, Tie, is_exhausted};
 use std::error::Error;
 use std::ffi::{OsStr, OsString};
-use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::sync::atomic::Ordering;
@@ -68,7 +67,7 @@ impl Task<'_> {
         let outcome = match runner.run(&mut command, |_| ()) {
             Ok(_) if stop.load(Ordering::SeqCst) => Outcome::Interrupted,
             Ok(outcome) => outcome,
-            Err(error) if [ErrorKind::OutOfMemory, ErrorKind::WouldBlock].contains(&error.kind()) => {
+            Err(error) if is_exhausted(&error) => {
                 return Err(
                     self.named(&format!("no process could be started for {} ({error})", self.doing), OutOfMemory)
                 );

@@ -6,7 +6,7 @@ use super::layout::Layout;
 use super::leftovers;
 use super::observer::Observer;
 use crate::memory;
-use crate::process::{Log, Outcome, Runner, Stop, Tie, last_lines};
+use crate::process::{Log, Outcome, Runner, Stop, Tie, is_exhausted, last_lines};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, OpenOptions};
@@ -133,6 +133,9 @@ impl Running<'_> {
         let outcome = runner.run(&mut command, |group| drop(fs::write(&file, group.text())));
         let _ = fs::remove_file(&file);
         outcome.map_err(|error| {
+            if is_exhausted(&error) {
+                return Error::OutOfMemory(format!("{program} could not be started ({error}): free some memory"));
+            }
             Error::Failed(format!("{program} could not be started ({error}): is it installed and on the PATH?"))
         })
     }

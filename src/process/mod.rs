@@ -10,7 +10,7 @@ mod run;
 pub use group::{Group, who_has_open};
 pub use log::{Log, errors_or_last_lines, last_line, last_lines};
 pub use outcome::Outcome;
-pub use run::{Runner, Tie, is_running};
+pub use run::{Runner, Tie, is_exhausted, is_running};
 
 use std::sync::atomic::AtomicBool;
 

@@ -47,6 +47,11 @@ pub fn is_running() -> bool {
     RUNNING.load(Ordering::SeqCst) > 0
 }
 
+/// Whether a program could not be started because the machine has no memory, or no processes, left.
+pub fn is_exhausted(error: &io::Error) -> bool {
+    [io::ErrorKind::OutOfMemory, io::ErrorKind::WouldBlock].contains(&error.kind())
+}
+
 /// Counts a program as long as it runs.
 struct Counted;
 
@@ -109,9 +114,13 @@ impl Runner<'_> {
         let began = Instant::now();
         loop {
             if has_ended(child)? {
+                let used = processor_time(child.id());
                 // While the child was not waited for, its number is its group's: what is left there ends too.
                 self.kill(child, group);
-                return Ok(Outcome::of(child.wait()?));
+                let outcome = Outcome::of(child.wait()?);
+                let is_late = used.zip(system_limit()).is_some_and(|(used, limit)| used + LOOK >= limit);
+                // The system kills what goes on beyond its last limit of time.
+                return Ok(if outcome == Outcome::Killed && is_late { Outcome::OutOfTime } else { outcome });
             }
             let elapsed = began.elapsed();
             if self.stop.load(Ordering::SeqCst) {
@@ -167,6 +176,20 @@ fn has_ended(child: &mut Child) -> io::Result<bool> {
 #[cfg(not(unix))]
 fn has_ended(child: &mut Child) -> io::Result<bool> {
     child.try_wait().map(|status| status.is_some())
+}
+
+/// Processor time that the system gives this process, and each that it starts (`ulimit -t`).
+#[cfg(unix)]
+fn system_limit() -> Option<Duration> {
+    let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+    // SAFETY: getrlimit writes to a record of its own kind, which is ours.
+    let is_known = unsafe { libc::getrlimit(libc::RLIMIT_CPU, &mut limit) } == 0;
+    (is_known && limit.rlim_cur != libc::RLIM_INFINITY).then(|| Duration::from_secs(limit.rlim_cur))
+}
+
+#[cfg(not(unix))]
+fn system_limit() -> Option<Duration> {
+    None
 }
 
 /// Whether a program has used up its time. The time that it waits for a busy machine counts by a quarter, so that the result hardly depends

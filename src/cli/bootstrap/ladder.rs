@@ -14,7 +14,7 @@ use crate::mesh::split_nonmanifold::split_nonmanifold;
 use crate::mesh::validity;
 use crate::mesh::vector::lerp;
 use crate::mesh::{FlawKind, TetMesh};
-use crate::process::{Log, Outcome, Runner, Tie, errors_or_last_lines};
+use crate::process::{Log, Outcome, Runner, Tie, errors_or_last_lines, is_exhausted};
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -191,7 +191,13 @@ fn start(
         let mut said = Log::open(log).map_err(failed)?;
         said.command(&format!("{command:?}")).map_err(failed)?;
         let runner = Runner { tie: Tie::Bound, limit: Some(limit), stop: wish.stop, log: Some(&said) };
-        let Ok(outcome) = runner.run(&mut command, |_| ()) else { continue };
+        let outcome = match runner.run(&mut command, |_| ()) {
+            Ok(outcome) => outcome,
+            Err(error) if is_exhausted(&error) => {
+                return Err(Miss::Failed(format!("no process could be started for it ({error})")));
+            }
+            Err(_) => continue,
+        };
         let why = || format!("it {outcome}: {}", last_words(log));
         match outcome {
             Outcome::Done => return Ok(()),

@@ -1,9 +1,10 @@
 //! Where a write to a path goes, and whether it can.
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 /// After so many links they are called a circle. Linux has the same bound.
 const MOST_LINKS: usize = 40;
@@ -109,6 +110,8 @@ fn is_stdout(_: &Metadata) -> bool {
 pub(super) struct Temporary {
     pub path: PathBuf,
     pub is_renamed: bool,
+    /// Locked as long as this run is there: so the next one knows what a killed one has left.
+    _lock: Option<File>,
 }
 
 impl Temporary {
@@ -134,18 +137,61 @@ pub(super) fn create_file(path: &Path) -> io::Result<File> {
     OpenOptions::new().write(true).create_new(true).open(path)
 }
 
+/// How old something of another run must be before it can be one that was left: younger ones may not be locked yet.
+const BEING_MADE: Duration = Duration::from_secs(2);
+
+/// Removes what killed runs were writing for a target: what has its hidden name, and is not locked by anybody.
+fn remove_left(folder: &Path, name: &OsStr) {
+    let mut start = OsString::from(".");
+    start.push(name);
+    start.push(".");
+    let is_hidden = |found: &OsStr| {
+        let rest = found.as_encoded_bytes().strip_prefix(start.as_encoded_bytes());
+        let numbers = rest.and_then(|rest| rest.strip_suffix(b".tmp"));
+        numbers.is_some_and(|numbers| {
+            let mut parts = numbers.split(|byte| *byte == b'-');
+            let mut is_number =
+                || parts.next().is_some_and(|part| !part.is_empty() && part.iter().all(u8::is_ascii_digit));
+            is_number() && is_number() && parts.next().is_none()
+        })
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten().filter(|entry| is_hidden(&entry.file_name())) {
+        let is_old = |data: Metadata| {
+            let age = data.modified().ok().and_then(|changed| changed.elapsed().ok());
+            !data.is_symlink() && age.is_some_and(|age| age > BEING_MADE)
+        };
+        let path = entry.path();
+        if entry.metadata().is_ok_and(is_old)
+            && let Ok(left) = File::open(&path)
+            && left.try_lock().is_ok()
+        {
+            let _ = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+        }
+    }
+}
+
+/// Locks a new file or folder. Where there are no locks nobody takes it for one that was left.
+fn locked(path: &Path) -> Option<File> {
+    File::open(path).ok().filter(|file| file.try_lock().is_ok())
+}
+
 /// Makes something new in the folder of `target`, hidden, with a name that no other run takes.
 pub(super) fn new_beside<T>(target: &Path, create: impl Fn(&Path) -> io::Result<T>) -> io::Result<(T, Temporary)> {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     let Some(name) = target.file_name() else { return Err(refusal("this names no file")) };
+    let name = if name.len() <= MOST_REPEATED { name } else { "geo-adapt".as_ref() };
+    remove_left(folder_of(target), name);
     loop {
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let mut hidden = OsString::from(".");
-        hidden.push(if name.len() <= MOST_REPEATED { name } else { "geo-adapt".as_ref() });
+        hidden.push(name);
         hidden.push(format!(".{}-{number}.tmp", std::process::id()));
         let path = folder_of(target).join(hidden);
         match create(&path) {
-            Ok(made) => return Ok((made, Temporary { path, is_renamed: false })),
+            Ok(made) => {
+                let _lock = locked(&path);
+                return Ok((made, Temporary { path, is_renamed: false, _lock }));
+            }
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {} // left by a run that was killed
             Err(error) => return Err(error),
         }

@@ -149,3 +149,30 @@ fn who_holds_the_folder_is_not_waited_for_for_ever() {
     batch.commit().unwrap();
     assert_eq!(names(folder.path()).len(), 2);
 }
+
+#[test]
+fn what_a_killed_run_was_writing_goes_with_the_next() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let long_ago = std::time::SystemTime::now() - Duration::from_secs(60);
+    let make = |name: &str| {
+        let file = File::create(path(name)).unwrap();
+        file.set_modified(long_ago).unwrap();
+        file
+    };
+    let left = [".out.meshb.4711-0.tmp", ".out.meshb.1-12.tmp"];
+    left.iter().for_each(|name| drop(make(name)));
+    let kept = [".out.meshb.4711.tmp", ".out.meshb.a-0.tmp", ".other.meshb.4711-0.tmp", ".out.meshb.4711-1.tmp"];
+    let files = kept.map(make);
+    // The last one is in use, another is new.
+    files[3].lock().unwrap();
+    fs::write(path(".out.meshb.4711-2.tmp"), b"half").unwrap();
+    write_beside(&path("out.meshb"), |w| w.write_all(b"new")).unwrap();
+    assert!(left.iter().all(|name| !path(name).exists()));
+    assert!(kept.iter().all(|name| path(name).exists()) && path(".out.meshb.4711-2.tmp").exists());
+    // Where a folder was being written.
+    fs::create_dir_all(path(".case.1-0.tmp/constant")).unwrap();
+    File::open(path(".case.1-0.tmp")).unwrap().set_modified(long_ago).unwrap();
+    write_beside(&path("case"), |w| w.write_all(b"new")).unwrap();
+    assert!(!path(".case.1-0.tmp").exists());
+}
