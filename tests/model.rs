@@ -272,7 +272,7 @@ fn files_that_are_no_model_are_refused() {
     refused(&file("mesh.stl", b"solid"), ".step");
     refused(&file("model", b"solid"), ".step");
     std::fs::create_dir(folder.path().join("folder.step")).unwrap();
-    refused(&folder.path().join("folder.step"), "directory");
+    refused(&folder.path().join("folder.step"), "is a folder");
     let empty = "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n\
                  FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
     refused(&file("nothing.step", empty.as_bytes()), "no shape");

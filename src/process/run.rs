@@ -100,6 +100,8 @@ impl Runner<'_> {
             // SAFETY: it makes system calls only.
             unsafe {
                 command.pre_exec(move || {
+                    // A shell starts what runs in the background deaf to interrupts; our children hear them.
+                    libc::signal(libc::SIGINT, libc::SIG_DFL);
                     end_with_parent(parent);
                     Ok(())
                 })
