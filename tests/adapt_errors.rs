@@ -2,7 +2,7 @@
 #![cfg(feature = "cli")]
 mod common;
 
-use common::adapting::{Workplace, complaint, cube, isotropic, stderr, text};
+use common::adapting::{Workplace, complaint, cube, isotropic, stderr, text, write_tensors};
 use common::program;
 use geo_adapt::mesh::{Elements, TetMesh, io};
 use geo_adapt::metric::{Field, Sym3};
@@ -103,11 +103,7 @@ fn missing_and_foreign_files_are_named() {
 #[test]
 fn a_metric_that_is_none_is_named_with_its_vertex() {
     let (work, mesh, input, metric) = prepared();
-    // `Field` itself writes no such tensors.
-    let write = |metrics: Vec<Sym3>| {
-        let tensors: Vec<_> = metrics.iter().map(|metric| metric.0).collect();
-        io::write_solution(Path::new(&metric), &io::Solution::metric(&tensors)).unwrap();
-    };
+    let write = |metrics: Vec<Sym3>| write_tensors(Path::new(&metric), metrics.into_iter());
     let field = ["--metric", metric.as_str()];
     write(vec![Sym3::IDENTITY; 63]);
     assert_says(&work.refusal(&input, &field), &["size.solb", "63 vertices", "64", "made for this mesh"]);

@@ -78,9 +78,9 @@ fn thin() -> Vec<Kind> {
         Kind::new("slivers of 1e-18", sliver),
         Kind::new("layer of 1e-18", flat(1e-18)),
         Kind::new("layer of 1e-6", flat(1e-6)),
-        Kind::new("needle", stretched(3, [1e6, 1.0, 1.0])),
-        Kind::new("plate", stretched(3, [1.0, 1.0, 1e-6])),
-        Kind::new("wide plate", stretched(3, [100.0, 100.0, 0.01])),
+        Kind::new("needle", stretched(3, [1e3, 1.0, 1.0])),
+        Kind::new("plate", stretched(3, [1.0, 1.0, 1e-2])),
+        Kind::new("wide plate", stretched(3, [10.0, 10.0, 0.1])),
         Kind::new("sheared", moved(cube(3), |p| [p[0] + 1e3 * p[1], p[1], p[2]])),
         Kind::new("graded", moved(cube(3), |p| p.map(|x| x.powi(12)))),
     ]

@@ -15,6 +15,7 @@ use geo_adapt::metric::{Field, Sym3};
 use kinds::Kind;
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::panic::AssertUnwindSafe;
 use std::path::{Path, PathBuf};
 
 /// Complexity that is asked for.
@@ -182,16 +183,25 @@ fn is_long() -> bool {
 #[test]
 fn every_kind_ends_valid_under_every_metric() {
     let quick: Vec<&Metric> = METRICS.iter().filter(|metric| metric.is_quick).collect();
+    let mut failed = Vec::new();
+    let mut look = |kind: &Kind, metric: &Metric, others: &[[&str; 2]]| {
+        // All that fail are told.
+        let run = AssertUnwindSafe(|| adapt(kind, metric, others));
+        if std::panic::catch_unwind(run).is_err() {
+            failed.push(format!("{} under {}", kind.name, metric.name));
+        }
+    };
     for (k, kind) in kinds::all().iter().enumerate() {
         if !is_long() {
-            adapt(kind, quick[k % quick.len()], &OTHERS[k % 3..][..1]);
+            look(kind, quick[k % quick.len()], &OTHERS[k % 3..][..1]);
             continue;
         }
         for (m, metric) in METRICS.iter().enumerate() {
             // Five threads always, and each of the back-ends in turn.
-            adapt(kind, metric, &[OTHERS[1], OTHERS[(k + m) % OTHERS.len()]]);
+            look(kind, metric, &[OTHERS[1], OTHERS[(k + m) % OTHERS.len()]]);
         }
     }
+    assert!(failed.is_empty(), "{failed:?}");
 }
 
 /// A run on a mesh of few vertices: what it reports.

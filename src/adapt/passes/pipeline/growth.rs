@@ -20,7 +20,8 @@ const MOST_AN_AREA: f64 = 4.0;
 /// So many vertices are allowed whatever the metric, and twice those of the input.
 const ALWAYS_ALLOWED: f64 = 1_000.0;
 
-/// So many more where the user bounds how far the surface deviates from the model: no metric tells how many that takes.
+/// The surface may bring so many more at most; and so many where the user bounds how far it deviates from the model, since no metric tells
+/// how many that takes.
 const FOR_THE_SURFACE: f64 = 20_000.0;
 
 impl Pipeline<'_, '_> {
@@ -116,7 +117,7 @@ impl Pipeline<'_, '_> {
 
     /// Vertices that the mesh may have, by all that is known of the metric.
     fn allowed(&self) -> f64 {
-        self.always_allowed() + MOST_A_COMPLEXITY * self.asked + MOST_AN_AREA * self.area()
+        self.always_allowed() + MOST_A_COMPLEXITY * self.asked + (MOST_AN_AREA * self.area()).min(FOR_THE_SURFACE)
     }
 }
 
