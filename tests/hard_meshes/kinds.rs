@@ -81,7 +81,7 @@ fn thin() -> Vec<Kind> {
         Kind::new("needle", stretched(3, [1e3, 1.0, 1.0])),
         Kind::new("plate", stretched(3, [1.0, 1.0, 1e-2])),
         Kind::new("wide plate", stretched(3, [10.0, 10.0, 0.1])),
-        Kind::new("sheared", moved(cube(3), |p| [p[0] + 1e3 * p[1], p[1], p[2]])),
+        Kind::new("sheared", moved(cube(3), |p| [p[0] + 20.0 * p[1], p[1], p[2]])),
         Kind::new("graded", moved(cube(3), |p| p.map(|x| x.powi(12)))),
     ]
 }
@@ -127,7 +127,7 @@ fn held() -> Vec<Kind> {
         Kind::new("all required", all),
         Kind::new("a required skin", skin),
         Kind::new("required vertices", vertices),
-        Kind::new("all frozen", cube(3)).options(&["--freeze", "region:0"]),
+        Kind::new("all frozen", cube(3)).options(&["--freeze", "region:1"]),
         Kind::new("a frozen side", cube(3)).options(&["--freeze", "1"]),
     ]
 }

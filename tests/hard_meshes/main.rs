@@ -130,7 +130,8 @@ fn check(what: &str, kind: &Kind, work: &Workplace, report: &Value) {
     let read = io::read_mesh(&work.path("out.meshb")).unwrap().content;
     assert!(validity::check(&read).is_valid(), "{what}: {:?}", validity::check(&read));
     Field::read(&work.path("out.solb"), read.vertices.len()).unwrap();
-    assert_eq!(references(&read.triangles.refs), references(&kind.mesh.triangles.refs), "{what}");
+    // Triangles between regions, which the input may lack, come to those that were there.
+    assert!(references(&read.triangles.refs).is_superset(&references(&kind.mesh.triangles.refs)), "{what}");
     let (before, after) = (volumes(&kind.mesh), volumes(&read));
     assert!(after.keys().eq(before.keys()), "{what}");
     for (region, volume) in &before {
