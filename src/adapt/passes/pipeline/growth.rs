@@ -20,8 +20,8 @@ const MOST_AN_AREA: f64 = 4.0;
 /// So many vertices are allowed whatever the metric, and twice those of the input.
 const ALWAYS_ALLOWED: f64 = 1_000.0;
 
-/// Vertices that the surface may have beyond the complexity, at most; and as many where the user bounds how far it is from the model: how
-/// many vertices that takes, no metric tells.
+/// The surface may bring so many more at most; and so many where the user bounds how far it deviates from the model, since no metric tells
+/// how many that takes.
 const FOR_THE_SURFACE: f64 = 20_000.0;
 
 impl Pipeline<'_, '_> {
