@@ -73,7 +73,6 @@ impl Place {
                 "adapt {cube} -o {} --analytic linear --complexity 2000 --threads 3 --scheduler speculative --backend rayon",
                 out("c.meshb")
             ),
-            format!("classify {mesh} --cad {cad} -o {}", out("d.meshb")),
             format!("convert {cube} {}", out("e.vtu")),
             format!("cycle {config} --restart"),
             format!("field evaluate {cube} --function sinfun3 -o {}", out("f.solb")),
@@ -91,6 +90,7 @@ impl Place {
                 "adapt {mesh} --cad {cad} -o {} --analytic polar-2 --complexity 500 --threads 2",
                 out("k.meshb")
             ));
+            all.push(format!("classify {mesh} --cad {cad} -o {}", out("d.meshb")));
             all.push(format!("model {cad}"));
             all.push(format!("metric geometry {mesh} --cad {cad} -o {}", out("l.solb")));
             all.push(format!("bootstrap {cad} -o {} --far-field box:2 --mesher gmsh", out("m.meshb")));

@@ -17,7 +17,8 @@ const SPREAD: f64 = 29.828_245_693_264_77;
 /// Of the spread of a logarithm that was cut, as a part.
 const ROUNDING: f64 = 1e-9;
 
-/// A pivot is known where it is no less than this part of the term that it is taken from: a thousand times the rounding.
+/// The pivots are known where their shares of the diagonal have no less than this product: a thousand times the rounding. What the
+/// pivots before one have lost, it has lost too.
 const KNOWN: f64 = 1e-13;
 
 /// Eigenvalues of ln M up to this belong to sizes within [`SIZES`].
@@ -57,10 +58,11 @@ impl Sym3 {
             return None;
         }
         let m = self.exp();
-        let known = |(pivot, axis): (f64, usize)| pivot.is_normal() && pivot >= KNOWN * m.at(axis, axis);
+        // Of the tensor scaled to a unit diagonal the determinant is that of the cosines between its rows.
+        let cosines: f64 = m.pivots().into_iter().zip(0..).map(|(pivot, axis)| pivot / m.at(axis, axis)).product();
         let is_held = self.is_narrow_log()
             || self.spread_of_log() <= SPREAD * (1.0 + ROUNDING)
-            || m.pivots().into_iter().zip(0..).all(known);
+            || (m.is_held() && cosines >= KNOWN);
         is_held.then_some(m)
     }
 
