@@ -1,5 +1,5 @@
 //! A folder for the files that processes of one run hand to each other.
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, Once};
@@ -13,7 +13,7 @@ const NAME: &str = "geo-adapt-";
 const LOCK: &str = "lock";
 
 /// A folder without that file is being made, unless it is so old.
-const BEING_MADE: Duration = Duration::from_secs(60);
+const BEING_MADE: Duration = Duration::from_secs(2);
 
 /// The folders of this process.
 static OURS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -44,10 +44,13 @@ impl Workplace {
             if let Ok(mut ours) = OURS.lock() {
                 ours.push(folder.clone());
             }
-            let lock = File::create(folder.join(LOCK))?;
-            // Where there are no locks nobody takes the folder for one that is left.
-            let _ = lock.try_lock();
-            return Ok(Self { folder, _lock: lock });
+            // Another run may have taken it for one that was left, before it was locked.
+            match held(&folder) {
+                Ok(Some(lock)) => return Ok(Self { folder, _lock: lock }),
+                Ok(None) => {}
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                Err(error) => return Err(error),
+            }
         }
     }
 
@@ -64,6 +67,15 @@ impl Drop for Workplace {
         }
         let _ = fs::remove_dir_all(&self.folder);
     }
+}
+
+/// The locked file of a new folder; none where the folder has gone, or goes.
+fn held(folder: &Path) -> io::Result<Option<File>> {
+    let path = folder.join(LOCK);
+    let lock = File::create(&path)?;
+    // Where there are no locks nobody takes the folder for one that was left.
+    let is_taken = matches!(lock.try_lock(), Err(TryLockError::WouldBlock));
+    Ok(Some(lock).filter(|_| !is_taken && path.exists()))
 }
 
 /// Removes all folders of this process, which is about to end.
@@ -119,8 +131,10 @@ mod tests {
         };
         let left = make("geo-adapt-1-0", true);
         let [new, other] = [make("geo-adapt-1-1", false), make("geo-adapt-out", true)];
+        let unlocked = make("geo-adapt-1-2", false);
+        File::open(&unlocked).unwrap().set_modified(std::time::SystemTime::now() - 2 * BEING_MADE).unwrap();
         sweep(root.path());
-        assert!(!left.exists(), "nobody holds its lock");
+        assert!(!left.exists() && !unlocked.exists(), "nobody holds their lock");
         assert!(kept.file("model.bin").exists(), "it is in use");
         assert!(new.exists() && other.exists(), "being made, and not ours");
         let folder = kept.folder.clone();
