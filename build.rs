@@ -39,7 +39,7 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 14] = [
+    const SOURCES: [&str; 15] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
         "cpp/connect.cpp",
@@ -48,6 +48,7 @@ mod occt {
         "cpp/damage.cpp",
         "cpp/model.cpp",
         "cpp/evaluate.cpp",
+        "cpp/outline.cpp",
         "cpp/splines.cpp",
         "cpp/tessellate.cpp",
         "cpp/write.cpp",

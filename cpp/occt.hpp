@@ -62,6 +62,8 @@ struct Form;
 struct LabelRecord;
 struct DomainRecord;
 struct FlawRecord;
+struct EdgeUse;
+struct FaceSide;
 
 /// A shape with its faces, edges and vertices numbered from 0 in the order of TopExp::MapShapes.
 /// Never changed after loading, so that threads may read it together.
@@ -93,6 +95,18 @@ public:
   /// Triangles of the faces as MSH 2.2, joined along the edges; within a distance and an angle of the surface.
   void write_tessellation(rust::Str path, double deflection, double angle) const;
   rust::Vec<std::uint32_t> solid_faces(std::uint32_t solid) const;
+  /// The edges of a face in the order of its wires, as the face with its orientation FORWARD has them.
+  rust::Vec<EdgeUse> edge_uses(std::uint32_t face) const;
+  /// Vertices that lie in a face and on none of its edges.
+  rust::Vec<std::uint32_t> loose_vertices(std::uint32_t face) const;
+  /// Parameters on a face of points of its edge; of a seam's second curve where the use is reversed. False without such a curve.
+  bool edge_parameters(std::uint32_t edge, std::uint32_t face, bool reversed, rust::Slice<const double> t,
+                       rust::Slice<double> uv) const;
+  /// The faces that bound a solid, each with the side that the solid is on.
+  rust::Vec<FaceSide> solid_sides(std::uint32_t solid) const;
+  double solid_volume(std::uint32_t solid) const;
+  /// OpenCASCADE's own triangles of a copy of the model: nodes (x, y, z, u, v) and triangles (face, three nodes, from 0).
+  void reference_triangles(double deflection, double angle, rust::Vec<double>& nodes, rust::Vec<std::uint32_t>& triangles) const;
   /// Of an edge (dimension 1), face (2) or solid (3).
   LabelRecord label(std::uint32_t dimension, std::uint32_t index) const;
   /// The far field without this body.

@@ -76,6 +76,8 @@ pub mod cli;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cycle;
+#[doc(hidden)]
+pub mod delaunay;
 #[cfg(feature = "formats")]
 #[doc(hidden)]
 pub mod formats;
@@ -95,6 +97,9 @@ pub mod metric;
 pub mod process;
 #[doc(hidden)]
 pub mod sizing;
+#[cfg(feature = "occt")]
+#[doc(hidden)]
+pub mod surface;
 #[doc(hidden)]
 pub mod tasks;
 #[doc(hidden)]

@@ -13,8 +13,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "cycle", "view", "formats", "adapt", "image", "sizing", "metric", "geometry", "transfer", "tasks", "mesh",
-            "process", "memory",
+            "cycle", "view", "formats", "adapt", "image", "surface", "delaunay", "sizing", "metric", "geometry",
+            "transfer", "tasks", "mesh", "process", "memory",
         ],
     ),
     (
@@ -26,6 +26,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("adapt", &["sizing", "metric", "geometry", "tasks", "mesh", "memory"]),
     ("sizing", &["metric", "geometry", "tasks", "mesh"]),
     ("image", &["tasks", "mesh"]),
+    ("surface", &["geometry", "mesh", "tasks"]),
+    ("delaunay", &["mesh"]),
     ("view", &["metric", "geometry", "tasks", "mesh"]),
     ("metric", &["transfer", "mesh", "tasks"]),
     ("transfer", &["mesh", "tasks"]),

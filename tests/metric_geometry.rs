@@ -436,10 +436,13 @@ fn a_few_vertices_resolve_an_apex_as_well_as_many() {
         let (resolved, summary) = geometry_metric(Team::alone(), &mesh, &place, &model, &Options::of(model.topology()));
         let on = resolved.mesh(&mesh);
         assert!(validity::check(on).is_valid() && summary.between == on.vertices.len() - mesh.vertices.len());
-        let [own, given] =
-            [&resolved.logs[..mesh.vertices.len()], &resolved.at_given()].map(|logs| complexity_between(Team::alone(), &mesh, logs));
+        let [own, given] = [&resolved.logs[..mesh.vertices.len()], &resolved.at_given()]
+            .map(|logs| complexity_between(Team::alone(), &mesh, logs));
         let found = complexity_between(Team::alone(), on, &resolved.logs);
-        println!("{n} tetrahedra: complexity {found:.0} on {} vertices; {own:.1e} without, {given:.0} on those given", on.vertices.len());
+        println!(
+            "{n} tetrahedra: complexity {found:.0} on {} vertices; {own:.1e} without, {given:.0} on those given",
+            on.vertices.len()
+        );
         // By the metrics at the vertices of the coarse mesh it was wrong by orders.
         assert!(own > 100.0 * found && given < 2.0 * found);
         found

@@ -19,7 +19,7 @@ pub use far_field::FarField;
 pub use model::{Evaluator, Model};
 pub use names::{Label, Names, called};
 #[cfg(feature = "occt")]
-pub use occt::{OcctEvaluator, OcctModel};
+pub use occt::{EdgeUse, OcctEvaluator, OcctModel, Side, Use};
 pub(crate) use principal::principal;
 pub use traits::{CurveFrame, Evaluate, Geometry, OnCurve, OnSurface, SurfaceFrame};
 

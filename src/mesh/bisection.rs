@@ -142,10 +142,15 @@ mod tests {
             assert_eq!(mesh.vertices.len(), vertices + marked.len(), "round {round}");
             let found = validity::check(&mesh);
             assert!(found.is_valid(), "{found:?}");
-            let volume: f64 = mesh.tets.nodes.iter().map(|n| {
-                let [a, b, c, d] = n.map(|v| mesh.vertices[v as usize]);
-                volume6(a, b, c, d) / 6.0
-            }).sum();
+            let volume: f64 = mesh
+                .tets
+                .nodes
+                .iter()
+                .map(|n| {
+                    let [a, b, c, d] = n.map(|v| mesh.vertices[v as usize]);
+                    volume6(a, b, c, d) / 6.0
+                })
+                .sum();
             assert!((volume - 1.0).abs() < 1e-12);
             for (reference, parent) in mesh.triangles.refs.iter().zip(parents) {
                 assert_eq!(*reference, triangles.refs[parent as usize]);

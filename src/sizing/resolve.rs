@@ -26,8 +26,9 @@ const SHORT: f64 = 4.0;
 const WRONG: f64 = 1.5;
 /// Most rounds: each halves edges. A size is no less than 1e-16 of the mesh.
 const ROUNDS: usize = 64;
-/// Most vertices that are added. What is asked for then is no mesh for anyone.
-const MOST: usize = 4_000_000;
+/// Most vertices that are added, and so many times those of the mesh: where more are asked for, the metric is too fine for a first mesh, and
+/// whoever uses it bounds its complexity.
+const MOST: [usize; 2] = [200_000, 2];
 /// Vertices a task. Each task makes an evaluator.
 const TASK: usize = 1 << 6;
 
@@ -98,7 +99,7 @@ pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limit
         let mut logs = found.logs.clone();
         gradation::grade_with(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
         let edges = finer.unresolved(team, sizing, mesh, &around, &logs);
-        if edges.is_empty() || found.added() + edges.len() > MOST {
+        if edges.is_empty() || found.added() + edges.len() > MOST[0] + MOST[1] * metrics.len() {
             break;
         }
         let places = finer.middles(mesh, &edges);

@@ -3,16 +3,16 @@ use super::places::{gmsh_places, netgen_places};
 use super::queue::Queue;
 use super::rung::{Choice, Rung};
 use super::wish::Wish;
-use super::{gmsh, netgen};
+use super::{gmsh, netgen, own};
 use crate::cli::table;
 use crate::cli::workplace::Workplace;
 use crate::formats;
 use crate::geometry::classify::{Classification, Error, Options, classify};
 use crate::geometry::{Geometry, Model};
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::split_nonmanifold::split_nonmanifold;
+use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::mesh::validity;
-use crate::mesh::vector::lerp;
+use crate::mesh::vector::{Vec3, lerp};
 use crate::mesh::{FlawKind, TetMesh};
 use crate::process::{Log, Outcome, Runner, Tie, errors_or_last_lines, is_exhausted};
 use crate::tasks::Team;
@@ -117,6 +117,10 @@ impl<'a> Ladder<'a> {
 
     /// One rung: the mesh, valid and on the model.
     fn attempt(&self, rung: Rung, limit: Duration) -> Result<(TetMesh, Classification), Miss> {
+        if rung == Rung::Own {
+            let own = own::run(self.model).map_err(Miss::Failed)?;
+            return judge(self.team, own.mesh, self.model, Some(own.on_model)).map_err(Miss::Failed);
+        }
         let out = self.place.file("out.msh");
         let _ = std::fs::remove_file(&out);
         if matches!(rung, Rung::Triangles) {
@@ -131,7 +135,7 @@ impl<'a> Ladder<'a> {
             return Err(failed("it wrote no mesh".into()));
         }
         let mesh = formats::read_msh(&out).map_err(|error| failed(error.to_string()))?;
-        judge(self.team, mesh, self.model).map_err(failed)
+        judge(self.team, mesh, self.model, None).map_err(failed)
     }
 
     /// Remembers why the mesh of a rung would not do.
@@ -182,7 +186,7 @@ fn start(
     log: &Path,
 ) -> Result<(), Miss> {
     let (variable, remedy, places) = match rung {
-        Rung::Gmsh { .. } | Rung::Triangles => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
+        Rung::Own | Rung::Gmsh { .. } | Rung::Triangles => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
         Rung::Netgen { .. } => (netgen::VARIABLE, netgen::REMEDY, netgen_places()),
     };
     let failed = |error: std::io::Error| Miss::Failed(format!("no file for it: {error}"));
@@ -231,13 +235,19 @@ fn command(
         Rung::Gmsh { surface, volume, finer, least } => {
             gmsh::command(program, (surface, volume, finer, least), wish, place, files)
         }
-        Rung::Triangles => Ok(gmsh::run(program, &place.file(gmsh::TRIANGLES), files[1])),
+        Rung::Own | Rung::Triangles => Ok(gmsh::run(program, &place.file(gmsh::TRIANGLES), files[1])),
         Rung::Netgen { finer } => netgen::command(program, finer, wish, place, files),
     }
 }
 
-/// A mesh is good when it is one, fills every solid, and covers every face, edge and vertex of the model.
-fn judge(team: Team<'_>, mut mesh: TetMesh, model: &Model) -> Result<(TetMesh, Classification), String> {
+/// A mesh is good when it is one, fills every solid, and covers every face, edge and vertex of the model. Where its vertices are not on the
+/// model yet, `on_model` says where they belong.
+fn judge(
+    team: Team<'_>,
+    mut mesh: TetMesh,
+    model: &Model,
+    on_model: Option<Vec<Vec3>>,
+) -> Result<(TetMesh, Classification), String> {
     let topology = model.topology();
     // Solids that touch in an edge or a vertex alone: the mesher joins them there, our kernel and our model have them apart.
     let faces = MatchedFaces::of(team, &mesh.tets.nodes);
@@ -265,7 +275,17 @@ fn judge(team: Team<'_>, mut mesh: TetMesh, model: &Model) -> Result<(TetMesh, C
     if let Some(solid) = empty {
         return Err(format!("its mesh has no tetrahedra in solid {solid} of {}", topology.solids));
     }
-    let place = classified(team, &mesh, model).map_err(|error| error.to_string())?;
+    let place = match on_model {
+        None => classified(team, &mesh, model),
+        Some(mut on_model) => {
+            copy_values(&mut on_model, &doubled);
+            std::mem::swap(&mut mesh.vertices, &mut on_model);
+            let place = classified(team, &mesh, model);
+            mesh.vertices = on_model;
+            place
+        }
+    }
+    .map_err(|error| error.to_string())?;
     mesh.triangles.refs = place.faces.iter().map(|&face| face as i32 + 1).collect();
     Ok((mesh, place))
 }

@@ -6,12 +6,17 @@ pub const GMSH: &str = "gmsh";
 /// What netgen is called.
 pub const NETGEN: &str = "netgen";
 
+/// What our own is called.
+pub const OWN: &str = "geo-adapt";
+
 /// Which meshers may be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Choice {
     /// gmsh, then netgen
     #[default]
     Auto,
+    /// geo-adapt itself: no other program is needed
+    Own,
     /// gmsh only
     Gmsh,
     /// netgen only
@@ -21,6 +26,8 @@ pub enum Choice {
 /// What one run of a mesher is to do; sizes are divided by `finer`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rung {
+    /// Our own: constrained Delaunay tetrahedra of our own triangulation.
+    Own,
     /// gmsh, with its numbers of the algorithms in two and in three dimensions.
     Gmsh { surface: u32, volume: u32, finer: f64, least: Least },
     /// gmsh, on OpenCASCADE's own triangles: poor ones, but there are some of any face.
@@ -39,7 +46,8 @@ pub enum Least {
 }
 
 /// What is tried in turn. gmsh: 6 is frontal-Delaunay, 5 Delaunay, 1 MeshAdapt; in three dimensions 1 is Delaunay, 10 HXT, 4 frontal.
-const RUNGS: [Rung; 12] = [
+const RUNGS: [Rung; 13] = [
+    Rung::Own,
     Rung::Gmsh { surface: 6, volume: 1, finer: 1.0, least: Least::Usual },
     Rung::Gmsh { surface: 5, volume: 1, finer: 1.0, least: Least::Usual },
     Rung::Gmsh { surface: 6, volume: 10, finer: 1.0, least: Least::Usual },
@@ -58,14 +66,16 @@ impl Rung {
     /// What may be tried.
     pub fn of(choice: Choice) -> impl Iterator<Item = Self> {
         RUNGS.into_iter().filter(move |rung| match rung {
-            Self::Gmsh { .. } | Self::Triangles => choice != Choice::Netgen,
-            Self::Netgen { .. } => choice != Choice::Gmsh,
+            Self::Own => choice == Choice::Own,
+            Self::Gmsh { .. } | Self::Triangles => matches!(choice, Choice::Auto | Choice::Gmsh),
+            Self::Netgen { .. } => matches!(choice, Choice::Auto | Choice::Netgen),
         })
     }
 
     /// The program.
     pub fn program(self) -> &'static str {
         match self {
+            Self::Own => OWN,
             Self::Gmsh { .. } | Self::Triangles => GMSH,
             Self::Netgen { .. } => NETGEN,
         }
@@ -75,7 +85,7 @@ impl Rung {
     pub fn is_light(self) -> bool {
         match self {
             Self::Gmsh { least, .. } => least == Least::Large,
-            Self::Triangles => true,
+            Self::Own | Self::Triangles => true,
             Self::Netgen { finer } => finer < 1.0,
         }
     }
@@ -84,6 +94,7 @@ impl Rung {
 impl std::fmt::Display for Rung {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let finer = match *self {
+            Self::Own => return f.write_str("geo-adapt (constrained Delaunay)"),
             Self::Gmsh { surface, volume, finer, least } => {
                 write!(f, "gmsh ({} surfaces, {} volumes", algorithm(surface), algorithm_3d(volume))?;
                 if least == Least::Large {

@@ -67,6 +67,22 @@ pub mod ffi {
         what: String,
     }
 
+    /// An edge as a wire of a face has it.
+    struct EdgeUse {
+        edge: u32,
+        /// Number of the wire.
+        wire: u32,
+        /// 0 forward, 1 reversed, 2 internal, 3 external (TopAbs_Orientation).
+        orientation: u32,
+    }
+
+    /// A face of a solid.
+    struct FaceSide {
+        face: u32,
+        /// 0: the solid is behind the surface's normal Su × Sv; 1: before it; 2: on both sides; 3: on none.
+        orientation: u32,
+    }
+
     /// The far field around a body: a box, or a sphere where the radius is positive; cut at a plane where the axis is not −1.
     struct DomainRecord {
         /// The box; with a sphere what is kept of it.
@@ -123,6 +139,25 @@ pub mod ffi {
         fn load_saved(path: &str) -> Result<SharedPtr<Model>>;
         fn write_tessellation(self: &Model, path: &str, deflection: f64, angle: f64) -> Result<()>;
         fn solid_faces(self: &Model, solid: u32) -> Result<Vec<u32>>;
+        fn edge_uses(self: &Model, face: u32) -> Result<Vec<EdgeUse>>;
+        fn loose_vertices(self: &Model, face: u32) -> Result<Vec<u32>>;
+        fn edge_parameters(
+            self: &Model,
+            edge: u32,
+            face: u32,
+            reversed: bool,
+            t: &[f64],
+            uv: &mut [f64],
+        ) -> Result<bool>;
+        fn solid_sides(self: &Model, solid: u32) -> Result<Vec<FaceSide>>;
+        fn solid_volume(self: &Model, solid: u32) -> Result<f64>;
+        fn reference_triangles(
+            self: &Model,
+            deflection: f64,
+            angle: f64,
+            nodes: &mut Vec<f64>,
+            triangles: &mut Vec<u32>,
+        ) -> Result<()>;
         /// Of an edge (dimension 1), face (2) or solid (3).
         fn label(self: &Model, dimension: u32, index: u32) -> Result<LabelRecord>;
         fn domain(self: &Model, domain: &DomainRecord) -> Result<SharedPtr<Model>>;

@@ -1,0 +1,135 @@
+//! Our own first mesh: a triangulation of the model's surface, and the constrained Delaunay tetrahedra of that.
+use crate::delaunay::{self, Flat, Origin, Tetrahedra, tetrahedralise};
+use crate::geometry::{Evaluate, Geometry, Model};
+use crate::mesh::vector::Vec3;
+use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
+use crate::surface::{Options, Place, Surface, triangulate};
+use std::collections::HashMap;
+
+/// A mesh whose surface is made of flat triangles between points of the model.
+pub struct Own {
+    /// The mesh. Vertices that were added to a triangle or an edge of the surface lie on it, not yet on the model.
+    pub mesh: TetMesh,
+    /// Each vertex where it belongs on the model.
+    pub on_model: Vec<Vec3>,
+}
+
+/// Makes it.
+///
+/// # Errors
+/// What part of the surface could not be triangulated or filled, and where.
+pub fn run(model: &Model) -> Result<Own, String> {
+    let Model::Occt(cad) = model else { return Err("it is no CAD model".into()) };
+    let options = Options::new(model.topology().diagonal());
+    let surface = triangulate(cad, &options);
+    crate::tasks::stage("surface");
+    if let Some(face) = surface.missing.first() {
+        let count = surface.missing.len();
+        return Err(format!("{count} faces have no triangles, the first is face {}", face + 1));
+    }
+    if let Some(pair) = surface.crossings.first() {
+        let [a, b] = pair.map(|t| surface.faces[t as usize] + 1);
+        let at = surface.points[surface.triangles[pair[0] as usize][0] as usize];
+        let count = surface.crossings.len();
+        return Err(format!(
+            "{count} pairs of triangles of its surface cross, the first of faces {a} and {b} near {at:?}"
+        ));
+    }
+    let filled = tetrahedralise(&surface.points, &surface.triangles, &mut Flat, delaunay::Options::default())
+        .map_err(|error| describe(&error, &surface))?;
+    crate::tasks::stage("tetrahedra");
+    Ok(meshed(model, &surface, &filled))
+}
+
+/// An error in the words of the model.
+fn describe(error: &delaunay::Error, surface: &Surface) -> String {
+    let face = |t: u32| surface.faces[t as usize] + 1;
+    match error {
+        delaunay::Error::Points(error) => format!("its points have no tetrahedra: {error:?}"),
+        delaunay::Error::Corners { triangle } => format!("a triangle of face {} is damaged", face(*triangle)),
+        delaunay::Error::Repeated { triangles: [a, b] } => {
+            format!("faces {} and {} have the same triangle", face(*a), face(*b))
+        }
+        delaunay::Error::Crossing { triangles: [a, b], at } => {
+            format!("triangles of faces {} and {} cross near {at:?}", face(*a), face(*b))
+        }
+        delaunay::Error::Touching { triangle, at, .. } => {
+            format!("a point lies on a triangle of face {} near {at:?}", face(*triangle))
+        }
+        delaunay::Error::Unrecovered { triangle, at } => {
+            format!("a triangle of face {} was not recovered near {at:?}", face(*triangle))
+        }
+    }
+}
+
+/// The mesh, with its places on the model.
+fn meshed(model: &Model, surface: &Surface, filled: &Tetrahedra) -> Own {
+    let mut mesh = TetMesh { vertices: filled.points.clone(), ..TetMesh::default() };
+    mesh.vertex_refs = vec![0; mesh.vertices.len()];
+    for (nodes, source) in filled.triangles.iter().zip(&filled.source) {
+        mesh.triangles.push(*nodes, surface.faces[*source as usize] as i32 + 1);
+    }
+    let solids = solids(surface, filled);
+    for (nodes, region) in filled.tets.iter().zip(&filled.regions) {
+        if let Some(solid) = solids[*region as usize] {
+            mesh.tets.push(*nodes, solid as i32 + 1);
+        }
+    }
+    for (place, vertex) in surface.places.iter().zip(0..) {
+        associate(&mut mesh, vertex, *place);
+    }
+    let (mut evaluator, mut on_model) = (model.evaluator(), mesh.vertices.clone());
+    let mut pieces: HashMap<[u32; 2], u32> = HashMap::new();
+    for (chain, edge) in surface.chains.iter().zip(0..) {
+        pieces.extend(chain.windows(2).map(|ends| (key(ends[0], ends[1]), edge)));
+    }
+    let mut face_of = vec![u32::MAX; mesh.vertices.len()];
+    for (nodes, source) in filled.triangles.iter().zip(&filled.source) {
+        nodes.iter().for_each(|&v| face_of[v as usize] = surface.faces[*source as usize]);
+    }
+    for (added, vertex) in filled.added.iter().zip(surface.points.len() as u32..) {
+        let edge = match added.origin {
+            Origin::Edge([a, b]) => pieces.remove(&key(a, b)).map(|edge| ([a, b], edge)),
+            Origin::Triangle(_) => None,
+        };
+        if let Some((ends, edge)) = edge {
+            pieces.extend(ends.map(|end| (key(end, vertex), edge)));
+            let on = evaluator.closest_on_edge(edge, added.point, None);
+            on_model[vertex as usize] = on.point;
+            associate(&mut mesh, vertex, Place::Edge(edge, on.t));
+        } else if face_of[vertex as usize] != u32::MAX {
+            let face = face_of[vertex as usize];
+            let on = evaluator.closest_on_face(face, added.point, None);
+            on_model[vertex as usize] = on.point;
+            associate(&mut mesh, vertex, Place::Face(face, on.uv));
+        }
+    }
+    let mut ridges: Vec<([u32; 2], u32)> = pieces.into_iter().collect();
+    ridges.sort_unstable();
+    ridges.into_iter().for_each(|(nodes, edge)| mesh.edges.push(nodes, edge as i32 + 1));
+    Own { mesh, on_model }
+}
+
+fn key(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+fn associate(mesh: &mut TetMesh, vertex: u32, place: Place) {
+    match place {
+        Place::Vertex(id) => mesh.association.vertices.push(OnVertex { vertex, id: id as i32 + 1 }),
+        Place::Edge(id, t) => mesh.association.edges.push(OnEdge { vertex, id: id as i32 + 1, t, r: 0.0 }),
+        Place::Face(id, uv) => mesh.association.faces.push(OnFace { vertex, id: id as i32 + 1, uv, r: 0.0 }),
+    }
+}
+
+/// The solid of each region, by the sides of its triangles; none for what is no solid.
+fn solids(surface: &Surface, filled: &Tetrahedra) -> Vec<Option<u32>> {
+    let mut votes: Vec<HashMap<Option<u32>, usize>> = vec![HashMap::new(); filled.region_count as usize];
+    for (sides, source) in filled.sides.iter().zip(&filled.source) {
+        let [behind, before] = surface.sides[surface.faces[*source as usize] as usize];
+        *votes[sides[1] as usize].entry(behind).or_default() += 1;
+        *votes[sides[0] as usize].entry(before).or_default() += 1;
+    }
+    let most = |votes: &HashMap<Option<u32>, usize>| votes.iter().map(|(solid, count)| (*count, *solid)).max();
+    votes.iter().map(|votes| most(votes).and_then(|(_, solid)| solid)).collect()
+}

@@ -1,0 +1,195 @@
+//! The edges of a model in pieces: once for all faces that share them, as long as curvature and the edges beside allow.
+use super::Options;
+use super::twins::Twins;
+use crate::geometry::{Evaluate, Geometry, OcctEvaluator, OcctModel, Topology};
+use crate::mesh::vector::{Vec3, cross, distance, dot, norm};
+
+/// How much longer than the size of a face's curvature an edge along it may be.
+pub const STRETCH: f64 = 4.0;
+/// Places that a size is asked at on an edge: at first, and at most.
+const PLACES: [usize; 2] = [32, 4096];
+/// Pieces of an edge at most for the curvature of the faces beside it.
+const ALONG: f64 = 16.0;
+/// Sweeps over all edges that hand sizes on, at most.
+const SWEEPS: usize = 64;
+/// Pieces of an edge at most.
+const PIECES: f64 = 20_000.0;
+
+/// Sizes along an edge.
+struct Profile {
+    t: Vec<f64>,
+    /// Length from the start.
+    way: Vec<f64>,
+    size: Vec<f64>,
+}
+
+/// For each edge the parameters that it is divided at, its ends among them; of a degenerate edge none.
+pub fn divided(model: &OcctModel, options: &Options, twins: &Twins) -> Vec<Vec<f64>> {
+    let topology = model.topology();
+    let mut on = model.evaluator();
+    let mut profiles: Vec<Option<Profile>> =
+        (0..topology.edges.len() as u32).map(|edge| profile(&mut on, topology, edge, options)).collect();
+    // Twins are as fine as the finer of both; what that does to others is handed on in a second go.
+    for _ in 0..2 {
+        hand_on(topology, &mut profiles, options.growth);
+        for edge in 0..profiles.len() {
+            if let Some((other, is_against)) = twins.follows[edge]
+                && let Some(own) = profiles[edge].take()
+            {
+                if let Some(leader) = &mut profiles[other as usize] {
+                    leader.take_least(&own, is_against);
+                }
+                profiles[edge] = Some(own);
+            }
+        }
+    }
+    let least = least_pieces(topology);
+    profiles
+        .iter()
+        .zip(least)
+        .map(|(profile, least)| profile.as_ref().map_or_else(Vec::new, |p| p.divide(least)))
+        .collect()
+}
+
+fn profile(on: &mut OcctEvaluator, topology: &Topology, edge: u32, options: &Options) -> Option<Profile> {
+    let entity = &topology.edges[edge as usize];
+    let [from, to] = entity.range;
+    if entity.degenerate || !(to > from) {
+        return None;
+    }
+    let mut count = PLACES[0];
+    loop {
+        let place = |i: usize| from + (to - from) * (i as f64 / count as f64);
+        let t: Vec<f64> = (0..=count).map(|i| if i == count { to } else { place(i) }).collect();
+        let frames: Vec<(Vec3, f64, f64)> = t.iter().map(|&t| size_at(on, topology, edge, t, options)).collect();
+        let mut way = vec![0.0; count + 1];
+        let mut is_fine = true;
+        for i in 1..=count {
+            let step = distance(frames[i - 1].0, frames[i].0);
+            way[i] = way[i - 1] + step;
+            is_fine &= step <= 0.7 * frames[i - 1].1.min(frames[i].1);
+        }
+        if is_fine || count >= PLACES[1] {
+            // The whole edge may be one piece; the curvature of faces beside it, which has no bound at an apex, may divide it into so many.
+            let length = way[count];
+            let size = frames.iter().map(|&(_, own, beside)| own.min(beside.max(length / ALONG)).min(length)).collect();
+            return (length.is_finite() && length > 0.0).then_some(Profile { t, way, size });
+        }
+        count *= 4;
+    }
+}
+
+/// Point, and the sizes at a parameter by the curve and by the faces beside it.
+fn size_at(on: &mut OcctEvaluator, topology: &Topology, edge: u32, t: f64, options: &Options) -> (Vec3, f64, f64) {
+    let frame = on.edge_frame(edge, t);
+    let mut bend = 0.0_f64;
+    for &face in &topology.edges[edge as usize].faces {
+        if let Some(uv) = on.edge_on_face(edge, t, face) {
+            bend = bend.max(on.face_frame(face, uv).curvatures[0].abs());
+        }
+    }
+    let size = |bend: f64| {
+        let size = 1.0 / (options.segments * bend);
+        if size.is_finite() { size.clamp(options.least, options.greatest) } else { options.greatest }
+    };
+    (frame.point, size(frame.curvature()), size(bend / STRETCH))
+}
+
+/// Has sizes grow by no more than `growth` for a unit of length, from edge to edge over the vertices too.
+fn hand_on(topology: &Topology, profiles: &mut [Option<Profile>], growth: f64) {
+    let mut at_vertex = vec![f64::INFINITY; topology.vertices.len()];
+    for _ in 0..SWEEPS {
+        let mut has_changed = false;
+        for (profile, entity) in profiles.iter_mut().zip(&topology.edges) {
+            let Some(profile) = profile else { continue };
+            let last = profile.size.len() - 1;
+            for (end, vertex) in [0, last].into_iter().zip(entity.vertices) {
+                if let Some(vertex) = vertex {
+                    profile.size[end] = profile.size[end].min(at_vertex[vertex as usize]);
+                }
+            }
+            for i in 1..=last {
+                let step = growth * (profile.way[i] - profile.way[i - 1]);
+                profile.size[i] = profile.size[i].min(profile.size[i - 1] + step);
+            }
+            for i in (0..last).rev() {
+                let step = growth * (profile.way[i + 1] - profile.way[i]);
+                profile.size[i] = profile.size[i].min(profile.size[i + 1] + step);
+            }
+            for (end, vertex) in [0, last].into_iter().zip(entity.vertices) {
+                if let Some(vertex) = vertex {
+                    let size = &mut at_vertex[vertex as usize];
+                    if profile.size[end] < *size * (1.0 - 1e-9) {
+                        *size = profile.size[end];
+                        has_changed = true;
+                    }
+                }
+            }
+        }
+        if !has_changed {
+            return;
+        }
+    }
+}
+
+/// Pieces that an edge has at least: four where it is closed, two where another edge has the same ends.
+fn least_pieces(topology: &Topology) -> Vec<usize> {
+    topology
+        .edges
+        .iter()
+        .enumerate()
+        .map(|(i, edge)| match edge.vertices {
+            [Some(a), Some(b)] if a != b => {
+                let twin = |&other: &u32| {
+                    let entity = &topology.edges[other as usize];
+                    other as usize != i
+                        && !entity.degenerate
+                        && (entity.vertices == [Some(a), Some(b)] || entity.vertices == [Some(b), Some(a)])
+                };
+                1 + usize::from(topology.vertices[a as usize].edges.iter().any(twin))
+            }
+            _ => 4,
+        })
+        .collect()
+}
+
+impl Profile {
+    /// Takes the sizes of another at the same places where they are less.
+    fn take_least(&mut self, other: &Self, is_against: bool) {
+        let length = |profile: &Self| profile.way.last().copied().unwrap_or(0.0);
+        let (own, far) = (length(self), length(other));
+        for i in 0..self.size.len() {
+            let share = if is_against { 1.0 - self.way[i] / own } else { self.way[i] / own };
+            let k = other.way.partition_point(|&way| way < share * far).min(other.size.len() - 1);
+            self.size[i] = self.size[i].min(other.size[k]).min(other.size[k.saturating_sub(1)]);
+        }
+    }
+
+    /// Divides it so that each piece has as much of the integral of 1/size.
+    fn divide(&self, least: usize) -> Vec<f64> {
+        let last = self.t.len() - 1;
+        let mut sum = vec![0.0; last + 1];
+        for i in 1..=last {
+            let step = self.way[i] - self.way[i - 1];
+            sum[i] = sum[i - 1] + 0.5 * step * (1.0 / self.size[i] + 1.0 / self.size[i - 1]);
+        }
+        let count = ((sum[last] - 0.1).ceil().clamp(1.0, PIECES) as usize).max(least);
+        let mut t = vec![self.t[0]];
+        let mut i = 0;
+        for k in 1..count {
+            let aim = sum[last] * k as f64 / count as f64;
+            while i + 2 < sum.len() && sum[i + 1] < aim {
+                i += 1;
+            }
+            let share = ((aim - sum[i]) / (sum[i + 1] - sum[i])).clamp(0.0, 1.0);
+            t.push(self.t[i] + (self.t[i + 1] - self.t[i]) * if share.is_finite() { share } else { 0.5 });
+        }
+        t.push(self.t[last]);
+        t
+    }
+}
+
+/// The angle between two unit normals, in radians.
+pub fn angle(a: Vec3, b: Vec3) -> f64 {
+    norm(cross(a, b)).atan2(dot(a, b))
+}

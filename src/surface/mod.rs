@@ -1,0 +1,261 @@
+//! A watertight triangulation of a CAD shape: edges are divided once, faces are triangulated in the plane of their parameters between them.
+mod check;
+mod edges;
+mod outline;
+mod patch;
+pub mod plane;
+mod points;
+mod rough;
+#[cfg(test)]
+mod tests;
+mod twins;
+mod whole;
+
+pub use check::{Report, report};
+pub use points::Place;
+
+use crate::geometry::{Geometry, OcctModel};
+use crate::mesh::vector::Vec3;
+use outline::{Outline, Segment};
+use patch::{Patch, sorted};
+use plane::{Conflict, NONE};
+use points::Points;
+use std::collections::BTreeSet;
+use twins::Twins;
+
+/// How fine the triangles are.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Segments for a radian of curvature.
+    pub segments: f64,
+    /// Greatest length of an edge, model units.
+    pub greatest: f64,
+    /// Edges as short as this are not divided further, model units.
+    pub least: f64,
+    /// By how much lengths may grow over a unit of length.
+    pub growth: f64,
+    /// Rounds of division where triangles cross, at most.
+    pub rounds: usize,
+}
+
+impl Options {
+    /// For a model with this diagonal of its box.
+    pub fn new(diagonal: f64) -> Self {
+        Self { segments: 1.5, greatest: diagonal / 8.0, least: 1e-5 * diagonal, growth: 0.5, rounds: 12 }
+    }
+}
+
+/// A size that is wanted about a point of a face.
+#[derive(Clone, Copy, Debug)]
+pub struct Wish {
+    /// The point.
+    pub at: Vec3,
+    /// Length of the edges there.
+    pub size: f64,
+    /// How far that holds; beyond it grows.
+    pub radius: f64,
+}
+
+/// The triangulation of a shape.
+#[derive(Clone, Debug, Default)]
+pub struct Surface {
+    /// Coordinates, model units: first those of the model's vertices and edges.
+    pub points: Vec<Vec3>,
+    /// What each point lies on, with parameters.
+    pub places: Vec<Place>,
+    /// Triangles. They look out of the solid; of a face between two, out of the first of its `sides`.
+    pub triangles: Vec<[u32; 3]>,
+    /// The face of each triangle.
+    pub faces: Vec<u32>,
+    /// For each face the solids behind and before its triangles.
+    pub sides: Vec<[Option<u32>; 2]>,
+    /// For each edge its points, by parameter; nothing of a degenerate edge.
+    pub chains: Vec<Vec<u32>>,
+    /// Faces that are triangulated by their border alone, since that crosses itself in the plane of the parameters.
+    pub rough: Vec<u32>,
+    /// Faces without triangles.
+    pub missing: Vec<u32>,
+    /// Pairs of triangles that cross.
+    pub crossings: Vec<[u32; 2]>,
+}
+
+/// A face at work.
+#[derive(Default)]
+struct Face {
+    segments: Vec<Segment>,
+    patch: Option<Patch>,
+    wishes: Vec<Wish>,
+    barred: BTreeSet<[u32; 2]>,
+    /// Rounds in which its border was in conflict.
+    conflicts: usize,
+    /// Rounds in which triangles looked away.
+    turned: usize,
+    is_rough: bool,
+}
+
+/// Rounds of all faces at most.
+const ROUNDS: usize = 40;
+/// Rounds in which the border of a face may be in conflict.
+const CONFLICTS: usize = 9;
+/// Rounds in which triangles of a face may look away.
+const TURNED: usize = 6;
+
+/// Further attempts: by how much finer curvature is followed, and how much faster sizes grow.
+const ATTEMPTS: [(f64, f64); 3] = [(1.2, 1.4), (1.5, 0.8), (0.85, 1.0)];
+/// So many pairs that cross are a fault of the model: no division helps.
+const MANY: usize = 10_000;
+/// Wishes of a face at most.
+const WISHES: usize = 256;
+
+/// What is to be done finer.
+#[derive(Default)]
+struct Asked {
+    pieces: Vec<(u32, u32)>,
+    faces: BTreeSet<u32>,
+}
+
+/// Triangulates all faces of a model. Where triangles cross in the end, which finer ones do not cure where faces touch, other sizes are tried:
+/// what crosses least is kept.
+pub fn triangulate(model: &OcctModel, options: &Options) -> Surface {
+    let mut best = attempt(model, options);
+    for (finer, growth) in ATTEMPTS {
+        if best.crossings.is_empty() {
+            break;
+        }
+        let other = attempt(
+            model,
+            &Options { segments: finer * options.segments, growth: growth * options.growth, ..*options },
+        );
+        if (other.missing.len(), other.crossings.len()) < (best.missing.len(), best.crossings.len()) {
+            best = other;
+        }
+    }
+    best
+}
+
+/// One attempt.
+fn attempt(model: &OcctModel, options: &Options) -> Surface {
+    let topology = model.topology();
+    let twins = Twins::of(model);
+    let mut points = Points::new(model, edges::divided(model, options, &twins), twins);
+    let mut faces: Vec<Face> = topology.faces.iter().map(|_| Face::default()).collect();
+    let mut dirty: BTreeSet<u32> = (0..faces.len() as u32).collect();
+    let mut repairs = 0;
+    let mut crossings = Vec::new();
+    let mut surface = Surface::default();
+    for round in 0..ROUNDS {
+        let mut asked = Asked::default();
+        for &face in &dirty {
+            work(model, options, &points, face, &mut faces[face as usize], &mut asked);
+        }
+        if asked.pieces.is_empty() && asked.faces.is_empty() {
+            surface = whole::assemble(model, &points, &faces);
+            if repairs == options.rounds {
+                break;
+            }
+            repairs += 1;
+            whole::find_faults(model, &mut surface, &mut faces, options, &mut asked);
+            // What crosses as often after six rounds does so in the model.
+            crossings.push(surface.crossings.len());
+            let before = repairs.checked_sub(6).map(|i| crossings[i]);
+            if surface.crossings.len() > MANY
+                || before.is_some_and(|before| before > 0 && surface.crossings.len() >= before)
+            {
+                break;
+            }
+        }
+        asked.pieces.sort_unstable();
+        asked.pieces.dedup();
+        let touched = points.halve(model, &asked.pieces, options.least);
+        dirty = asked.faces;
+        dirty.extend(touched.iter().flat_map(|&edge| &topology.edges[edge as usize].faces));
+        if dirty.is_empty() {
+            break;
+        }
+    }
+    if surface.triangles.is_empty() || !dirty.is_empty() {
+        surface = whole::assemble(model, &points, &faces);
+    }
+    whole::find_crossings(&mut surface);
+    surface
+}
+
+/// Triangulates one face, or tells what of its border is to be divided first.
+fn work(model: &OcctModel, options: &Options, points: &Points, index: u32, face: &mut Face, asked: &mut Asked) {
+    let mut on = model.evaluator();
+    let Some(outline) = outline::outline(model, &mut on, points, index, options.segments) else {
+        face.patch = None;
+        return;
+    };
+    face.segments.clone_from(&outline.segments);
+    face.is_rough = false;
+    match Patch::new(&mut on, index, &outline, points) {
+        Ok(mut patch) => {
+            patch.is_strict = face.turned < TURNED;
+            patch.refine(&mut on, index, options, &face.wishes, &face.barred);
+            face.turned += 1;
+            if face.turned <= TURNED {
+                ask_turned(&patch, &outline, index, face, asked);
+            }
+            face.patch = Some(patch);
+        }
+        Err(conflicts) => {
+            face.conflicts += 1;
+            let before = asked.pieces.len();
+            if face.conflicts <= CONFLICTS {
+                for conflict in conflicts {
+                    ask_conflict(conflict, &outline, asked);
+                }
+                let is_fine = |&(edge, piece): &(u32, u32)| points.length(edge, piece) > options.least;
+                if asked.pieces[before..].iter().any(is_fine) {
+                    return;
+                }
+                asked.pieces.truncate(before);
+            }
+            face.patch = rough::patch(&mut on, index, &outline, points);
+            face.is_rough = true;
+        }
+    }
+}
+
+/// Asks for what is in conflict in halves.
+fn ask_conflict(conflict: Conflict, outline: &Outline, asked: &mut Asked) {
+    let ask = &mut |segment: u32| {
+        let segment = &outline.segments[segment as usize];
+        if segment.piece != NONE {
+            asked.pieces.push((segment.edge, segment.piece));
+        }
+    };
+    let at = |corner: u32| {
+        (0..outline.segments.len() as u32).filter(move |&s| outline.segments[s as usize].ends.contains(&corner))
+    };
+    match conflict {
+        Conflict::Cross(a, b) => [a, b].into_iter().for_each(ask),
+        Conflict::Touch { point, segment } => at(point).chain([segment]).for_each(ask),
+        Conflict::Equal(a, b) => at(a).chain(at(b)).for_each(ask),
+        Conflict::Lost => {}
+    }
+}
+
+/// Asks for finer triangles where some look away from the surface.
+fn ask_turned(patch: &Patch, outline: &Outline, index: u32, face: &mut Face, asked: &mut Asked) {
+    for &segment in &patch.pressed {
+        let segment = &outline.segments[segment as usize];
+        if segment.piece != NONE {
+            asked.pieces.push((segment.edge, segment.piece));
+        }
+    }
+    let turned = patch.turned_away();
+    let is_few = turned.len() <= 8;
+    for (t, fixed) in turned {
+        let pieces = fixed.iter().filter(|&&s| s != NONE).map(|&s| &outline.segments[s as usize]);
+        let before = asked.pieces.len();
+        asked.pieces.extend(pieces.filter(|s| s.piece != NONE).map(|s| (s.edge, s.piece)));
+        if asked.pieces.len() == before && is_few && face.wishes.len() < WISHES {
+            let corners = patch.triangles[t as usize].map(|c| patch.at[c as usize]);
+            let (at, length, _) = whole::longest(&corners);
+            face.wishes.push(Wish { at, size: 0.4 * length, radius: 0.0 });
+            asked.faces.insert(index);
+        }
+    }
+}

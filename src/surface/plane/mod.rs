@@ -1,0 +1,187 @@
+//! Constrained Delaunay triangulation in the plane, with exact predicates: points, then segments between them, then what they bound.
+mod constrain;
+mod insert;
+mod region;
+#[cfg(test)]
+mod tests;
+
+pub use region::Region;
+use robust::Coord;
+
+/// A point of the plane.
+pub type Point = [f64; 2];
+
+/// No triangle, no segment.
+pub const NONE: u32 = u32::MAX;
+
+/// Corners of the square around all points.
+const FRAME: usize = 4;
+
+/// Why the segments bound no region of the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Conflict {
+    /// Two points are the same; their numbers.
+    Equal(u32, u32),
+    /// A point lies in a segment.
+    Touch {
+        /// The point.
+        point: u32,
+        /// The segment.
+        segment: u32,
+    },
+    /// Two segments cross.
+    Cross(u32, u32),
+    /// A coordinate is no number, or the search came to no end.
+    Lost,
+}
+
+/// A triangulation of a square around the points. Triangles are counter-clockwise.
+#[derive(Clone, Debug)]
+pub struct Plane {
+    points: Vec<Point>,
+    triangles: Vec<[u32; 3]>,
+    /// The triangle across the edge opposite to each corner.
+    beside: Vec<[u32; 3]>,
+    /// The segment on that edge.
+    fixed: Vec<[u32; 3]>,
+    /// A triangle at each point.
+    at: Vec<u32>,
+    /// Where the last search ended.
+    last: u32,
+}
+
+/// Positive where c is on the left of the line from a to b: exact.
+#[inline]
+pub fn turn(a: Point, b: Point, c: Point) -> f64 {
+    let at = |p: Point| Coord { x: p[0], y: p[1] };
+    robust::orient2d(at(a), at(b), at(c))
+}
+
+/// Positive where d lies in the circle through a, b, c, which are counter-clockwise: exact.
+#[inline]
+fn in_circle(a: Point, b: Point, c: Point, d: Point) -> f64 {
+    let at = |p: Point| Coord { x: p[0], y: p[1] };
+    robust::incircle(at(a), at(b), at(c), at(d))
+}
+
+impl Plane {
+    /// The Delaunay triangulation of points, which keep their numbers.
+    ///
+    /// # Errors
+    /// [`Conflict::Equal`] where two are the same, [`Conflict::Lost`] where one is not finite.
+    pub fn new(points: &[Point]) -> Result<Self, Conflict> {
+        let mut plane = Self::framing(points)?;
+        for &point in points {
+            plane.insert(point)?;
+        }
+        Ok(plane)
+    }
+
+    /// A square far around the points, as two triangles.
+    fn framing(points: &[Point]) -> Result<Self, Conflict> {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for point in points {
+            for k in 0..2 {
+                if !(point[k].abs() < 1e100) {
+                    return Err(Conflict::Lost);
+                }
+                low[k] = low[k].min(point[k]);
+                high[k] = high[k].max(point[k]);
+            }
+        }
+        if points.is_empty() {
+            (low, high) = ([0.0; 2], [1.0; 2]);
+        }
+        let side = (high[0] - low[0]).max(high[1] - low[1]);
+        let reach = 8.0 * if side > 0.0 { side } else { 1.0 + low[0].abs() + low[1].abs() };
+        let [x0, y0, x1, y1] = [low[0] - reach, low[1] - reach, high[0] + reach, high[1] + reach];
+        let mut all = Vec::with_capacity(points.len() + FRAME);
+        all.extend([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]);
+        Ok(Self {
+            points: all,
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            beside: vec![[NONE, 1, NONE], [NONE, NONE, 0]],
+            fixed: vec![[NONE; 3]; 2],
+            at: vec![0, 0, 0, 1],
+            last: 0,
+        })
+    }
+
+    fn point(&self, vertex: u32) -> Point {
+        self.points[vertex as usize]
+    }
+
+    /// The place of a vertex in a triangle.
+    fn place(&self, triangle: u32, vertex: u32) -> usize {
+        self.triangles[triangle as usize].iter().position(|&v| v == vertex).unwrap_or(0)
+    }
+
+    /// The place, in the triangle beside, of the edge opposite to corner i.
+    fn place_beside(&self, triangle: u32, i: usize) -> usize {
+        let other = self.beside[triangle as usize][i];
+        self.beside[other as usize].iter().position(|&t| t == triangle).unwrap_or(0)
+    }
+
+    /// Puts `new` in the place of `old` beside a triangle.
+    fn relink(&mut self, triangle: u32, old: u32, new: u32) {
+        if triangle != NONE {
+            for beside in &mut self.beside[triangle as usize] {
+                if *beside == old {
+                    *beside = new;
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Turns the edge opposite to corner i of a triangle into the other diagonal of the two triangles at it, t and u:
+    /// t = (a, b, c), u = (d, c, b) become t = (a, b, d), u = (a, d, c).
+    fn flip(&mut self, t: u32, i: usize) {
+        let u = self.beside[t as usize][i];
+        let j = self.place_beside(t, i);
+        let [a, b, c] = [0, 1, 2].map(|k| self.triangles[t as usize][(i + k) % 3]);
+        let d = self.triangles[u as usize][j];
+        let of = |all: &[[u32; 3]], t: u32, k: usize| all[t as usize][k % 3];
+        let beside = &self.beside;
+        let [ca, ab] = [of(beside, t, i + 1), of(beside, t, i + 2)];
+        let [bd, dc] = [of(beside, u, j + 1), of(beside, u, j + 2)];
+        let fixed = &self.fixed;
+        let [fixed_ca, fixed_ab] = [of(fixed, t, i + 1), of(fixed, t, i + 2)];
+        let [fixed_bd, fixed_dc] = [of(fixed, u, j + 1), of(fixed, u, j + 2)];
+        self.triangles[t as usize] = [a, b, d];
+        self.beside[t as usize] = [bd, u, ab];
+        self.fixed[t as usize] = [fixed_bd, NONE, fixed_ab];
+        self.triangles[u as usize] = [a, d, c];
+        self.beside[u as usize] = [dc, ca, t];
+        self.fixed[u as usize] = [fixed_dc, fixed_ca, NONE];
+        self.relink(bd, u, t);
+        self.relink(ca, t, u);
+        for (vertex, triangle) in [(a, t), (b, t), (d, t), (c, u)] {
+            self.at[vertex as usize] = triangle;
+        }
+    }
+
+    /// The triangle with the directed edge from a to b, and the place of the corner opposite.
+    fn edge(&self, a: u32, b: u32) -> Option<(u32, usize)> {
+        let start = self.at[a as usize];
+        let mut t = start;
+        // Round a, against the clock, then the other way where that ends at the frame.
+        for step in [1, 2] {
+            loop {
+                let i = self.place(t, a);
+                if self.triangles[t as usize][(i + 1) % 3] == b {
+                    return Some((t, (i + 2) % 3));
+                }
+                t = self.beside[t as usize][(i + step) % 3];
+                if t == NONE || t == start {
+                    break;
+                }
+            }
+            if t == start {
+                return None;
+            }
+            t = start;
+        }
+        None
+    }
+}

@@ -1,0 +1,128 @@
+use super::*;
+use crate::geometry::Evaluate;
+use crate::mesh::vector::{distance, norm};
+use std::path::Path;
+
+fn model(name: &str) -> OcctModel {
+    OcctModel::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry").join(name)).expect("a model of our own")
+}
+
+fn of(name: &str) -> (OcctModel, Surface) {
+    let model = model(name);
+    let options = Options::new(model.topology().diagonal());
+    let surface = triangulate(&model, &options);
+    (model, surface)
+}
+
+/// Closed, without crossings, every face and edge there, each point on its entity; the volumes within a share.
+fn check(name: &str, share: f64) -> Surface {
+    let (model, surface) = of(name);
+    let found = report(&model, &surface);
+    assert_eq!([found.bad_edges, found.open_edges, found.lost_pieces, found.flat], [0; 4], "{name}");
+    assert!(surface.crossings.is_empty() && surface.missing.is_empty() && surface.rough.is_empty(), "{name}");
+    for [volume, exact] in &found.volumes {
+        assert!((volume / exact - 1.0).abs() < share, "{name}: {volume} {exact}");
+    }
+    let topology = model.topology();
+    let near = 1e-9 * topology.diagonal() + 2.0 * topology.tolerance;
+    let mut on = model.evaluator();
+    for (point, place) in surface.points.iter().zip(&surface.places) {
+        let there = match *place {
+            Place::Vertex(v) => topology.vertices[v as usize].point,
+            Place::Edge(e, t) => on.edge_frame(e, t).point,
+            Place::Face(f, uv) => on.face_frame(f, uv).point,
+        };
+        assert!(distance(*point, there) <= near, "{name}: {place:?}");
+    }
+    surface
+}
+
+/// Points less edges plus triangles, of the points that triangles have.
+fn euler(surface: &Surface) -> i64 {
+    let mut points: Vec<u32> = surface.triangles.iter().flatten().copied().collect();
+    points.sort_unstable();
+    points.dedup();
+    points.len() as i64 - surface.triangles.len() as i64 / 2
+}
+
+#[test]
+fn a_sphere_has_two_poles_and_a_seam() {
+    let surface = check("sphere.step", 0.12);
+    assert_eq!(euler(&surface), 2);
+    // Both poles are corners of triangles, on several sides.
+    for pole in 0..2 {
+        let at = |t: &&[u32; 3]| t.contains(&pole);
+        assert!(surface.triangles.iter().filter(at).count() >= 5);
+    }
+    assert_eq!(surface.sides, [[Some(0), None]]);
+}
+
+#[test]
+fn a_torus_has_two_seams() {
+    assert_eq!(euler(&check("torus.step", 0.12)), 0);
+}
+
+#[test]
+fn an_apex_and_closed_cylinders() {
+    for (name, characteristic) in
+        [("cone.step", 2), ("cylinder.step", 2), ("zoo/capsule.step", 2), ("zoo/partial-torus.step", 2)]
+    {
+        assert_eq!(euler(&check(name, 0.12)), characteristic, "{name}");
+    }
+}
+
+#[test]
+fn solids_share_the_faces_between_them() {
+    let surface = check("two-materials.step", 1e-9);
+    let both = surface.sides.iter().filter(|sides| sides[0].is_some() && sides[1].is_some()).count();
+    assert_eq!(both, 1);
+    check("zoo/three-regions.step", 0.1);
+}
+
+#[test]
+fn splines_threads_of_edges_and_tiny_faces() {
+    for name in [
+        "wing.step",
+        "zoo/onera-m6.step",
+        "zoo/screw.step",
+        "zoo/cusps.step",
+        "zoo/near-tangent.step",
+        "zoo/sliver-steps.step",
+    ] {
+        check(name, 0.1);
+    }
+}
+
+#[test]
+fn bodies_that_touch_in_an_edge_are_divided_alike() {
+    let surface = check("zoo/knife-edge.brep", 1e-9);
+    let mut twins = 0;
+    for chain in &surface.chains {
+        for other in surface.chains.iter().filter(|other| *other != chain && other.len() == chain.len()) {
+            let at = |p: &u32| surface.points[*p as usize];
+            twins += usize::from(chain.iter().all(|p| other.iter().any(|q| at(p) == at(q))));
+        }
+    }
+    assert!(twins >= 2);
+}
+
+#[test]
+fn finer_is_finer() {
+    let model = model("sphere.step");
+    let mut options = Options::new(model.topology().diagonal());
+    let count = |options: &Options| triangulate(&model, options).triangles.len();
+    let coarse = count(&options);
+    options.segments = 6.0;
+    let surface = triangulate(&model, &options);
+    assert!(surface.triangles.len() > 5 * coarse);
+    let found = report(&model, &surface);
+    assert!((found.volumes[0][0] / found.volumes[0][1] - 1.0).abs() < 0.012, "{:?}", found.volumes);
+    let normal = |t: &[u32; 3]| {
+        crate::mesh::vector::area2(
+            surface.points[t[0] as usize],
+            surface.points[t[1] as usize],
+            surface.points[t[2] as usize],
+        )
+    };
+    assert!(surface.triangles.iter().all(|t| norm(normal(t)) > 0.0));
+}
