@@ -25,7 +25,7 @@ impl Recovery<'_> {
     /// # Errors
     /// The segment crosses a triangle or edge of the surface that is there, or has a vertex on it.
     pub fn recover_edge(&mut self, a: u32, b: u32, depth: u32) -> Result<bool, Error> {
-        self.journal.clear();
+        self.begin_flips();
         self.budget = 40 * (depth * depth * depth + 1);
         for (a, b) in [(a, b), (b, a)] {
             for _ in 0..60 {

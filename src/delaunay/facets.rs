@@ -21,7 +21,7 @@ impl Recovery<'_> {
     /// An edge of the surface that is there crosses it, or a vertex lies on it.
     pub fn recover_facet(&mut self, t: u32, depth: u32) -> Result<bool, Error> {
         let f = self.surface.nodes[t as usize];
-        self.journal.clear();
+        self.begin_flips();
         self.budget = 40 * (depth * depth * depth + 1);
         for _ in 0..200 {
             if self.find_facet(f).is_some() {

@@ -41,12 +41,17 @@ impl Journal {
 }
 
 impl Recovery<'_> {
+    /// Forgets the flips so far: they stay.
+    pub fn begin_flips(&mut self) {
+        self.journal.clear();
+        self.made.clear();
+    }
+
     /// Replaces tetrahedra and writes it down.
     pub fn flip(&mut self, old: &[u32], new: &[[u32; 4]]) -> bool {
         let first = self.journal.before.len();
         self.journal.before.extend(old.iter().map(|&t| self.mesh.nodes[t as usize]));
         let mut made = std::mem::take(&mut self.made);
-        made.clear();
         let done = self.mesh.replace(old, new, &mut made);
         self.made = made;
         if !done {
@@ -73,7 +78,9 @@ impl Recovery<'_> {
                 })
                 .collect();
             self.tets = tets;
-            self.mesh.replace(&now, &before, &mut Vec::new());
+            let mut made = std::mem::take(&mut self.made);
+            self.mesh.replace(&now, &before, &mut made);
+            self.made = made;
         }
     }
 

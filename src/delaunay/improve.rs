@@ -6,7 +6,10 @@ use super::regions::Regions;
 use crate::mesh::vector::{Vec3, dot, sub, volume6};
 
 /// Tetrahedra below this quality are looked at.
-const FLAT: f64 = 3e-4;
+const FLAT: f64 = 1e-4;
+
+/// Tetrahedra below this quality may be flat but for rounding.
+const NOTHING: f64 = 1e-10;
 
 /// Flips per tetrahedron at the start that are done at most.
 const ROUNDS: usize = 4;
@@ -50,28 +53,45 @@ impl Recovery<'_> {
                 continue;
             }
             let region = regions.of[t as usize];
-            if self.improve_one(t, &mut ring, &mut tets) {
-                for &new in &self.made {
-                    if regions.of.len() <= new as usize {
-                        regions.of.resize(new as usize + 1, 0);
-                    }
-                    regions.of[new as usize] = region;
+            self.begin_flips();
+            let better = self.improve_one(t, &mut ring, &mut tets) || self.dissolve(t);
+            // All flips are within the region, and what is undone lies in other places than before.
+            for k in 0..self.made.len() {
+                let new = self.made[k];
+                if regions.of.len() <= new as usize {
+                    regions.of.resize(new as usize + 1, 0);
+                }
+                regions.of[new as usize] = region;
+                if better {
                     work.push(new);
                 }
             }
         }
     }
 
+    /// Removes an edge of t, when it has next to no volume, by a search of several flips that make none as flat.
+    fn dissolve(&mut self, t: u32) -> bool {
+        let n = self.mesh.nodes[t as usize];
+        if self.mesh.quality(n) > NOTHING {
+            return false;
+        }
+        self.budget = 100;
+        (0..4).any(|i| {
+            (0..i).any(|j| {
+                // A short ring: the search is for edges of few tetrahedra, not for the axis of a fan.
+                self.remove_edge(n[i], n[j], 2, Goal::Quality(10.0 * NOTHING))
+            })
+        })
+    }
+
     /// One flip of an edge or face of t that is for the better.
     fn improve_one(&mut self, t: u32, ring: &mut Vec<u32>, tets: &mut Vec<u32>) -> bool {
-        self.journal.clear();
         let n = self.mesh.nodes[t as usize];
         for i in 0..4 {
             for j in 0..i {
-                if self.surface.with_edge(n[i], n[j]).is_some() || !self.mesh.ring(t, n[i], n[j], MOST, ring, tets) {
-                    continue;
-                }
-                if ring.contains(&GHOST) {
+                // The ring first: it is short where it counts, unlike the list of triangles at an apex.
+                let free = self.mesh.ring(t, n[i], n[j], MOST, ring, tets) && !ring.contains(&GHOST);
+                if !free || self.surface.with_edge(n[i], n[j]).is_some() {
                     continue;
                 }
                 let worst =

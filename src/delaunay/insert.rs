@@ -231,19 +231,7 @@ impl Triangulation {
                 }
                 f.local[j] = *local;
             }
-            f.tet = match s.conflict.get(k) {
-                Some(&t) => t,
-                None => {
-                    if let Some(t) = self.free.pop() {
-                        t
-                    } else {
-                        self.nodes.push([GHOST; 4]);
-                        self.across.push([NONE; 4]);
-                        self.seen.push(0);
-                        self.nodes.len() as u32 - 1
-                    }
-                }
-            };
+            f.tet = s.conflict.get(k).copied().unwrap_or_else(|| self.slot());
             let [a, b, c] = f.nodes;
             (self.nodes[f.tet as usize], f.place) = if a == GHOST {
                 ([v, c, b, a], [3, 2, 1, 0])

@@ -70,7 +70,7 @@ impl Recovery<'_> {
 
     /// Flips one edge of the plane, after adding a point on each side of it where more than one vertex is.
     fn flip_in_plane(&mut self, d: &Diagonal, goal: Goal) -> bool {
-        self.journal.clear();
+        self.begin_flips();
         let ([x, y], [p, q]) = (d.ends, d.joined);
         self.budget = 2;
         if self.remove_edge(x, y, 0, goal) {

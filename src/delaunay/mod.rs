@@ -1,5 +1,6 @@
 //! Tetrahedra of a closed surface: Delaunay tetrahedra of its points, in which its edges and triangles are recovered by flips,
-//! and by points added on it where these do not do; then the regions that it separates.
+//! and by points added on it where these do not do; then the regions that it separates. At the end added points are taken off
+//! the surface again where that can be done.
 mod complex;
 mod edges;
 mod facets;
@@ -30,6 +31,11 @@ pub trait Placement {
     /// The place of vertex `vertex`, which splits the edge `ends` of the surface, all triangles at it, and is that share `at` of
     /// the way from the first to the second end; `straight` is the place on the straight edge.
     fn on_edge(&mut self, vertex: u32, ends: [u32; 2], at: f64, straight: Vec3) -> Vec3;
+
+    /// Whether to go on; asked before each edge and triangle that takes some work.
+    fn go_on(&mut self) -> bool {
+        true
+    }
 
     /// The place of vertex `vertex`, which splits the triangle in three, at barycentric coordinates `at`; `straight` is the
     /// place in the plane triangle.
@@ -118,6 +124,8 @@ pub enum Error {
         /// Here.
         at: Vec3,
     },
+    /// The caller did not want to go on.
+    Stopped,
     /// The triangle could not be recovered with the points that may be added.
     Unrecovered {
         /// The triangle.

@@ -23,7 +23,7 @@ impl Recovery<'_> {
     /// As `recover_edge`, with every flip in the pipe of the edge: one that lowers the number of crossings is kept, one that
     /// leaves it the same a few times.
     pub fn recover_edge_by_pipe(&mut self, a: u32, b: u32, depth: u32) -> Result<bool, Error> {
-        self.journal.clear();
+        self.begin_flips();
         let mut sideways = 0;
         let Some(mut pipe) = self.pipe(a, b)? else { return Ok(true) };
         for _ in 0..300 {

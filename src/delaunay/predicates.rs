@@ -42,6 +42,9 @@ pub fn in_sphere(a: Vec3, b: Vec3, c: Vec3, d: Vec3, e: Vec3) -> f64 {
 
 #[cold]
 fn near_sphere(a: Vec3, b: Vec3, c: Vec3, d: Vec3, e: Vec3, scale: f64) -> f64 {
+    if let Some(det) = twofold::in_sphere_on_grid(a, b, c, d, e) {
+        return det;
+    }
     if let Some(det) = twofold::in_sphere(a, b, c, d, e, scale) {
         return det;
     }
@@ -128,6 +131,26 @@ mod tests {
             assert_eq!(in_sphere(p[0], p[1], p[2], p[3], p[4]).partial_cmp(&0.0), s.partial_cmp(&0.0));
         }
         assert!(zeros > 100);
+    }
+
+    #[test]
+    fn grids_are_exact() {
+        // On the sphere of radius 13 · 2¹⁸, and one step off it.
+        let k = f64::from(1 << 18);
+        let [a, b, c, d] =
+            [[3.0, 4.0, 12.0], [12.0, -3.0, 4.0], [-4.0, 12.0, 3.0], [-12.0, -4.0, -3.0]].map(|p| p.map(|x| k * x));
+        assert!(orient(a, b, c, d) < 0.0);
+        for (step, sign) in [(-1.0, 1.0), (0.0, 0.0), (1.0, -1.0)] {
+            let e = [4.0 * k + step, 3.0 * k, 12.0 * k];
+            let scale = (26.0 * k).powi(5);
+            let exact = twofold::in_sphere_on_grid(b, a, c, d, e).unwrap();
+            assert_eq!(exact.partial_cmp(&0.0), sign.partial_cmp(&0.0));
+            assert_eq!(in_sphere(b, a, c, d, e).partial_cmp(&0.0), sign.partial_cmp(&0.0));
+            if step != 0.0 {
+                assert_eq!(twofold::in_sphere(b, a, c, d, e, scale).unwrap().signum(), exact.signum());
+            }
+        }
+        assert_eq!(twofold::in_sphere_on_grid(b, a, c, d, [0.1, 0.3, k]), None);
     }
 
     #[test]

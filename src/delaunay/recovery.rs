@@ -17,7 +17,7 @@ pub struct Recovery<'a> {
     pub journal: Journal,
     pub insertion: Scratch,
     pub tets: Vec<u32>,
-    /// The tetrahedra that the last flip made.
+    /// The tetrahedra that flips made, and undoing, since the flips began.
     pub made: Vec<u32>,
     pub placement: &'a mut dyn Placement,
     pub added: Vec<Added>,
@@ -38,6 +38,7 @@ impl Recovery<'_> {
             for depth in [0, 1, 2, DEPTH, DEPTH] {
                 let mut left = Vec::new();
                 for e in edges {
+                    self.go_on()?;
                     if self.surface.with_edge(e[0], e[1]).is_some() && !self.recover_edge(e[0], e[1], depth)? {
                         left.push(e);
                     }
@@ -47,6 +48,7 @@ impl Recovery<'_> {
             if !edges.is_empty() {
                 // Each that is still missing is split, and what that makes is tried at once.
                 for e in std::mem::take(&mut edges) {
+                    self.go_on()?;
                     if self.surface.with_edge(e[0], e[1]).is_none() || self.recover_edge(e[0], e[1], DEPTH)? {
                         continue;
                     }
@@ -65,6 +67,7 @@ impl Recovery<'_> {
             for depth in 0..=DEPTH {
                 let mut left = Vec::new();
                 for t in facets {
+                    self.go_on()?;
                     if !self.recover_facet(t, depth)? {
                         left.push(t);
                     }
@@ -89,6 +92,11 @@ impl Recovery<'_> {
                 facets.extend_from_slice(&fresh);
             }
         }
+    }
+
+    /// Asks the caller whether to go on.
+    fn go_on(&mut self) -> Result<(), Error> {
+        if self.placement.go_on() { Ok(()) } else { Err(Error::Stopped) }
     }
 
     /// Edges and triangles of the surface that the triangulation lacks.

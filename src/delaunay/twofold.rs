@@ -21,6 +21,35 @@ fn sum(a: f64, b: f64) -> Twofold {
     Twofold(s, (a - (s - c)) + (b - c))
 }
 
+/// The determinant of the sphere test but for a power of two, in integers, which is exact, where all differences are small
+/// multiples of one power of two, as on grids; else `None`.
+pub fn in_sphere_on_grid(a: Vec3, b: Vec3, c: Vec3, d: Vec3, e: Vec3) -> Option<f64> {
+    let row = |p: Vec3| [sum(p[0], -e[0]), sum(p[1], -e[1]), sum(p[2], -e[2])];
+    let rows = [a, b, c, d].map(row);
+    let most = rows.iter().flatten().fold(0.0_f64, |m, x| m.max(x.0.abs()));
+    if !(1e-100..1e100).contains(&most) {
+        return None;
+    }
+    // 23 bits: five factors and 24 terms stay below 2¹²⁶.
+    let unit = f64::from_bits(most.to_bits() & 0x7ff0_0000_0000_0000) / f64::from(1 << 22);
+    let mut n = [[0_i128; 3]; 4];
+    for (to, from) in n.iter_mut().flatten().zip(rows.iter().flatten()) {
+        let multiple = from.0 / unit;
+        if from.1 != 0.0 || multiple.fract() != 0.0 {
+            return None;
+        }
+        *to = i128::from(multiple as i64);
+    }
+    let [p, q, r, s] = n;
+    let triple = |u: [i128; 3], v: [i128; 3], w: [i128; 3]| {
+        u[2] * (v[0] * w[1] - w[0] * v[1]) - v[2] * (u[0] * w[1] - w[0] * u[1]) + w[2] * (u[0] * v[1] - v[0] * u[1])
+    };
+    let square = |v: [i128; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    let det = square(p) * triple(q, r, s) - square(q) * triple(p, r, s) + square(r) * triple(p, q, s)
+        - square(s) * triple(p, q, r);
+    Some(det as f64)
+}
+
 /// Two halves of 26 bits.
 #[inline(always)]
 fn split(a: f64) -> (f64, f64) {

@@ -2,7 +2,7 @@
 use super::whole::{edges_of, pieces_of};
 use super::{Surface, sorted};
 use crate::geometry::{Geometry, OcctModel, Use};
-use crate::mesh::vector::{Vec3, area2, dot, norm, volume6};
+use crate::mesh::vector::{Vec3, area2, norm, volume6};
 use std::collections::BTreeMap;
 
 /// What was found.
@@ -66,7 +66,6 @@ pub fn report(model: &OcctModel, surface: &Surface) -> Report {
         found.open_edges += directed.values().filter(|&&sum| sum != 0).count();
         found.volumes.push([volume, model.solid_volume(solid).unwrap_or(f64::NAN)]);
     }
-    let _ = dot;
     found
 }
 

@@ -98,12 +98,14 @@ const ROUNDS: usize = 40;
 /// Rounds in which the border of a face may be in conflict.
 const CONFLICTS: usize = 9;
 /// Rounds in which triangles of a face may look away.
-const TURNED: usize = 6;
+const TURNED: usize = 3;
 
 /// Further attempts: by how much finer curvature is followed, and how much faster sizes grow.
 const ATTEMPTS: [(f64, f64); 3] = [(1.2, 1.4), (1.5, 0.8), (0.85, 1.0)];
+/// No further attempt is made where the first has more triangles.
+const LARGE: usize = 20_000;
 /// So many pairs that cross are a fault of the model: no division helps.
-const MANY: usize = 10_000;
+const MANY: usize = 3_000;
 /// Wishes of a face at most.
 const WISHES: usize = 256;
 
@@ -119,7 +121,7 @@ struct Asked {
 pub fn triangulate(model: &OcctModel, options: &Options) -> Surface {
     let mut best = attempt(model, options);
     for (finer, growth) in ATTEMPTS {
-        if best.crossings.is_empty() {
+        if best.crossings.is_empty() || best.triangles.len() > LARGE || best.crossings.len() > MANY {
             break;
         }
         let other = attempt(
@@ -133,34 +135,28 @@ pub fn triangulate(model: &OcctModel, options: &Options) -> Surface {
     best
 }
 
-/// One attempt.
+/// One attempt: what has the fewest faults of all rounds.
 fn attempt(model: &OcctModel, options: &Options) -> Surface {
     let topology = model.topology();
     let twins = Twins::of(model);
     let mut points = Points::new(model, edges::divided(model, options, &twins), twins);
     let mut faces: Vec<Face> = topology.faces.iter().map(|_| Face::default()).collect();
     let mut dirty: BTreeSet<u32> = (0..faces.len() as u32).collect();
-    let mut repairs = 0;
-    let mut crossings = Vec::new();
-    let mut surface = Surface::default();
-    for round in 0..ROUNDS {
+    let mut history: Vec<usize> = Vec::new();
+    let mut best: Option<(usize, Surface)> = None;
+    for _ in 0..ROUNDS {
         let mut asked = Asked::default();
         for &face in &dirty {
             work(model, options, &points, face, &mut faces[face as usize], &mut asked);
         }
         if asked.pieces.is_empty() && asked.faces.is_empty() {
-            surface = whole::assemble(model, &points, &faces);
-            if repairs == options.rounds {
-                break;
+            let mut surface = whole::assemble(model, &points, &faces);
+            let faults = whole::find_faults(model, &mut surface, &mut faces, options, &mut asked);
+            history.push(faults);
+            if best.as_ref().is_none_or(|(least, _)| faults < *least) {
+                best = Some((faults, surface));
             }
-            repairs += 1;
-            whole::find_faults(model, &mut surface, &mut faces, options, &mut asked);
-            // What crosses as often after six rounds does so in the model.
-            crossings.push(surface.crossings.len());
-            let before = repairs.checked_sub(6).map(|i| crossings[i]);
-            if surface.crossings.len() > MANY
-                || before.is_some_and(|before| before > 0 && surface.crossings.len() >= before)
-            {
+            if faults == 0 || history.len() > options.rounds || is_hopeless(&history) {
                 break;
             }
         }
@@ -173,11 +169,22 @@ fn attempt(model: &OcctModel, options: &Options) -> Surface {
             break;
         }
     }
-    if surface.triangles.is_empty() || !dirty.is_empty() {
-        surface = whole::assemble(model, &points, &faces);
-    }
-    whole::find_crossings(&mut surface);
-    surface
+    best.map_or_else(
+        || {
+            let mut surface = whole::assemble(model, &points, &faces);
+            whole::find_crossings(&mut surface);
+            surface
+        },
+        |(_, surface)| surface,
+    )
+}
+
+/// Whether further rounds will not help, after so many faults in those before: triangles that are finer cross more often where faces do so in
+/// the model.
+fn is_hopeless(history: &[usize]) -> bool {
+    let (first, last) = (history[0], history[history.len() - 1]);
+    let before = history.len().checked_sub(7).map(|i| history[i]);
+    last > MANY || last > 8 * first + 200 || before.is_some_and(|before| last >= before)
 }
 
 /// Triangulates one face, or tells what of its border is to be divided first.

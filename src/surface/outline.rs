@@ -15,6 +15,16 @@ pub struct Segment {
     pub piece: u32,
     /// Whether the face is on one side of it alone.
     pub counts: bool,
+    /// Whether the face is on the left from its second corner to its first.
+    pub is_against: bool,
+}
+
+impl Segment {
+    /// Its corners, the face on the left.
+    pub fn along(&self) -> [u32; 2] {
+        let [a, b] = self.ends;
+        if self.is_against { [b, a] } else { [a, b] }
+    }
 }
 
 /// The border of a face.
@@ -215,13 +225,14 @@ fn join(border: &mut Outline, lines: &[Line]) {
         for (k, pair) in line.corners.windows(2).enumerate() {
             let ends = [root(&same, pair[0]), root(&same, pair[1])];
             let piece = if line.is_degenerate { NONE } else { k as u32 };
-            border.segments.push(Segment { ends, edge: line.of.edge, piece, counts });
+            let is_against = line.of.way == Use::Reversed;
+            border.segments.push(Segment { ends, edge: line.of.edge, piece, counts, is_against });
         }
     }
     for [a, b] in gaps {
         let ends = [root(&same, a), root(&same, b)];
         if ends[0] != ends[1] {
-            border.segments.push(Segment { ends, edge: NONE, piece: NONE, counts: true });
+            border.segments.push(Segment { ends, edge: NONE, piece: NONE, counts: true, is_against: false });
         }
     }
     compact(border, &same, root);

@@ -18,7 +18,7 @@ fn in_its_plane(on: &mut OcctEvaluator, face: u32, outline: &Outline, points: &P
     let mut normal = [0.0; 3];
     let first = at(outline.segments.first()?.ends[0]);
     for segment in outline.segments.iter().filter(|s| s.counts) {
-        let [p, q] = segment.ends.map(|c| sub(at(c), first));
+        let [p, q] = segment.along().map(|c| sub(at(c), first));
         normal = add(normal, cross(p, q));
     }
     let normal = unit(normal);
@@ -30,7 +30,6 @@ fn in_its_plane(on: &mut OcctEvaluator, face: u32, outline: &Outline, points: &P
     axis[least] = 1.0;
     let x = unit(cross(axis, normal));
     let y = cross(normal, x);
-    // Loops run with the face on the left where the normal is that of their own area.
     let mut flat = outline.clone();
     flat.scale = [1.0; 2];
     flat.corners =
@@ -52,7 +51,7 @@ fn loops(outline: &Outline) -> Option<Vec<Vec<u32>>> {
         if used[start] || !outline.segments[start].counts {
             continue;
         }
-        let [first, mut at] = outline.segments[start].ends;
+        let [first, mut at] = outline.segments[start].along();
         used[start] = true;
         let mut corners = vec![first];
         while at != first {
@@ -68,7 +67,7 @@ fn loops(outline: &Outline) -> Option<Vec<Vec<u32>>> {
 }
 
 /// Cuts corners off one after another, those with the best triangles first.
-fn cut_off(outline: &Outline, points: &Points) -> Option<Patch> {
+pub fn cut_off(outline: &Outline, points: &Points) -> Option<Patch> {
     let mut all = loops(outline)?;
     all.retain(|corners| corners.len() > 1);
     let mut rest = all.pop()?;

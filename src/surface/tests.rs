@@ -126,3 +126,32 @@ fn finer_is_finer() {
     };
     assert!(surface.triangles.iter().all(|t| norm(normal(t)) > 0.0));
 }
+
+#[test]
+fn borders_alone_are_closed_and_look_the_right_way() {
+    for name in ["cube.step", "filleted-block.step", "zoo/perforated-plate.step"] {
+        let model = model(name);
+        let options = Options::new(model.topology().diagonal());
+        let twins = Twins::of(&model);
+        let points = Points::new(&model, edges::divided(&model, &options, &twins), twins);
+        let mut on = model.evaluator();
+        for face in 0..model.topology().faces.len() as u32 {
+            let outline = outline::outline(&model, &mut on, &points, face, options.segments).expect("a border");
+            let own = Patch::new(&mut on, face, &outline, &points).expect("a sound border");
+            let area = |patch: &Patch| {
+                patch.triangles.iter().fold([0.0; 3], |sum, t| {
+                    let [p, q, r] = t.map(|c| patch.at[c as usize]);
+                    crate::mesh::vector::add(sum, crate::mesh::vector::area2(p, q, r))
+                })
+            };
+            // The area of a border as a vector is the same whatever lies between.
+            for other in [rough::patch(&mut on, face, &outline, &points), rough::cut_off(&outline, &points)] {
+                let other = other.expect("triangles");
+                assert!(
+                    distance(area(&own), area(&other)) < 1e-9 * norm(area(&own)).max(options.greatest),
+                    "{name} {face}"
+                );
+            }
+        }
+    }
+}

@@ -99,8 +99,14 @@ pub fn pieces_of(surface: &Surface) -> Vec<([u32; 2], u32, u32)> {
     all
 }
 
-/// Looks for edges that are met too often and for triangles that cross, and asks for finer ones there.
-pub fn find_faults(model: &OcctModel, surface: &mut Surface, faces: &mut [Face], options: &Options, asked: &mut Asked) {
+/// Looks for edges that are met too often and for triangles that cross, and asks for finer ones there; how many there are.
+pub fn find_faults(
+    model: &OcctModel,
+    surface: &mut Surface,
+    faces: &mut [Face],
+    options: &Options,
+    asked: &mut Asked,
+) -> usize {
     find_crossings(surface);
     let pieces = pieces_of(surface);
     let piece_at = |ends: [u32; 2]| pieces.binary_search_by_key(&ends, |&(ends, _, _)| ends).ok().map(|i| &pieces[i]);
@@ -136,6 +142,7 @@ pub fn find_faults(model: &OcctModel, surface: &mut Surface, faces: &mut [Face],
             asked.pieces.push((edge, piece));
         }
     }
+    let faults = surface.crossings.len() + barred.len();
     for (face, ends) in barred {
         if faces[face as usize].barred.insert(ends) {
             asked.faces.insert(face);
@@ -158,6 +165,7 @@ pub fn find_faults(model: &OcctModel, surface: &mut Surface, faces: &mut [Face],
             ask_finer(surface, faces, options, &piece_at, t, asked);
         }
     }
+    faults
 }
 
 /// The middle of a triangle, and the closest point of its face.
@@ -187,11 +195,10 @@ fn ask_finer<'p>(
 ) {
     let nodes = surface.triangles[t as usize];
     let corners = nodes.map(|v| surface.points[v as usize]);
-    let (at, length, i) = longest(&corners);
+    let (at, length, _) = longest(&corners);
     if length <= options.least {
         return;
     }
-    let _ = i;
     for k in 0..3 {
         if distance(corners[k], corners[(k + 1) % 3]) > 0.6 * length
             && let Some(&(_, edge, piece)) = piece_at(sorted([nodes[k], nodes[(k + 1) % 3]]))

@@ -118,7 +118,7 @@ impl<'a> Ladder<'a> {
     /// One rung: the mesh, valid and on the model.
     fn attempt(&self, rung: Rung, limit: Duration) -> Result<(TetMesh, Classification), Miss> {
         if rung == Rung::Own {
-            let own = own::run(self.model).map_err(Miss::Failed)?;
+            let own = own::run(self.model, limit).map_err(Miss::Failed)?;
             return judge(self.team, own.mesh, self.model, Some(own.on_model)).map_err(Miss::Failed);
         }
         let out = self.place.file("out.msh");

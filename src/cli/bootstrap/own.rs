@@ -1,10 +1,11 @@
 //! Our own first mesh: a triangulation of the model's surface, and the constrained Delaunay tetrahedra of that.
-use crate::delaunay::{self, Flat, Origin, Tetrahedra, tetrahedralise};
+use crate::delaunay::{self, Origin, Placement, Tetrahedra, tetrahedralise};
 use crate::geometry::{Evaluate, Geometry, Model};
 use crate::mesh::vector::Vec3;
 use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
 use crate::surface::{Options, Place, Surface, triangulate};
 use std::collections::HashMap;
+use std::time::{Duration, Instant};
 
 /// A mesh whose surface is made of flat triangles between points of the model.
 pub struct Own {
@@ -18,7 +19,7 @@ pub struct Own {
 ///
 /// # Errors
 /// What part of the surface could not be triangulated or filled, and where.
-pub fn run(model: &Model) -> Result<Own, String> {
+pub fn run(model: &Model, limit: Duration) -> Result<Own, String> {
     let Model::Occt(cad) = model else { return Err("it is no CAD model".into()) };
     let options = Options::new(model.topology().diagonal());
     let surface = triangulate(cad, &options);
@@ -35,10 +36,31 @@ pub fn run(model: &Model) -> Result<Own, String> {
             "{count} pairs of triangles of its surface cross, the first of faces {a} and {b} near {at:?}"
         ));
     }
-    let filled = tetrahedralise(&surface.points, &surface.triangles, &mut Flat, delaunay::Options::default())
+    let mut within = Within(Instant::now() + limit.min(DAY));
+    let filled = tetrahedralise(&surface.points, &surface.triangles, &mut within, delaunay::Options::default())
         .map_err(|error| describe(&error, &surface))?;
     crate::tasks::stage("tetrahedra");
     Ok(meshed(model, &surface, &filled))
+}
+
+/// A limit that is none.
+const DAY: Duration = Duration::from_secs(86_400);
+
+/// Added points lie on the flat triangles, up to this time.
+struct Within(Instant);
+
+impl Placement for Within {
+    fn on_edge(&mut self, _: u32, _: [u32; 2], _: f64, straight: Vec3) -> Vec3 {
+        straight
+    }
+
+    fn in_triangle(&mut self, _: u32, _: [u32; 3], _: [f64; 3], straight: Vec3) -> Vec3 {
+        straight
+    }
+
+    fn go_on(&mut self) -> bool {
+        Instant::now() < self.0
+    }
 }
 
 /// An error in the words of the model.
@@ -59,6 +81,7 @@ fn describe(error: &delaunay::Error, surface: &Surface) -> String {
         delaunay::Error::Unrecovered { triangle, at } => {
             format!("a triangle of face {} was not recovered near {at:?}", face(*triangle))
         }
+        delaunay::Error::Stopped => "it was ended (--time-limit)".into(),
     }
 }
 
@@ -90,7 +113,7 @@ fn meshed(model: &Model, surface: &Surface, filled: &Tetrahedra) -> Own {
     for (added, vertex) in filled.added.iter().zip(surface.points.len() as u32..) {
         let edge = match added.origin {
             Origin::Edge([a, b]) => pieces.remove(&key(a, b)).map(|edge| ([a, b], edge)),
-            Origin::Triangle(_) => None,
+            Origin::Triangle(_) | Origin::Inside => None,
         };
         if let Some((ends, edge)) = edge {
             pieces.extend(ends.map(|end| (key(end, vertex), edge)));

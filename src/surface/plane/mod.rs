@@ -59,7 +59,7 @@ pub fn turn(a: Point, b: Point, c: Point) -> f64 {
 
 /// Positive where d lies in the circle through a, b, c, which are counter-clockwise: exact.
 #[inline]
-fn in_circle(a: Point, b: Point, c: Point, d: Point) -> f64 {
+pub fn in_circle(a: Point, b: Point, c: Point, d: Point) -> f64 {
     let at = |p: Point| Coord { x: p[0], y: p[1] };
     robust::incircle(at(a), at(b), at(c), at(d))
 }
