@@ -1,0 +1,196 @@
+//! Normal and curvature at each sector of a surface's vertices.
+use super::Features;
+use super::cubic::CubicCurve;
+use super::local_fit::{LocalFit, Neighbour, Room};
+use super::sectors::Sectors;
+use crate::mesh::stamped_set::StampedSet;
+use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale, sub, unit};
+use crate::tasks::Team;
+
+/// Neighbours that are looked for, and rings in which.
+const WANTED: usize = 18;
+const RINGS: usize = 4;
+/// Sectors a task.
+const SECTORS: usize = 256;
+/// Two ridges whose tangents have a smaller sine than this go on as one; others hold the tangent plane between them.
+const APART: f64 = 0.35;
+/// A normal that ridges say is believed if it has this cosine with the fitted one.
+const BELIEVED: f64 = 0.8;
+
+/// What the patches are made for.
+pub(crate) struct Surface<'a> {
+    /// Points of the mesh.
+    pub points: &'a [Vec3],
+    /// Its triangles, outward.
+    pub triangles: &'a [[u32; 3]],
+    /// Their ridges and faces.
+    pub features: &'a Features,
+    /// Per face whether its inner edges stay straight: a plane, or one whose triangles do not agree about a side.
+    pub is_flat: &'a [bool],
+    /// A vertex this near to the plane of its neighbours is on it: the rounding of the file, model units.
+    pub rounding: f64,
+}
+
+/// Normal and curvature at a sector.
+#[derive(Clone, Copy)]
+pub(crate) struct SectorShape {
+    /// Unit normal.
+    pub normal: Vec3,
+    /// Shape operator in space, 1/length: terms 11 12 22 13 23 33.
+    pub shape: [f64; 6],
+}
+
+/// The shapes of all sectors, and which triangles are parts of planes.
+pub(crate) fn sector_shapes(
+    team: Team<'_>,
+    surface: &Surface,
+    sectors: &Sectors,
+    ridges: &[CubicCurve],
+    ridge_of: &[Option<u32>],
+) -> (Vec<SectorShape>, Vec<bool>) {
+    let maker = Maker::new(team, surface, sectors);
+    let is_plane = team.map(SECTORS, sectors.len(), |s| maker.is_plane(s));
+    let mut flat = vec![false; surface.triangles.len()];
+    for s in (0..sectors.len()).filter(|&s| is_plane[s]) {
+        sectors.corners.row(s).iter().for_each(|&corner| flat[corner as usize / 3] = true);
+    }
+    let with = || (Room::default(), StampedSet::default(), Vec::new(), Vec::new());
+    let shapes = team.map_with(SECTORS, sectors.len(), with, |(room, seen, found, neighbours), s| {
+        let plain = SectorShape { normal: maker.normals[s], shape: [0.0; 6] };
+        if is_plane[s] {
+            return plain;
+        }
+        let fit = maker.fit(s, room, seen, found, neighbours);
+        let fitted = fit.map_or(plain, |fit| SectorShape { normal: fit.normal, shape: fit.shape });
+        let normal = match maker.plane_beside(s, &flat) {
+            Some(normal) => normal,
+            None => maker.along_ridges(s, fitted.normal, ridges, ridge_of),
+        };
+        SectorShape { normal, ..fitted }
+    });
+    (shapes, flat)
+}
+
+struct Maker<'a> {
+    surface: &'a Surface<'a>,
+    sectors: &'a Sectors,
+    /// Mean normals of the sectors' triangles, weighted with their angles.
+    normals: Vec<Vec3>,
+    /// Unit normals of the triangles.
+    facets: Vec<Vec3>,
+}
+
+impl<'a> Maker<'a> {
+    fn new(team: Team<'_>, surface: &'a Surface<'a>, sectors: &'a Sectors) -> Self {
+        let facets = team.map(SECTORS, surface.triangles.len(), |t| {
+            let [a, b, c] = surface.triangles[t].map(|v| surface.points[v as usize]);
+            unit(area2(a, b, c))
+        });
+        let mut maker = Self { surface, sectors, normals: Vec::new(), facets };
+        maker.normals = team.map(SECTORS, sectors.len(), |s| maker.mean_normal(s));
+        maker
+    }
+
+    /// A corner's point, and those of the next and the last corner of its triangle.
+    fn corner(&self, corner: u32) -> [Vec3; 3] {
+        let (t, k) = (corner as usize / 3, corner as usize % 3);
+        [0, 1, 2].map(|i| self.surface.points[self.surface.triangles[t][(k + i) % 3] as usize])
+    }
+
+    fn point(&self, sector: usize) -> Vec3 {
+        self.corner(self.sectors.corners.row(sector)[0])[0]
+    }
+
+    fn mean_normal(&self, sector: usize) -> Vec3 {
+        let sum = self.sectors.corners.row(sector).iter().fold([0.0; 3], |sum, &corner| {
+            let [here, next, last] = self.corner(corner);
+            let (e, f) = (sub(next, here), sub(last, here));
+            let angle = norm(cross(e, f)).atan2(dot(e, f));
+            add(sum, scale(self.facets[corner as usize / 3], angle))
+        });
+        unit(sum)
+    }
+
+    /// Whether the vertex lies inside a plane part: all of its triangles do, and it has none but these.
+    fn is_plane(&self, sector: usize) -> bool {
+        let (here, normal) = (self.point(sector), self.normals[sector]);
+        let corners = self.sectors.corners.row(sector);
+        let is_on = |p: Vec3| dot(sub(p, here), normal).abs() <= self.surface.rounding;
+        self.is_inside(sector)
+            && corners.iter().all(|&corner| {
+                let [_, next, last] = self.corner(corner);
+                is_on(next) && is_on(last)
+            })
+    }
+
+    /// Whether the triangles of the sector close around its vertex.
+    fn is_inside(&self, sector: usize) -> bool {
+        let features = self.surface.features;
+        self.sectors.corners.row(sector).iter().all(|&corner| {
+            let (t, k) = (corner as usize / 3, corner as usize % 3);
+            [k, (k + 2) % 3].iter().all(|side| !features.ridge[features.edges.of_side[3 * t + side] as usize])
+        })
+    }
+
+    /// The normal of the plane parts at a sector, if there are any.
+    fn plane_beside(&self, sector: usize, flat: &[bool]) -> Option<Vec3> {
+        let triangles = self.sectors.corners.row(sector).iter().map(|&corner| corner as usize / 3);
+        let sum = triangles.filter(|&t| flat[t]).fold([0.0; 3], |sum, t| add(sum, self.facets[t]));
+        (sum != [0.0; 3]).then(|| unit(sum))
+    }
+
+    fn fit(
+        &self,
+        sector: usize,
+        room: &mut Room,
+        seen: &mut StampedSet,
+        found: &mut Vec<u32>,
+        neighbours: &mut Vec<Neighbour>,
+    ) -> Option<LocalFit> {
+        let here = self.point(sector);
+        self.sectors.around(sector as u32, WANTED, RINGS, seen, found);
+        neighbours.clear();
+        neighbours.extend(
+            found[1..]
+                .iter()
+                .map(|&s| Neighbour { offset: sub(self.point(s as usize), here), normal: self.normals[s as usize] }),
+        );
+        let corners = self.sectors.corners.row(sector);
+        let lengths = corners.iter().map(|&corner| {
+            let [here, next, last] = self.corner(corner);
+            distance(here, next) + distance(here, last)
+        });
+        room.fit(neighbours, self.normals[sector], lengths.sum::<f64>() / (2 * corners.len()) as f64)
+    }
+
+    /// The normal made perpendicular to the ridges at the sector.
+    fn along_ridges(&self, sector: usize, normal: Vec3, ridges: &[CubicCurve], ridge_of: &[Option<u32>]) -> Vec3 {
+        let edges = &self.surface.features.edges;
+        let (mut tangents, mut count) = ([[0.0; 3]; 2], 0);
+        for &corner in self.sectors.corners.row(sector) {
+            let (t, k) = (corner as usize / 3, corner as usize % 3);
+            let vertex = self.surface.triangles[t][k];
+            for side in [k, (k + 2) % 3] {
+                let edge = edges.of_side[3 * t + side] as usize;
+                let Some(ridge) = ridge_of[edge] else { continue };
+                let curve = &ridges[ridge as usize];
+                let [from, to] =
+                    if edges.nodes[edge][0] == vertex { [curve[0], curve[1]] } else { [curve[3], curve[2]] };
+                if count == 2 {
+                    return normal;
+                }
+                tangents[count] = unit(sub(to, from));
+                count += 1;
+            }
+        }
+        let [a, b] = tangents;
+        let across = cross(a, b);
+        if count == 2 && norm(across) > APART {
+            let both = if dot(across, normal) < 0.0 { scale(unit(across), -1.0) } else { unit(across) };
+            return if dot(both, normal) > BELIEVED { both } else { normal };
+        }
+        let along = if count == 2 && dot(a, b) < 0.0 { unit(sub(a, b)) } else { a };
+        let found = unit(sub(normal, scale(along, dot(normal, along))));
+        if dot(found, normal) > BELIEVED { found } else { normal }
+    }
+}
