@@ -18,6 +18,8 @@ mod restore;
 pub(crate) mod samples;
 mod sectors;
 mod smooth;
+#[cfg(test)]
+mod smooth_tests;
 mod tangents;
 #[cfg(test)]
 mod tests;

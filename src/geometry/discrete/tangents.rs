@@ -90,7 +90,7 @@ impl Chain<'_> {
         // Where the tangent must lie: between the directions at this point, or at an end about the first one.
         let middle = (i as isize).clamp(isize::from(!self.ring), count as isize - isize::from(!self.ring));
         let circle = self.circle_tangent(i as isize, middle);
-        let Some(smooth) = self.polynomial_tangent(i, lengths) else { return circle };
+        let Some(smooth) = self.polynomial_tangent(i, straight, lengths) else { return circle };
         let turn = self.turn(middle);
         let off = |segment: usize| angle(direction(segment), smooth);
         let most = [before, after].into_iter().flatten().map(off).fold(0.0, f64::max);
@@ -126,13 +126,26 @@ impl Chain<'_> {
     }
 
     /// Tangent of the polynomial through the window about point i.
-    fn polynomial_tangent(&self, i: usize, lengths: &[f64]) -> Option<Vec3> {
+    fn polynomial_tangent(&self, i: usize, straight: &[bool], lengths: &[f64]) -> Option<Vec3> {
         let count = lengths.len();
-        let size = WINDOW.min(if self.ring { count } else { count + 1 });
-        let mut first = i as isize - (size / 2) as isize;
-        if !self.ring {
-            first = first.clamp(0, (count + 1 - size) as isize);
+        // How far it goes on to either side without an end or a straight segment.
+        let mut reach = [0usize; 2];
+        for (side, reach) in reach.iter_mut().enumerate() {
+            while *reach < WINDOW - 1 {
+                let segment = if side == 0 { i as isize - 1 - *reach as isize } else { i as isize + *reach as isize };
+                let segment = if self.ring { segment.rem_euclid(count as isize) } else { segment };
+                if !(0..count as isize).contains(&segment) || straight[segment as usize] {
+                    break;
+                }
+                *reach += 1;
+            }
         }
+        let size = WINDOW.min(reach[0] + reach[1] + 1).min(if self.ring { count } else { count + 1 });
+        if size < 3 {
+            return None;
+        }
+        let least = i as isize - reach[0] as isize;
+        let first = (i as isize - (size / 2) as isize).clamp(least, i as isize + reach[1] as isize + 1 - size as isize);
         let (mut at, mut s) = ([[0.0; 3]; WINDOW], [0.0; WINDOW]);
         for k in 0..size {
             at[k] = self.at(first + k as isize)?;
@@ -192,7 +205,7 @@ mod tests {
             assert!(distance(*t, [1.0, 0.0, 0.0]) < 1e-15);
         }
         for (k, t) in (0..8).zip(&found[2..]) {
-            assert!(distance(*t, [arc(k).cos(), arc(k).sin(), 0.0]) < 2e-2, "{k}");
+            assert!(distance(*t, [arc(k).cos(), arc(k).sin(), 0.0]) < 1e-3, "{k}");
         }
     }
 

@@ -50,17 +50,14 @@ pub(crate) fn sector_shapes(
 ) -> (Vec<SectorShape>, Vec<bool>) {
     let maker = Maker::new(team, surface, sectors);
     let is_plane = team.map(SECTORS, sectors.len(), |s| maker.is_plane(s));
-    let mut flat = vec![false; surface.triangles.len()];
-    for s in (0..sectors.len()).filter(|&s| is_plane[s]) {
-        sectors.corners.row(s).iter().for_each(|&corner| flat[corner as usize / 3] = true);
-    }
+    let flat = maker.plane_parts(&is_plane);
     let with = || (Room::default(), StampedSet::default(), Vec::new(), Vec::new());
     let shapes = team.map_with(SECTORS, sectors.len(), with, |(room, seen, found, neighbours), s| {
         let plain = SectorShape { normal: maker.normals[s], shape: [0.0; 6] };
         if is_plane[s] {
             return plain;
         }
-        let fit = maker.fit(s, room, seen, found, neighbours);
+        let fit = maker.fit(s, &is_plane, room, seen, found, neighbours);
         let fitted = fit.map_or(plain, |fit| SectorShape { normal: fit.normal, shape: fit.shape });
         let normal = match maker.plane_beside(s, &flat) {
             Some(normal) => normal,
@@ -111,6 +108,35 @@ impl<'a> Maker<'a> {
         unit(sum)
     }
 
+    /// Triangles at vertices inside plane parts, and those that go on in their planes.
+    fn plane_parts(&self, is_plane: &[bool]) -> Vec<bool> {
+        let Surface { triangles, features, points, rounding, .. } = *self.surface;
+        let mut flat = vec![false; triangles.len()];
+        let mut stack = Vec::new();
+        for s in (0..is_plane.len()).filter(|&s| is_plane[s]) {
+            for t in self.sectors.corners.row(s).iter().map(|&corner| corner as usize / 3) {
+                if !flat[t] {
+                    flat[t] = true;
+                    stack.push(t);
+                }
+            }
+        }
+        while let Some(t) = stack.pop() {
+            let (here, normal) = (points[triangles[t][0] as usize], self.facets[t]);
+            for &edge in &features.edges.of_side[3 * t..3 * t + 3] {
+                for other in features.edges.triangles(edge as usize) {
+                    let is_on = |v: u32| dot(sub(points[v as usize], here), normal).abs() <= rounding;
+                    let goes_on = !features.ridge[edge as usize] && dot(self.facets[other], normal) > 0.5;
+                    if !flat[other] && goes_on && triangles[other].into_iter().all(is_on) {
+                        flat[other] = true;
+                        stack.push(other);
+                    }
+                }
+            }
+        }
+        flat
+    }
+
     /// Whether the vertex lies inside a plane part: all of its triangles do, and it has none but these.
     fn is_plane(&self, sector: usize) -> bool {
         let (here, normal) = (self.point(sector), self.normals[sector]);
@@ -142,6 +168,7 @@ impl<'a> Maker<'a> {
     fn fit(
         &self,
         sector: usize,
+        is_plane: &[bool],
         room: &mut Room,
         seen: &mut StampedSet,
         found: &mut Vec<u32>,
@@ -150,10 +177,10 @@ impl<'a> Maker<'a> {
         let here = self.point(sector);
         self.sectors.around(sector as u32, WANTED, RINGS, seen, found);
         neighbours.clear();
+        // What a plane says of its own inside tells nothing about what curves beside it.
+        let others = found[1..].iter().filter(|&&s| !is_plane[s as usize]);
         neighbours.extend(
-            found[1..]
-                .iter()
-                .map(|&s| Neighbour { offset: sub(self.point(s as usize), here), normal: self.normals[s as usize] }),
+            others.map(|&s| Neighbour { offset: sub(self.point(s as usize), here), normal: self.normals[s as usize] }),
         );
         let corners = self.sectors.corners.row(sector);
         let lengths = corners.iter().map(|&corner| {
