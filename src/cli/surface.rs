@@ -1,0 +1,68 @@
+//! Options for what has no CAD model: a surface given as triangles, and how triangles become a model.
+use crate::formats::read_surface;
+use crate::geometry::classify::Classification;
+use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, DiscreteOptions};
+use crate::geometry::{Discrete, Model};
+use crate::mesh::TetMesh;
+use crate::tasks::Team;
+use std::path::PathBuf;
+
+/// What the boundary lies on where there is no CAD model.
+#[derive(clap::Args)]
+#[group(skip)]
+pub struct SurfaceArguments {
+    /// Instead of --cad, the surface that the boundary lies on: .stl, .obj, .ply, or the boundary of a mesh, .mesh, .meshb, .vtu, .msh. In a
+    /// loop: the first mesh, so that nothing drifts
+    #[arg(long, value_name = "FILE", conflicts_with = "cad")]
+    pub surface: Option<PathBuf>,
+    /// Without --cad: angle in degrees between triangles beyond which their edge is a ridge; or `none`, then only listed edges and those
+    /// between references are [default: 45]
+    #[arg(long, value_name = "DEG", value_parser = ridge_angle, conflicts_with = "cad", allow_negative_numbers = true)]
+    ridge_angle: Option<f64>,
+    /// Without --cad: triangles and ridges are taken as they are, flat and straight; else smooth patches and curves go through their vertices
+    #[arg(long, conflicts_with = "cad")]
+    flat_surface: bool,
+}
+
+/// An angle, or none: nothing turns by more than 180°.
+fn ridge_angle(text: &str) -> Result<f64, String> {
+    if text == "none" {
+        return Ok(180.0);
+    }
+    let angle: f64 = text.parse().map_err(|_| "give an angle in degrees, or none")?;
+    if angle > 0.0 && angle <= 180.0 {
+        Ok(angle)
+    } else {
+        Err("give an angle above 0 and up to 180 degrees, or none".into())
+    }
+}
+
+impl SurfaceArguments {
+    /// How triangles become a model.
+    pub fn options(&self) -> DiscreteOptions {
+        let ridge_angle_deg = self.ridge_angle.unwrap_or(DEFAULT_RIDGE_ANGLE);
+        DiscreteOptions { ridge_angle_deg, smooth: !self.flat_surface }
+    }
+
+    /// The model of --surface, if there is one. What the user should know is added to `notices`.
+    ///
+    /// # Errors
+    /// When it cannot be read or has no triangles, by the file's name.
+    pub fn model(&self, team: Team<'_>, notices: &mut Vec<String>) -> Result<Option<Model>, String> {
+        let Some(path) = &self.surface else { return Ok(None) };
+        let read = read_surface(team, path).map_err(|error| error.to_string())?;
+        notices.extend(read.notices);
+        let (surface, _) = Discrete::new(team, &read.content, &self.options())
+            .map_err(|error| format!("{}: {error}", path.display()))?;
+        Ok(Some(Model::Discrete(surface)))
+    }
+
+    /// The mesh's own surface as its model, and where it lies on that.
+    ///
+    /// # Errors
+    /// When it has none.
+    pub fn own(&self, team: Team<'_>, mesh: &TetMesh) -> Result<(Model, Classification), crate::geometry::Error> {
+        let (surface, place) = Discrete::new(team, mesh, &self.options())?;
+        Ok((Model::Discrete(surface), place))
+    }
+}
