@@ -36,6 +36,8 @@ pub mod io;
 mod output;
 mod place;
 mod report;
+#[cfg(test)]
+mod surface_tests;
 mod view;
 
 pub use error::Error;

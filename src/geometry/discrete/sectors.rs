@@ -84,7 +84,7 @@ impl Sectors {
 const MOST: usize = 96;
 
 /// The corner of the triangle of a side that is at a vertex.
-fn corner_at(triangles: &[[u32; 3]], side: u32, vertex: u32) -> u32 {
+pub(super) fn corner_at(triangles: &[[u32; 3]], side: u32, vertex: u32) -> u32 {
     let (t, k) = (side / 3, side % 3);
     if triangles[t as usize][k as usize] == vertex { side } else { 3 * t + (k + 1) % 3 }
 }

@@ -143,6 +143,31 @@ fn the_foot_of_a_point_is_perpendicular_whatever_the_guess() {
     assert!(lost.distance.is_nan() || lost.distance >= 0.0);
 }
 
+#[test]
+fn a_line_between_references_leaves_the_ball_smooth() {
+    let mut mesh = ball(8, 0.0);
+    let mut block = cube(8);
+    complete_boundary(Team::alone(), &mut block);
+    for t in 0..mesh.triangles.len() {
+        let middle = block.triangles.nodes[t].iter().map(|&v| block.vertices[v as usize][2]).sum::<f64>();
+        mesh.triangles.refs[t] = if middle > 1.5 { 1 } else { 2 };
+    }
+    let model = smooth(&mesh, 60.0);
+    assert_eq!([model.topology().edges.len(), model.topology().faces.len()], [1, 2]);
+    let mut evaluator = model.evaluator();
+    let length = model.topology().edges[0].range[1];
+    for k in 0..200 {
+        let t = length * f64::from(k) / 200.0;
+        let p = evaluator.edge_frame(0, t).point;
+        assert!((norm(p) - 1.0).abs() < 1e-3, "{}", norm(p));
+        let normals = [0, 1].map(|face| {
+            let uv = evaluator.edge_on_face(0, t, face).unwrap();
+            evaluator.face_normal(face, uv)
+        });
+        assert!(distance(normals[0], normals[1]) < 0.02, "{normals:?}");
+    }
+}
+
 /// A tin: a cylinder of height 2 between two disks.
 fn tin(n: u32) -> TetMesh {
     let mut mesh = grid([4 * n, n], false, |u, v| [(TAU * u).cos(), (TAU * u).sin(), 2.0 * v]);

@@ -2,10 +2,12 @@
 use super::Features;
 use super::cubic::CubicCurve;
 use super::local_fit::{LocalFit, Neighbour, Room};
-use super::sectors::Sectors;
+use super::sectors::{Sectors, corner_at};
+use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::stamped_set::StampedSet;
 use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale, sub, unit};
 use crate::tasks::Team;
+use std::collections::HashMap;
 
 /// Neighbours that are looked for, and rings in which.
 const WANTED: usize = 18;
@@ -31,6 +33,9 @@ pub(crate) struct Surface<'a> {
     pub rounding: f64,
 }
 
+/// Normals on both sides of a ridge with a greater cosine than this (4°) are one.
+const SMOOTH: f64 = 0.9976;
+
 /// Normal and curvature at a sector.
 #[derive(Clone, Copy)]
 pub(crate) struct SectorShape {
@@ -52,7 +57,7 @@ pub(crate) fn sector_shapes(
     let is_plane = team.map(SECTORS, sectors.len(), |s| maker.is_plane(s));
     let flat = maker.plane_parts(&is_plane);
     let with = || (Room::default(), StampedSet::default(), Vec::new(), Vec::new());
-    let shapes = team.map_with(SECTORS, sectors.len(), with, |(room, seen, found, neighbours), s| {
+    let mut shapes = team.map_with(SECTORS, sectors.len(), with, |(room, seen, found, neighbours), s| {
         let plain = SectorShape { normal: maker.normals[s], shape: [0.0; 6] };
         if is_plane[s] {
             return plain;
@@ -65,6 +70,7 @@ pub(crate) fn sector_shapes(
         };
         SectorShape { normal, ..fitted }
     });
+    maker.join_smooth_ridges(&mut shapes, &is_plane, &flat);
     (shapes, flat)
 }
 
@@ -188,6 +194,44 @@ impl<'a> Maker<'a> {
             distance(here, next) + distance(here, last)
         });
         room.fit(neighbours, self.normals[sector], lengths.sum::<f64>() / (2 * corners.len()) as f64)
+    }
+
+    /// Gives the sectors on both sides of a ridge one normal where theirs are nearly the same: that is a line on a smooth surface, between
+    /// references. What a plane says there counts alone.
+    fn join_smooth_ridges(&self, shapes: &mut [SectorShape], is_plane: &[bool], flat: &[bool]) {
+        let Surface { triangles, features, is_flat, .. } = *self.surface;
+        let mut sets = DisjointSets::new(shapes.len());
+        for edge in (0..features.edges.len()).filter(|&edge| features.ridge[edge]) {
+            let &[first, second] = features.edges.sides(edge) else { continue };
+            for v in features.edges.nodes[edge] {
+                let [a, b] = [first, second].map(|side| self.sectors.of_corner[corner_at(triangles, side, v) as usize]);
+                if a != b && dot(shapes[a as usize].normal, shapes[b as usize].normal) > SMOOTH {
+                    sets.join(a, b);
+                }
+            }
+        }
+        let is_exact = |s: usize| {
+            let mut own = self.sectors.corners.row(s).iter().map(|&corner| corner as usize / 3);
+            is_plane[s] || own.any(|t| flat[t] || is_flat[features.patch[t] as usize])
+        };
+        let mut sums: HashMap<u32, [Vec3; 2]> = HashMap::new();
+        for s in 0..shapes.len() as u32 {
+            let first = sets.first(s);
+            if first != s {
+                sums.entry(first).or_default();
+            }
+        }
+        for s in 0..shapes.len() {
+            if let Some(sum) = sums.get_mut(&sets.first(s as u32)) {
+                let kind = usize::from(is_exact(s));
+                sum[kind] = add(sum[kind], shapes[s].normal);
+            }
+        }
+        for s in 0..shapes.len() {
+            if let Some([any, exact]) = sums.get(&sets.first(s as u32)) {
+                shapes[s].normal = unit(if *exact == [0.0; 3] { *any } else { *exact });
+            }
+        }
     }
 
     /// The normal made perpendicular to the ridges at the sector.
