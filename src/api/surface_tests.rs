@@ -81,7 +81,8 @@ fn on_a_first_surface_nothing_drifts_and_tags_stay() {
         mesh = adapter.adapt(&MeshView::of(&mesh), &metric).unwrap().mesh;
         let mut evaluator = adapter.model().unwrap().evaluator();
         for p in surface_vertices(&mesh) {
-            let off = (0..2).map(|face| evaluator.closest_on_face(face, p, None).distance).fold(f64::INFINITY, f64::min);
+            let off =
+                (0..2).map(|face| evaluator.closest_on_face(face, p, None).distance).fold(f64::INFINITY, f64::min);
             assert!(off < 1e-9 && (norm(p) - 1.0).abs() < 2e-4, "{size}: {off} {}", norm(p));
         }
         for (nodes, reference) in mesh.triangles.iter() {

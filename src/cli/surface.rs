@@ -66,3 +66,46 @@ impl SurfaceArguments {
         Ok((Model::Discrete(surface), place))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Geometry;
+    use std::fmt::Write;
+
+    #[test]
+    fn an_angle_or_none() {
+        assert_eq!((ridge_angle("none"), ridge_angle("30"), ridge_angle("180")), (Ok(180.0), Ok(30.0), Ok(180.0)));
+        for wrong in ["0", "-3", "181", "nan", "inf", "", "sharp"] {
+            assert!(ridge_angle(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_surface_is_read_and_has_the_ridges_of_the_angle() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("roof.obj");
+        // Two slopes of 20° each.
+        let mut text = String::new();
+        for (x, z) in [(-1.0, 0.0), (0.0, 0.364), (1.0, 0.0)] {
+            let _ = writeln!(text, "v {x} 0 {z}\nv {x} 1 {z}");
+        }
+        text.push_str("f 1 3 4 2\nf 3 5 6 4\n");
+        std::fs::write(&path, text).unwrap();
+        let faces = |ridge_angle| {
+            let arguments = SurfaceArguments { surface: Some(path.clone()), ridge_angle, flat_surface: false };
+            let model = arguments.model(Team::alone(), &mut Vec::new()).unwrap().unwrap();
+            model.topology().faces.len()
+        };
+        assert_eq!([None, Some(30.0), Some(180.0)].map(faces), [1, 2, 1]);
+        let arguments = |name: &str| {
+            let surface = Some(folder.path().join(name));
+            SurfaceArguments { surface, ridge_angle: None, flat_surface: false }
+        };
+        std::fs::write(folder.path().join("none.ply"), "ply\nformat ascii 1.0\nend_header\n").unwrap();
+        for name in ["none.ply", "nothing.stl", "nothing.xyz"] {
+            let error = arguments(name).model(Team::alone(), &mut Vec::new()).err().unwrap();
+            assert!(error.contains(name), "{error}");
+        }
+    }
+}

@@ -44,7 +44,8 @@ pub(crate) struct Room {
 impl Room {
     /// Fits the neighbourhood of a vertex, whose normal is about `normal`; `size` is the length of its edges. None where it tells nothing.
     pub fn fit(&mut self, neighbours: &[Neighbour], normal: Vec3, size: f64) -> Option<LocalFit> {
-        if !(size > 0.0) {
+        let has_size = size > 0.0;
+        if !has_size {
             return None;
         }
         let (mut normal, mut found) = (normal, None);
@@ -125,7 +126,8 @@ fn triangularize(rows: &mut [[f64; COLUMNS + 1]], columns: usize) -> usize {
         let square =
             |from: usize, rows: &[[f64; COLUMNS + 1]]| rows[from..].iter().map(|row| row[k] * row[k]).sum::<f64>();
         let (whole, left) = (square(0, rows), square(k, rows));
-        if !(left > SINGULAR * SINGULAR * whole) {
+        let is_told = left > SINGULAR * SINGULAR * whole;
+        if !is_told {
             return k;
         }
         let alpha = if rows[k][k] > 0.0 { -left.sqrt() } else { left.sqrt() };

@@ -102,7 +102,8 @@ impl Nets {
 /// come out to the sixth order, and what is ruled stays straight.
 fn inner_curve([a, b]: [Vec3; 2], normals: [Vec3; 2]) -> CubicCurve {
     let (turn, chord) = (dot(normals[0], normals[1]), sub(b, a));
-    if !(turn > LEAST_TURN) {
+    let is_smooth = turn > LEAST_TURN;
+    if !is_smooth {
         return straight(a, b);
     }
     let cosine = (0.5 * (1.0 + turn)).sqrt();
@@ -113,8 +114,8 @@ fn inner_curve([a, b]: [Vec3; 2], normals: [Vec3; 2]) -> CubicCurve {
         let (along, toward) = (in_plane(chord), unit(in_plane(change)));
         scale(add(along, scale(toward, longer * dot(along, toward))), 1.0 / 3.0)
     });
-    let leaves = |handle: Vec3| !(dot(handle, chord) > LEAST_ALONG * norm(handle) * norm(chord));
-    if leaves(first) || leaves(last) { straight(a, b) } else { [a, add(a, first), sub(b, last), b] }
+    let keeps = |handle: Vec3| dot(handle, chord) > LEAST_ALONG * norm(handle) * norm(chord);
+    if keeps(first) && keeps(last) { [a, add(a, first), sub(b, last), b] } else { straight(a, b) }
 }
 
 /// The normal in the middle of a curve: the mean of those at its ends, perpendicular to it. None where they do not fit together.
@@ -141,6 +142,7 @@ fn turns_too_far(net: &CubicTriangle) -> bool {
     AT.iter().any(|&weights| {
         let [v, w] = net.at(weights).first;
         let normal = cross(v, w);
-        !(dot(normal, facet) > LEAST_FACING * norm(normal))
+        let faces = dot(normal, facet) > LEAST_FACING * norm(normal);
+        !faces
     })
 }

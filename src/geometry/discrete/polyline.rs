@@ -141,7 +141,8 @@ pub(crate) fn closest_on_curve(curve: &CubicCurve, from: f64, p: Vec3) -> f64 {
         let bend = square + dot(away, at[2]);
         // Where the distance is not convex, the step of Gauss and Newton goes down all the same.
         let by = if bend > 0.1 * square { bend } else { square };
-        if !(by > 0.0) {
+        let moves = by > 0.0;
+        if !moves {
             break;
         }
         let mut next = (s - slope / by).clamp(0.0, 1.0);
