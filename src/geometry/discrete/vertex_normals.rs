@@ -1,12 +1,13 @@
 //! Normal and curvature at each sector of a surface's vertices.
 use super::Features;
 use super::cubic::CubicCurve;
-use super::local_fit::{LocalFit, Neighbour, Room};
+use super::local_fit::{LocalFit, Neighbour, Room, axes};
 use super::sectors::{Sectors, corner_at};
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::stamped_set::StampedSet;
 use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale, sub, unit};
 use crate::tasks::Team;
+use nalgebra::{Matrix3, Vector3};
 use std::collections::HashMap;
 
 /// Neighbours that are looked for, and rings in which.
@@ -33,6 +34,8 @@ pub(crate) struct Surface<'a> {
     pub rounding: f64,
 }
 
+/// Where the normals of neighbours all have a greater cosine than this (25°), the fit's curvature is the better one.
+const COARSE: f64 = 0.906;
 /// Normals on both sides of a ridge with a greater cosine than this (4°) are one.
 const SMOOTH: f64 = 0.9976;
 
@@ -71,6 +74,15 @@ pub(crate) fn sector_shapes(
         SectorShape { normal, ..fitted }
     });
     maker.join_smooth_ridges(&mut shapes, &is_plane, &flat);
+    let turned = team.map_with(
+        SECTORS,
+        sectors.len(),
+        || (StampedSet::default(), Vec::new()),
+        |(seen, found), s| maker.shape_of_normals(s, &shapes, seen, found),
+    );
+    for (shape, turned) in shapes.iter_mut().zip(turned) {
+        shape.shape = turned.unwrap_or(shape.shape);
+    }
     (shapes, flat)
 }
 
@@ -194,6 +206,43 @@ impl<'a> Maker<'a> {
             distance(here, next) + distance(here, last)
         });
         room.fit(neighbours, self.normals[sector], lengths.sum::<f64>() / (2 * corners.len()) as f64)
+    }
+
+    /// The symmetric S with n_j − n_i = −S (p_j − p_i) in the tangent plane, over the neighbours j of a sector, by least squares: with good
+    /// normals it is right on circles however far apart the neighbours are (Rusinkiewicz 2004 has it for triangles). None where the fitted one,
+    /// of one order more, is better, since the normals turn little; or where the neighbours lie in a line.
+    fn shape_of_normals(
+        &self,
+        sector: usize,
+        shapes: &[SectorShape],
+        seen: &mut StampedSet,
+        found: &mut Vec<u32>,
+    ) -> Option<[f64; 6]> {
+        let (here, normal) = (self.point(sector), shapes[sector].normal);
+        let (e1, e2) = axes(normal);
+        self.sectors.around(sector as u32, 0, 1, seen, found);
+        if found[1..].iter().all(|&other| dot(shapes[other as usize].normal, normal) > COARSE) {
+            return None;
+        }
+        let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        for &other in &found[1..] {
+            let offset = sub(self.point(other as usize), here);
+            let turn = sub(shapes[other as usize].normal, normal);
+            let ([x, y], [a, b]) = ([e1, e2].map(|e| dot(offset, e)), [e1, e2].map(|e| dot(turn, e)));
+            let square = x * x + y * y;
+            if square > 0.0 {
+                let (xx, xy, yy) = (x * x / square, x * y / square, y * y / square);
+                matrix += Matrix3::new(xx, xy, 0.0, xy, 1.0, xy, 0.0, xy, yy);
+                right -= Vector3::new(x * a, y * a + x * b, y * b) / square;
+            }
+        }
+        let count = (found.len() - 1) as f64;
+        let is_told = matrix.determinant() > 1e-3 * count * count * count;
+        let s = is_told.then(|| matrix.lu().solve(&right)).flatten()?;
+        let term =
+            |i: usize, j: usize| s[0] * e1[i] * e1[j] + s[1] * (e1[i] * e2[j] + e2[i] * e1[j]) + s[2] * e2[i] * e2[j];
+        let shape = [term(0, 0), term(0, 1), term(1, 1), term(0, 2), term(1, 2), term(2, 2)];
+        shape.iter().all(|x| x.is_finite()).then_some(shape)
     }
 
     /// Gives the sectors on both sides of a ridge one normal where theirs are nearly the same: that is a line on a smooth surface, between
