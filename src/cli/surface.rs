@@ -1,11 +1,12 @@
 //! Options for what has no CAD model: a surface given as triangles, and how triangles become a model.
+use super::load;
 use crate::formats::read_surface;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, DiscreteOptions};
 use crate::geometry::{Discrete, Model};
 use crate::mesh::TetMesh;
 use crate::tasks::Team;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What the boundary lies on where there is no CAD model.
 #[derive(clap::Args)]
@@ -55,6 +56,20 @@ impl SurfaceArguments {
         let (surface, _) = Discrete::new(team, &read.content, &self.options())
             .map_err(|error| format!("{}: {error}", path.display()))?;
         Ok(Some(Model::Discrete(surface)))
+    }
+
+    /// The model of --cad or of --surface, if there is one; notices are printed.
+    ///
+    /// # Errors
+    /// When the file is no such model.
+    pub fn model_or(&self, team: Team<'_>, cad: Option<&Path>) -> Result<Option<Model>, Box<dyn std::error::Error>> {
+        if let Some(path) = cad {
+            return load::model(path).map(Some);
+        }
+        let mut notices = Vec::new();
+        let model = self.model(team, &mut notices)?;
+        notices.iter().for_each(crate::cli::note);
+        Ok(model)
     }
 
     /// The mesh's own surface as its model, and where it lies on that.
