@@ -15,7 +15,7 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
     // Binary files may begin with the word of text files: their length tells.
     match count {
         Some(count) if bytes.len() as u64 == HEAD as u64 + FACET as u64 * u64::from(count) => binary(path, bytes),
-        _ if bytes.trim_ascii_start().starts_with(b"solid") => text(path, bytes),
+        _ if bytes.trim_ascii_start().starts_with(b"solid") && !bytes.contains(&0) => text(path, bytes),
         Some(count) => Err(error::at(
             path,
             "bytes 80 to 83",
