@@ -141,7 +141,7 @@ fn invalid_meshes_end_with_1() {
         mesh.vertices.push([5.0; 3]);
         mesh.vertex_refs.push(0);
     };
-    assert_eq!(kind_of(&hang), ["hanging-vertex"]);
+    assert_eq!(kind_of(&hang), ["unused-vertex"]);
     let mut mesh = good.clone();
     hang(&mut mesh);
     let text = String::from_utf8(inspect(&save(folder.path(), &mesh), &[]).stdout).unwrap();

@@ -1,4 +1,4 @@
-"""Is a mesh a mesh: positive volumes, conforming, closed, nothing hanging or doubled. Shares no code with the program."""
+"""Is a mesh a mesh: positive volumes, conforming, closed, nothing unused or doubled. Shares no code with the program."""
 
 from fractions import Fraction
 

@@ -103,7 +103,7 @@ impl Operation for RemoveEdges {
         ring: &mut Box<Ring>,
         t: TetId,
     ) -> Result<(), Refusal> {
-        let v = worker.claim_moving_tet(t)?;
+        let v = worker.claim_current_tet(t)?;
         let mut tried = EDGE.iter().map(|&[i, j]| worker.remove_edge(ring, [v[i], v[j]], t, Criterion::MeanRatio));
         tried.find(Result::is_ok).unwrap_or(Err(Refusal::Shape))
     }
@@ -117,7 +117,7 @@ impl Operation for RemoveFaces {
     const WHOLE_BALLS: bool = false;
 
     fn attempt<A: Access>(&self, worker: &mut Worker<'_, '_, A>, _: &mut (), t: TetId) -> Result<(), Refusal> {
-        worker.claim_moving_tet(t)?;
+        worker.claim_current_tet(t)?;
         let mut tried = (0..4).map(|i| worker.remove_face(t, i, Criterion::MeanRatio));
         tried.find(Result::is_ok).unwrap_or(Err(Refusal::Shape))
     }

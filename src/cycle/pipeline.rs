@@ -3,9 +3,9 @@ use super::config::{FIRST, Loaded, TransferMethod};
 use super::data::{Adapted, Begun, FieldName, SolveResult, text};
 use super::done::Done;
 use super::error::Error;
+use super::field_value::{as_words, values_of};
 use super::layout::Layout;
 use super::observer::Options;
-use super::picked::{as_words, picked};
 use super::probe;
 use super::solver::{Before, Job, Solver};
 use super::step::Steps;
@@ -110,7 +110,7 @@ impl<'a> Pipeline<'a> {
 
     /// Which values of the solution the metric is made from, as `field pick --take` has them.
     fn sensors(&self, fields: &[FieldName]) -> Result<String, String> {
-        Ok(as_words(&picked(&self.loaded.config.metric.fields, fields)?))
+        Ok(as_words(&values_of(&self.loaded.config.metric.fields, fields)?))
     }
 
     /// Pictures of the mesh of a cycle: surface and cut.

@@ -1,7 +1,7 @@
 //! Values of a solution at points, as functionals.
 use super::config::Probe;
 use super::data::{FieldName, Solved};
-use super::picked::Value;
+use super::field_value::Value;
 use crate::mesh::TetMesh;
 use crate::mesh::locate::Locator;
 use crate::mesh::vector::distance;

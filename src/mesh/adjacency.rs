@@ -1,5 +1,5 @@
 //! Neighbours of tetrahedra, triangles among their faces, and unique edges of a plain mesh.
-pub use super::matched_faces::{Crowd, MatchedFaces};
+pub use super::matched_faces::{MatchedFaces, OverSharedFace};
 use crate::tasks::{GRAIN, Rows, Team};
 use std::ops::Range;
 

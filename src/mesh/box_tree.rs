@@ -1,8 +1,13 @@
 //! A tree of boxes for nearest-item searches.
 use super::vector::Vec3;
+use crate::tasks::{GRAIN, Team};
+use std::ops::Range;
 
 /// Items in a leaf.
 const LEAF: usize = 4;
+
+/// Leaves a task of a search for pairs.
+const LEAVES: usize = 64;
 
 /// Deepest tree: halving 2³² items into leaves of 4 takes 30 levels.
 const DEPTH: usize = 40;
@@ -27,7 +32,8 @@ impl BoxTree {
             levels += 1;
         }
         let mut bounds = vec![[[0.0; 3]; 2]; (2 << levels) - 1];
-        build(0, &mut items, &boxes, &mut bounds);
+        let middles: Vec<Vec3> = boxes.iter().map(|[low, high]| [0, 1, 2].map(|i| low[i] + high[i])).collect();
+        build(0, &mut items, &boxes, &middles, &mut bounds);
         Self { items, bounds }
     }
 
@@ -61,56 +67,125 @@ impl BoxTree {
 
     /// Visits the items whose boxes touch a box, in the order of the tree.
     pub fn overlapping(&self, box_: &Bounds, mut visit: impl FnMut(u32)) {
-        let touches = |other: &Bounds| (0..3).all(|i| box_[0][i] <= other[1][i] && other[0][i] <= box_[1][i]);
-        // Node and range of items.
-        let mut stack = [(0usize, 0usize, 0usize); DEPTH + 1];
-        stack[0] = (0, 0, self.items.len());
+        self.leaves_where(
+            |node, _| overlap(box_, &self.bounds[node]),
+            |range| self.items[range].iter().for_each(|&item| visit(item)),
+        );
+    }
+
+    /// Visits each pair of items whose boxes touch once, but for pairs of a leaf and a node that are not `wanted`; both are told by their
+    /// numbers among all nodes. Tasks take leaves, and each has a state of its own; these come back in the order of the tree. `boxes` are
+    /// those that the tree was made of.
+    pub fn overlapping_pairs<S: Default + Send>(
+        &self,
+        team: Team<'_>,
+        boxes: impl Fn(u32) -> Bounds + Sync,
+        wanted: impl Fn(usize, usize) -> bool + Sync,
+        visit: impl Fn(&mut S, u32, u32) + Sync,
+    ) -> Vec<S> {
+        let boxes = team.map(GRAIN, self.items.len(), |place| boxes(self.items[place]));
+        let (ranges, inner) = (self.ranges(), self.bounds.len() / 2);
+        team.chunks(LEAVES, inner + 1, |leaves| {
+            let mut state = S::default();
+            for leaf in leaves.map(|leaf| inner + leaf) {
+                let (own, around) = (&ranges[leaf], &self.bounds[leaf]);
+                // A pair is found from its first leaf.
+                let is_asked = |node: usize, range: &Range<usize>| {
+                    range.end > own.start && overlap(around, &self.bounds[node]) && wanted(leaf, node)
+                };
+                self.leaves_where(is_asked, |others| {
+                    for i in own.clone() {
+                        for j in others.clone() {
+                            if (j > i || others.start > own.start) && overlap(&boxes[i], &boxes[j]) {
+                                visit(&mut state, self.items[i], self.items[j]);
+                            }
+                        }
+                    }
+                });
+            }
+            state
+        })
+    }
+
+    /// A value for each node, of its items.
+    pub fn of_nodes<T>(&self, of: impl Fn(&[u32]) -> T) -> Vec<T> {
+        self.ranges().into_iter().map(|range| of(&self.items[range])).collect()
+    }
+
+    /// The places in `items` of each node.
+    fn ranges(&self) -> Vec<Range<usize>> {
+        let mut ranges: Vec<Range<usize>> = Vec::with_capacity(self.bounds.len());
+        ranges.push(0..self.items.len());
+        for node in 1..self.bounds.len() {
+            let (first, second) = halves(&ranges[(node - 1) / 2]);
+            ranges.push(if node % 2 == 1 { first } else { second });
+        }
+        ranges
+    }
+
+    /// Visits the leaves, in order, that are asked for, as all nodes above them are: by their places in `items`.
+    #[inline(always)]
+    fn leaves_where(&self, is_asked: impl Fn(usize, &Range<usize>) -> bool, mut visit: impl FnMut(Range<usize>)) {
+        let mut stack: [(usize, Range<usize>); DEPTH + 1] = std::array::from_fn(|_| (0, 0..0));
+        stack[0] = (0, 0..self.items.len());
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let (node, begin, end) = stack[top];
-            if !touches(&self.bounds[node]) {
+            let (node, range) = stack[top].clone();
+            if !is_asked(node, &range) {
                 continue;
             }
             if 2 * node + 2 >= self.bounds.len() {
-                self.items[begin..end].iter().for_each(|&item| visit(item));
+                visit(range);
                 continue;
             }
-            let middle = begin + (end - begin).div_ceil(2);
-            stack[top] = (2 * node + 2, middle, end);
-            stack[top + 1] = (2 * node + 1, begin, middle);
+            let (first, second) = halves(&range);
+            stack[top] = (2 * node + 2, second);
+            stack[top + 1] = (2 * node + 1, first);
             top += 2;
         }
     }
 }
 
-/// Fills the bounds of a node and orders its items, halved along the longest side of the box of their middles.
-fn build(node: usize, items: &mut [u32], boxes: &[Bounds], bounds: &mut [Bounds]) {
-    let mut all = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    let mut middles = all;
-    for &item in items.iter() {
-        let [low, high] = boxes[item as usize];
-        for i in 0..3 {
-            all[0][i] = all[0][i].min(low[i]);
-            all[1][i] = all[1][i].max(high[i]);
-            middles[0][i] = middles[0][i].min(low[i] + high[i]);
-            middles[1][i] = middles[1][i].max(low[i] + high[i]);
-        }
-    }
-    bounds[node] = all;
+/// The places of a node's two children.
+#[inline(always)]
+fn halves(range: &Range<usize>) -> (Range<usize>, Range<usize>) {
+    let middle = range.start + range.len().div_ceil(2);
+    (range.start..middle, middle..range.end)
+}
+
+#[inline(always)]
+fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    (0..3).all(|i| a[0][i] <= b[1][i] && b[0][i] <= a[1][i])
+}
+
+/// Fills the bounds of a node and orders its items, halved along the longest side of the box of their middles (twice them: `middles`).
+fn build(node: usize, items: &mut [u32], boxes: &[Bounds], middles: &[Vec3], bounds: &mut [Bounds]) {
     if 2 * node + 2 >= bounds.len() {
+        let all = items.iter().map(|&item| boxes[item as usize]);
+        bounds[node] = all.fold(NOTHING, join);
         return;
     }
-    let side = |i: usize| middles[1][i] - middles[0][i];
-    let axis = (0..3).max_by(|&i, &j| side(i).total_cmp(&side(j))).unwrap_or(0);
-    let key = |item: u32| boxes[item as usize][0][axis] + boxes[item as usize][1][axis];
+    let [low, high] = items.iter().fold(NOTHING, |all, &item| join(all, [middles[item as usize]; 2]));
+    let axis = (0..3).max_by(|&i, &j| (high[i] - low[i]).total_cmp(&(high[j] - low[j]))).unwrap_or(0);
+    let key = |item: u32| middles[item as usize][axis];
     let middle = items.len().div_ceil(2);
     if middle < items.len() {
         items.select_nth_unstable_by(middle, |&a, &b| key(a).total_cmp(&key(b)));
     }
     let (left, right) = items.split_at_mut(middle);
-    build(2 * node + 1, left, boxes, bounds);
-    build(2 * node + 2, right, boxes, bounds);
+    build(2 * node + 1, left, boxes, middles, bounds);
+    build(2 * node + 2, right, boxes, middles, bounds);
+    bounds[node] = join(bounds[2 * node + 1], bounds[2 * node + 2]);
+}
+
+/// The box of no item.
+const NOTHING: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+
+/// The box of two boxes.
+#[inline(always)]
+fn join(a: Bounds, b: Bounds) -> Bounds {
+    [[0, 1, 2].map(|i| a[0][i].min(b[0][i])), [0, 1, 2].map(|i| a[1][i].max(b[1][i]))]
 }
 
 /// Squared distance from p to a box; 0 inside.
@@ -122,6 +197,27 @@ fn square_distance(p: Vec3, [low, high]: &Bounds) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_pair_is_found_once() {
+        let low = |item: u32| [0, 1, 2].map(|i| f64::from(item.wrapping_mul([7919, 104_729, 1_299_709][i]) % 1000));
+        let bounds = |item: u32| [low(item), low(item).map(|x| x + 100.0)];
+        for count in [1, 4, 5, 333] {
+            let tree = BoxTree::new(count, bounds);
+            let parts: Vec<Vec<[u32; 2]>> = tree.overlapping_pairs(
+                Team::alone(),
+                bounds,
+                |_, _| true,
+                |found: &mut Vec<_>, i, j| found.push([i.min(j), i.max(j)]),
+            );
+            let mut found = parts.concat();
+            found.sort_unstable();
+            let all = (0..count as u32).flat_map(|i| (i + 1..count as u32).map(move |j| [i, j]));
+            let expected: Vec<_> = all.filter(|&[i, j]| overlap(&bounds(i), &bounds(j))).collect();
+            assert_eq!(found, expected);
+            assert!(count < 9 || expected.len() > 100);
+        }
+    }
 
     #[test]
     fn what_touches_a_box_is_found() {

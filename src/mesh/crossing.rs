@@ -3,12 +3,10 @@ use super::TetMesh;
 use super::adjacency::{FACES, MatchedFaces, NONE};
 use super::box_tree::{Bounds, BoxTree};
 use super::triangle_pair::{Corners, crossing};
+use super::unfolded::are_unfolded;
 use super::vector::Vec3;
 use crate::tasks::Team;
 use serde::Serialize;
-
-/// Triangles a task.
-const GRAIN: usize = 256;
 
 /// Two triangles that cross.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -42,25 +40,20 @@ pub fn of_boundary(team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, told: u
 
 /// Pairs of triangles, all looking outward, that pass through each other ([`crossing`]). At most `told` of them are named. The result does
 /// not depend on the threads.
-pub fn crossings<I: Copy + PartialEq + Sync>(
-    team: Team<'_>,
-    triangles: &[[I; 3]],
-    at: impl Fn(I) -> Vec3 + Sync,
-    told: usize,
-) -> Crossings {
+pub fn crossings(team: Team<'_>, triangles: &[[u32; 3]], at: impl Fn(u32) -> Vec3 + Sync, told: usize) -> Crossings {
     crossings_of(team, triangles, at, |_| true, crossing, told)
 }
 
 /// A test of two triangles, by their nodes and corners, that gives where they meet.
-pub type Test<I> = fn((&[I; 3], &Corners), (&[I; 3], &Corners)) -> Option<Vec3>;
+pub type Test = fn((&[u32; 3], &Corners), (&[u32; 3], &Corners)) -> Option<Vec3>;
 
 /// As [`crossings`], of the triangles that are asked for, with each other and with all, by a test.
-pub fn crossings_of<I: Copy + PartialEq + Sync>(
+pub fn crossings_of(
     team: Team<'_>,
-    triangles: &[[I; 3]],
-    at: impl Fn(I) -> Vec3 + Sync,
+    triangles: &[[u32; 3]],
+    at: impl Fn(u32) -> Vec3 + Sync,
     is_asked: impl Fn(usize) -> bool + Sync,
-    test: Test<I>,
+    test: Test,
     told: usize,
 ) -> Crossings {
     let count = triangles.len();
@@ -68,48 +61,55 @@ pub fn crossings_of<I: Copy + PartialEq + Sync>(
         return Crossings::default();
     }
     let corners = |i: usize| triangles[i].map(&at);
-    let tree = BoxTree::new(count, |i| bounds(&corners(i as usize)));
-    let parts = team.chunks(GRAIN, count, |range| {
-        let mut found = Crossings::default();
-        let mut near: Vec<usize> = Vec::new();
-        for i in range.filter(|&i| is_asked(i)) {
-            let a = corners(i);
-            let around = bounds(&a);
-            near.clear();
-            tree.overlapping(&around, |j| near.push(j as usize));
-            near.sort_unstable();
-            // A pair of two that are asked for is found by the first of them.
-            for &j in near.iter().filter(|&&j| j != i && (j > i || !is_asked(j))) {
-                let b = corners(j);
-                let Some(at) = overlap(&around, &b).then(|| test((&triangles[i], &a), (&triangles[j], &b))).flatten()
-                else {
-                    continue;
-                };
-                found.count += 1;
-                if found.first.len() < told {
-                    found.first.push(Crossing { triangles: [i.min(j), i.max(j)], at });
-                }
+    let unfolded = are_unfolded(team, triangles, &at);
+    // Neighbours at a vertex that is safe need no test; most pairs with boxes that overlap are such.
+    let is_safe = |v: u32, other: &[u32; 3]| unfolded[v as usize] && other.contains(&v);
+    let bounds = |i: u32| bounds(&corners(i as usize));
+    let asked: Vec<bool> = (0..count).map(is_asked).collect();
+    let tree = BoxTree::new(count, bounds);
+    let parts = tree.overlapping_pairs(
+        team,
+        bounds,
+        |_, _| true,
+        |found: &mut Crossings, i, j| {
+            let [i, j] = [i.min(j) as usize, i.max(j) as usize];
+            let (a, b) = (&triangles[i], &triangles[j]);
+            if !(asked[i] || asked[j]) || a.iter().any(|&v| is_safe(v, b)) {
+                return;
             }
-        }
-        found
-    });
+            if let Some(at) = test((a, &corners(i)), (b, &corners(j))) {
+                found.add(Crossing { triangles: [i, j], at }, told);
+            }
+        },
+    );
     let mut all = Crossings::default();
     for part in parts {
         all.count += part.count;
-        all.first.extend(part.first.into_iter().take(told - all.first.len()));
+        all.first.extend(part.first);
     }
+    all.keep_first(told);
     all
+}
+
+impl Crossings {
+    /// Counts a pair. No more than twice as many as are told are kept.
+    fn add(&mut self, crossing: Crossing, told: usize) {
+        self.count += 1;
+        self.first.push(crossing);
+        if self.first.len() >= told.saturating_mul(2).max(1 << 6) {
+            self.keep_first(told);
+        }
+    }
+
+    fn keep_first(&mut self, told: usize) {
+        self.first.sort_unstable_by_key(|crossing| crossing.triangles);
+        self.first.truncate(told);
+    }
 }
 
 /// The box of a triangle.
 fn bounds([p, q, r]: &Corners) -> Bounds {
     [[0, 1, 2].map(|k| p[k].min(q[k]).min(r[k])), [0, 1, 2].map(|k| p[k].max(q[k]).max(r[k]))]
-}
-
-/// Whether a triangle's box touches another.
-fn overlap([low, high]: &Bounds, b: &Corners) -> bool {
-    let [from, to] = bounds(b);
-    (0..3).all(|k| low[k] <= to[k] && from[k] <= high[k])
 }
 
 #[cfg(test)]

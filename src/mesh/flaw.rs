@@ -15,7 +15,7 @@ pub enum FlawKind {
     /// Two tetrahedra have the same nodes.
     DuplicateTet,
     /// A face belongs to more than two tetrahedra.
-    CrowdedFace,
+    NonManifoldFace,
     /// Two tetrahedra lie on the same side of their common face.
     FoldedFace,
     /// A face with one tetrahedron has no triangle: a hole in the boundary, or a neighbour that is subdivided otherwise.
@@ -29,9 +29,9 @@ pub enum FlawKind {
     /// A tagged edge is no edge of a tetrahedron.
     LooseEdge,
     /// The tetrahedra at a vertex are in parts that share no face: they meet only in the vertex or in an edge.
-    PinchedVertex,
+    NonManifoldVertex,
     /// A vertex of no tetrahedron.
-    HangingVertex,
+    UnusedVertex,
     /// Two triangles of the boundary pass through each other: the mesh overlaps itself. Only looked for where all tetrahedra are
     /// positive.
     CrossingTriangles,
@@ -45,15 +45,15 @@ impl FlawKind {
             Self::InvertedTet => "inverted tetrahedra",
             Self::FlatTet => "flat tetrahedra",
             Self::DuplicateTet => "duplicate tetrahedra",
-            Self::CrowdedFace => "faces of more than two tetrahedra",
+            Self::NonManifoldFace => "faces of more than two tetrahedra",
             Self::FoldedFace => "faces with both tetrahedra on one side",
             Self::OpenBoundary => "boundary faces without a triangle",
             Self::LooseTriangle => "triangles that are no face of a tetrahedron",
             Self::DuplicateTriangle => "duplicate triangles",
             Self::NonManifoldEdge => "non-manifold boundary edges",
             Self::LooseEdge => "tagged edges that are no edge of a tetrahedron",
-            Self::PinchedVertex => "vertices where the mesh is pinched",
-            Self::HangingVertex => "hanging vertices (of no tetrahedron)",
+            Self::NonManifoldVertex => "non-manifold vertices (their tetrahedra share no face)",
+            Self::UnusedVertex => "unused vertices (of no tetrahedron)",
             Self::CrossingTriangles => "pairs of boundary triangles that cross",
         }
     }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// A face of more than two tetrahedra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crowd {
+pub struct OverSharedFace {
     /// Its nodes, ascending.
     pub nodes: [u32; 3],
     /// How many tetrahedra share it.
@@ -19,7 +19,7 @@ pub struct MatchedFaces {
     /// first two are neighbours.
     pub neighbours: Vec<[u32; 4]>,
     /// The face of more than two tetrahedra that comes first in the order of the nodes, if there is one.
-    pub crowded: Option<Crowd>,
+    pub crowded: Option<OverSharedFace>,
 }
 
 impl MatchedFaces {
@@ -95,10 +95,16 @@ impl Table {
     }
 
     /// Matches the faces whose least node is v; returns the first one of more than two tetrahedra.
-    fn match_at(&mut self, v: u32, sides: &Rows, tets: &[[u32; 4]], neighbours: &[[AtomicU32; 4]]) -> Option<Crowd> {
+    fn match_at(
+        &mut self,
+        v: u32,
+        sides: &Rows,
+        tets: &[[u32; 4]],
+        neighbours: &[[AtomicU32; 4]],
+    ) -> Option<OverSharedFace> {
         let sides = sides.row(v as usize);
         self.clear(sides.len());
-        let mut crowded: Option<Crowd> = None;
+        let mut crowded: Option<OverSharedFace> = None;
         for &side in sides {
             let (tet, face) = (side as usize / 4, side as usize % 4);
             let nodes = tets[tet];
@@ -113,7 +119,7 @@ impl Table {
                     neighbours[other][across].store(tet as u32, Relaxed);
                 }
                 tets => {
-                    let crowd = Crowd { nodes: [v, b, c], tets: tets as usize };
+                    let crowd = OverSharedFace { nodes: [v, b, c], tets: tets as usize };
                     if crowded.is_none_or(|known| crowd.nodes <= known.nodes) {
                         crowded = Some(crowd);
                     }
@@ -148,7 +154,7 @@ mod tests {
                 expected[b.side as usize / 4][b.side as usize % 4] = a.side / 4;
             }
             if same.len() > 2 {
-                crowds.push(Crowd { nodes: same[0].nodes, tets: same.len() });
+                crowds.push(OverSharedFace { nodes: same[0].nodes, tets: same.len() });
             }
         }
         let found = MatchedFaces::of(Team::alone(), &tets);

@@ -17,6 +17,7 @@ pub mod stamped_set;
 mod starts;
 mod tet_mesh;
 pub mod triangle_pair;
+mod unfolded;
 pub mod validity;
 pub mod vector;
 pub mod vertex_neighbours;

@@ -5,7 +5,7 @@
 //! draw back into their bodies by a very small distance.
 use super::locate::nearest_on_triangle;
 use super::predicate::orientation;
-use super::vector::{Vec3, add, area2, dot, lerp, norm, scale, sub, unit};
+use super::vector::{Vec3, add, area2, cross, dot, lerp, norm, scale, sub, unit};
 use robust::Coord;
 
 /// A triangle, by its corners.
@@ -110,7 +110,24 @@ fn are_apart(a: &Corners, b: &Corners) -> bool {
     };
     // Without a shared corner `from` is rounded too: by so little of the coordinates.
     let is_exact = shared.is_some();
-    is_on(a, 1.0) && is_on(b, -1.0) && (is_exact || is_clear(a, b, from, direction))
+    let is_between = is_on(a, 1.0) && is_on(b, -1.0) && (is_exact || is_clear(a, b, from, direction));
+    is_between || (shared.is_none() && (is_beyond_an_edge(a, b) || is_beyond_an_edge(b, a)))
+}
+
+/// Whether b lies beyond the plane through one of a's edges that stands upright on a, far above rounding: for two that are apart in one
+/// plane there is such an edge of one of them.
+fn is_beyond_an_edge(a: &Corners, b: &Corners) -> bool {
+    let normal = area2(a[0], a[1], a[2]);
+    (0..3).any(|k| {
+        let outward = cross(sub(a[(k + 1) % 3], a[k]), normal);
+        // How far a point is out, and the bound of its rounding.
+        let out = |p: &Vec3| {
+            let d = sub(*p, a[k]);
+            (dot(d, outward), 1e-12 * norm(d) * norm(outward))
+        };
+        let of_a = a.iter().map(out).fold(0.0_f64, |most, (out, doubt)| most.max(out + doubt));
+        b.iter().map(out).all(|(out, doubt)| out - doubt > of_a)
+    })
 }
 
 /// Whether the distances from the plane are far above the rounding of the coordinates.

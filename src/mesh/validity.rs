@@ -172,7 +172,7 @@ fn check_faces(found: &mut Findings, faces: &[FaceKey], triangles: &[([u32; 3], 
                     found.add(FlawKind::FoldedFace, Some(tet), &nodes);
                 }
             }
-            _ => found.add(FlawKind::CrowdedFace, Some(tet), &nodes),
+            _ => found.add(FlawKind::NonManifoldFace, Some(tet), &nodes),
         }
     }
     for (nodes, triangle) in &triangles[next..] {
@@ -265,9 +265,9 @@ fn check_vertices(found: &mut Findings, faces: &[FaceKey]) {
     }
     for vertex in 0..mesh.vertices.len() {
         if group[vertex] == u32::MAX {
-            found.add(FlawKind::HangingVertex, Some(vertex), &[vertex as u32]);
+            found.add(FlawKind::UnusedVertex, Some(vertex), &[vertex as u32]);
         } else if pinched[vertex] {
-            found.add(FlawKind::PinchedVertex, Some(vertex), &[vertex as u32]);
+            found.add(FlawKind::NonManifoldVertex, Some(vertex), &[vertex as u32]);
         }
     }
 }
@@ -329,7 +329,7 @@ mod tests {
         let mut mesh = cube(2);
         mesh.tets.push(mesh.tets.nodes[3], 1);
         let kinds = kinds(&mesh);
-        assert!(kinds.contains(&FlawKind::DuplicateTet) && kinds.contains(&FlawKind::CrowdedFace), "{kinds:?}");
+        assert!(kinds.contains(&FlawKind::DuplicateTet) && kinds.contains(&FlawKind::NonManifoldFace), "{kinds:?}");
     }
 
     #[test]
@@ -338,13 +338,10 @@ mod tests {
         mesh.vertices.push([0.3; 3]);
         mesh.triangles.push([0, 13, 26], 1);
         mesh.edges.push([0, 25], 1);
-        let expected = [FlawKind::LooseTriangle, FlawKind::LooseEdge, FlawKind::HangingVertex];
+        let expected = [FlawKind::LooseTriangle, FlawKind::LooseEdge, FlawKind::UnusedVertex];
         assert_eq!(kinds(&mesh), expected);
         let text = check(&mesh).flaws[2].to_string();
-        assert_eq!(
-            text,
-            "1 hanging vertices (of no tetrahedron): no. 28, nodes [28] at (0.300000, 0.300000, 0.300000)"
-        );
+        assert_eq!(text, "1 unused vertices (of no tetrahedron): no. 28, nodes [28] at (0.300000, 0.300000, 0.300000)");
     }
 
     /// Two tetrahedra that share the nodes given.
@@ -363,12 +360,12 @@ mod tests {
 
     #[test]
     fn tets_that_touch_in_a_point_or_an_edge() {
-        assert_eq!(kinds(&two_tets([6, 0, 4, 5])), [FlawKind::PinchedVertex]);
+        assert_eq!(kinds(&two_tets([6, 0, 4, 5])), [FlawKind::NonManifoldVertex]);
         let mut mesh = two_tets([0, 1, 4, 5]);
         mesh.vertices[6] = [0.0, 0.0, -2.0];
         let found = check(&mesh);
         assert_eq!(found.count(FlawKind::NonManifoldEdge), 1);
-        assert_eq!(found.count(FlawKind::PinchedVertex), 2);
+        assert_eq!(found.count(FlawKind::NonManifoldVertex), 2);
         // Bodies may touch along a tagged edge.
         mesh.edges.push([1, 0], 1);
         assert_eq!(check(&mesh).count(FlawKind::NonManifoldEdge), 0);

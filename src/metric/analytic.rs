@@ -41,6 +41,12 @@ impl Analytic {
         self.spectral(p, |h| -2.0 * h.ln())
     }
 
+    /// Whether the sizes at p are within a ratio that doubles hold for certain, as they are but far away.
+    #[inline]
+    pub fn is_moderate(p: Vec3) -> bool {
+        p.iter().all(|x| x.abs() < 1e3)
+    }
+
     /// Σ f(h_i) e_i e_iᵀ.
     #[inline]
     fn spectral(self, p: Vec3, f: impl Fn(f64) -> f64) -> Sym3 {
@@ -104,6 +110,18 @@ mod tests {
         for i in 0..3 {
             assert!((found[i] - expected[i]).abs() < 1e-9 * expected[i], "{found:?} {expected:?}");
         }
+    }
+
+    #[test]
+    fn sizes_are_moderate_where_it_is_said() {
+        for field in Analytic::ALL {
+            for p in [[999.0; 3], [0.0; 3], [-999.0, 0.0, 999.0], [0.5, 0.0, -999.0]] {
+                assert!(Analytic::is_moderate(p));
+                let [greatest, _, least] = field.log_at(p).sizes_of_log();
+                assert!(greatest / least < super::super::held::GREATEST_RATIO);
+            }
+        }
+        assert!(!Analytic::is_moderate([0.0, 1e3, 0.0]) && !Analytic::is_moderate([f64::NAN; 3]));
     }
 
     #[test]

@@ -83,12 +83,12 @@ pub fn of_borders(team: Team<'_>, mesh: &TetMesh, points: &[Vec3], wish: &Wish) 
         });
         least
     });
-    let pace = wish.gradation.map_or(1.0, f64::ln);
+    let growth = wish.gradation.map_or(1.0, f64::ln);
     let farthest = away.iter().copied().fold(0.0, f64::max);
     let first = if farthest > 0.0 { 0.1 * farthest } else { 1.0 };
     wish.meet(team, mesh, |scale| {
         let least = first * (-0.5 * scale).exp();
-        team.map(GRAIN, away.len(), |v| Sym3::ZERO.plus_identity(-2.0 * (least + pace * away[v]).ln()))
+        team.map(GRAIN, away.len(), |v| Sym3::ZERO.plus_identity(-2.0 * (least + growth * away[v]).ln()))
     })
 }
 

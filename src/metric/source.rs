@@ -27,7 +27,10 @@ impl Source {
     #[inline]
     pub fn log_at(&self, p: Vec3, hint: &mut u32) -> Sym3 {
         match self {
-            Self::Analytic { field, log_scale } => field.log_at(p).plus_identity(*log_scale).held_log(),
+            Self::Analytic { field, log_scale } => {
+                let log = field.log_at(p).plus_identity(*log_scale);
+                if Analytic::is_moderate(p) { log } else { log.held_log() }
+            }
             Self::Background(background) => background.log_at(p, hint),
         }
     }

@@ -50,7 +50,7 @@ impl Distribution {
     /// Of values, with the bounds of the classes (ascending). A value equal to a bound belongs to the class above, but
     /// with `closed_above` to the class below.
     pub fn of(values: &[f64], bounds: &[f64], closed_above: bool) -> Self {
-        let mut gathering = Gathering::new(bounds, closed_above);
+        let mut gathering = Accumulator::new(bounds, closed_above);
         values.iter().for_each(|&value| gathering.add(value));
         gathering.distribution()
     }
@@ -58,14 +58,14 @@ impl Distribution {
 
 /// A [`Distribution`] of values that come one by one.
 #[derive(Clone)]
-struct Gathering<'b> {
+struct Accumulator<'b> {
     bounds: &'b [f64],
     closed_above: bool,
     sum: f64,
     found: Distribution,
 }
 
-impl<'b> Gathering<'b> {
+impl<'b> Accumulator<'b> {
     /// Of no value yet.
     fn new(bounds: &'b [f64], closed_above: bool) -> Self {
         let finite = |x: f64| x.is_finite().then_some(x);
@@ -186,13 +186,13 @@ impl Statistics {
         log: impl Fn(u32) -> Sym3 + Sync,
     ) -> Self {
         let edges = Edges::of(team, &mesh.tets.nodes);
-        let lengths = gathered(team, edges.nodes(), Gathering::new(length_classes, false), |range, lengths| {
+        let lengths = gathered(team, edges.nodes(), Accumulator::new(length_classes, false), |range, lengths| {
             edges.for_each(range, |edge| lengths.add(length(edge)));
         });
         drop(edges);
         let points = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
         let tets = &mesh.tets.nodes;
-        let ratios = gathered(team, tets.len(), Gathering::new(&RATIO_CLASSES, true), |range, ratios| {
+        let ratios = gathered(team, tets.len(), Accumulator::new(&RATIO_CLASSES, true), |range, ratios| {
             mean_ratios(tets[range].iter(), |tet| (points(tet), tet.map(&log)), |_, ratio| ratios.add(ratio));
         });
         let volume = |tet: &[u32; 4]| {
@@ -219,15 +219,15 @@ impl Statistics {
 fn gathered<'b>(
     team: Team<'_>,
     items: usize,
-    nothing: Gathering<'b>,
-    add: impl Fn(Range<usize>, &mut Gathering<'b>) + Sync,
-) -> Gathering<'b> {
+    nothing: Accumulator<'b>,
+    add: impl Fn(Range<usize>, &mut Accumulator<'b>) + Sync,
+) -> Accumulator<'b> {
     let parts = team.chunks(GRAIN, items, |range| {
         let mut part = nothing.clone();
         add(range, &mut part);
         part
     });
-    parts.into_iter().fold(nothing, Gathering::and)
+    parts.into_iter().fold(nothing, Accumulator::and)
 }
 
 /// How many elements have each reference.

@@ -120,7 +120,7 @@ impl Runner<'_> {
                 // While the child was not waited for, its number is its group's: what is left there ends too.
                 self.kill(child, group);
                 let outcome = Outcome::of(child.wait()?);
-                let is_late = used.zip(system_limit()).is_some_and(|(used, limit)| used + LOOK >= limit);
+                let is_late = used.zip(system_limit()).is_some_and(|(used, limit)| is_late(used, limit));
                 // The system kills what goes on beyond its last limit of time.
                 return Ok(if outcome == Outcome::Killed && is_late { Outcome::OutOfTime } else { outcome });
             }
@@ -194,6 +194,12 @@ fn system_limit() -> Option<Duration> {
     None
 }
 
+/// Whether a program that was killed after this processor time may have met the system's limit. The limit is held against whole ticks of
+/// the clock, of which a busy machine counts more than were used.
+fn is_late(used: Duration, limit: Duration) -> bool {
+    used + LOOK.max(limit / 4) >= limit
+}
+
 /// Whether a program has used up its time. The time that it waits for a busy machine counts by a quarter, so that the result hardly depends
 /// on what else runs.
 fn is_over(id: u32, elapsed: Duration, limit: Duration) -> bool {
@@ -207,6 +213,16 @@ mod tests {
     use std::path::Path;
 
     static NEVER: AtomicBool = AtomicBool::new(false);
+
+    #[test]
+    fn the_systems_limit_is_told_from_the_end_of_memory() {
+        let seconds = Duration::from_secs_f64;
+        for (used, limit, expected) in
+            [(0.8, 1.0, true), (0.5, 1.0, false), (3500.0, 3600.0, true), (600.0, 3600.0, false)]
+        {
+            assert_eq!(is_late(seconds(used), seconds(limit)), expected, "{used} {limit}");
+        }
+    }
 
     fn shell(script: &str, limit: f64, log: Option<&Log>) -> Outcome {
         let runner = Runner { tie: Tie::Bound, limit: Some(Duration::from_secs_f64(limit)), stop: &NEVER, log };

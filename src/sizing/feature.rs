@@ -9,7 +9,7 @@ use super::bound::{Bound, across, away, may_face};
 use super::curvature::{Local, cut};
 use super::others::{Found, Other};
 use super::pieces::pieces;
-use super::sight::Sight;
+use super::sight::Obstacles;
 use super::touch::Touch;
 use super::tree::{Box3, Tree, meet};
 use crate::geometry::classify::Classification;
@@ -58,7 +58,7 @@ pub struct Place {
 
 /// Scratch of one thread.
 #[derive(Default)]
-pub struct Pad {
+pub struct Scratch {
     /// Pieces of other entities that may limit the metric, those of an entity one after the other.
     pieces: Vec<(Entity, u32)>,
     others: BinaryHeap<Other>,
@@ -71,7 +71,7 @@ pub struct Near<'a> {
     place: &'a Classification,
     touch: Touch<'a>,
     bodies: Bodies<'a>,
-    sight: Sight<'a>,
+    sight: Obstacles<'a>,
     pieces: Tree,
     boxes: Vec<Box3>,
     owners: Vec<Entity>,
@@ -101,7 +101,7 @@ impl<'a> Near<'a> {
             place,
             touch: Touch::new(topology),
             bodies: Bodies::new(topology, mesh, place),
-            sight: Sight::new(team, mesh),
+            sight: Obstacles::new(team, mesh),
             pieces: Tree::new(team, &boxes),
             boxes,
             owners,
@@ -123,7 +123,7 @@ impl<'a> Near<'a> {
         at: &Place,
         local: &Local,
         mut metric: Sym3,
-        Pad { pieces, others }: &mut Pad,
+        Scratch { pieces, others }: &mut Scratch,
     ) -> (Sym3, Option<Gap>) {
         let reach = self.cells / metric.eigen().values[0].sqrt();
         let mut list = std::mem::take(others).into_vec();

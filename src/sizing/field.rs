@@ -2,7 +2,7 @@
 use super::coarse::add_between;
 use super::curvature::{Curvature, Local};
 use super::estimate::Estimate;
-use super::feature::{Gap, Near, Pad, Place};
+use super::feature::{Gap, Near, Place, Scratch};
 use super::options::GRADATION;
 use super::{Options, Summary};
 use crate::geometry::classify::Classification;
@@ -18,7 +18,7 @@ const VERTICES: usize = 1 << 9;
 #[derive(Default)]
 pub(super) struct Asked {
     local: Local,
-    pad: Pad,
+    scratch: Scratch,
 }
 
 /// All that the metric at a place depends on.
@@ -145,7 +145,7 @@ impl Sizing<'_> {
     fn limited(&self, evaluator: &mut Evaluator, place: &Place, asked: &mut Asked) -> (Sym3, Option<Gap>) {
         let metric = self.curvature.metric_of(&asked.local);
         match &self.near {
-            Some(near) => near.limit(evaluator, place, &asked.local, metric, &mut asked.pad),
+            Some(near) => near.limit(evaluator, place, &asked.local, metric, &mut asked.scratch),
             None => (metric, None),
         }
     }

@@ -10,12 +10,12 @@ const ENDS: f64 = 0.02;
 const PARALLEL: f64 = 1e-6;
 
 /// The triangles of a mesh as obstacles.
-pub struct Sight<'a> {
+pub struct Obstacles<'a> {
     mesh: &'a TetMesh,
     tree: Tree,
 }
 
-impl<'a> Sight<'a> {
+impl<'a> Obstacles<'a> {
     /// On a mesh.
     pub fn new(team: Team<'_>, mesh: &'a TetMesh) -> Self {
         let points = |t: usize| mesh.triangles.nodes[t].map(|v| mesh.vertices[v as usize]);
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn a_wall_stands_between() {
         let mesh = cube(2);
-        let sight = Sight::new(Team::alone(), &mesh);
+        let sight = Obstacles::new(Team::alone(), &mesh);
         let never = |_: u32| false;
         assert!(sight.is_clear([0.3, 0.2, 0.4], [0.6, 0.7, 0.8], never), "inside");
         assert!(!sight.is_clear([0.3, 0.2, 0.4], [0.3, 0.2, 1.5], never), "through the top");

@@ -19,7 +19,7 @@ pub fn keep(team: Team<'_>, level: &Level, surface: &Surface, map: &mut VertexMa
     });
     let mapped: Vec<[u32; 3]> = left.iter().map(|&t| known.map(&level.triangles[t])).collect();
     // It is not known which side of a triangle is outward, so none may even touch.
-    let test: Test<u32> = |a, b| meeting(a.1, b.1);
+    let test: Test = |a, b| meeting(a.1, b.1);
     let found = crossings_of(team, &mapped, |v| level.points[v as usize], |i| bends[left[i]], test, usize::MAX);
     let mut kept = false;
     for i in found.first.iter().flat_map(|crossing| crossing.triangles) {

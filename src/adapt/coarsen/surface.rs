@@ -7,7 +7,7 @@ use crate::mesh::vector::{Vec3, add, area2, dot, scale, unit};
 const LEAST_COSINE: f64 = 0.94;
 
 /// A triangle that turns by less than this cosine stays in its plane.
-const STILL: f64 = 1.0 - 1e-12;
+const SAME_PLANE: f64 = 1.0 - 1e-12;
 
 /// The triangles at the vertices of the boundary.
 pub struct Surface {
@@ -72,7 +72,9 @@ impl Surface {
     pub fn bends(&self, level: &Level, t: u32, map: &VertexMap) -> bool {
         let nodes = &level.triangles[t as usize];
         let mapped = map.map(nodes);
-        mapped != *nodes && is_proper(&mapped) && dot(unit(normal(level, &mapped)), unit(normal(level, nodes))) < STILL
+        mapped != *nodes
+            && is_proper(&mapped)
+            && dot(unit(normal(level, &mapped)), unit(normal(level, nodes))) < SAME_PLANE
     }
 
     /// Whether a triangle is no problem: it vanishes, stays as it is, or still lies along the surface.

@@ -32,7 +32,7 @@ impl VertexMap {
         let those = |wanted: fn(u32) -> bool| (0..count as u32).filter(move |&v| wanted(level.faces[v as usize]));
         for v in those(|face| face == FIXED).chain(those(|face| face < FIXED)) {
             if map.stays(v) {
-                surface.neighbours(level, v, |x| map.attract(level, v, x));
+                surface.neighbours(level, v, |x| map.offer_target(level, v, x));
             }
         }
         for v in those(|face| face != INSIDE).chain(those(|face| face == INSIDE)) {
@@ -57,7 +57,7 @@ impl VertexMap {
         for &t in balls.at(v) {
             for x in level.tets[t as usize] {
                 if x != v && self.images[x as usize].seen != v && level.faces[x as usize] == INSIDE {
-                    self.attract(level, v, x);
+                    self.offer_target(level, v, x);
                 }
             }
         }
@@ -65,7 +65,7 @@ impl VertexMap {
 
     /// Offers v, which stays, as a target to a vertex that is joined to it.
     #[inline]
-    fn attract(&mut self, level: &Level, v: u32, x: u32) {
+    fn offer_target(&mut self, level: &Level, v: u32, x: u32) {
         let image = &mut self.images[x as usize];
         image.seen = v;
         let distance = distance(level, v, x);

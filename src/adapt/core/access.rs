@@ -17,7 +17,7 @@ use std::sync::atomic::Ordering::Relaxed;
 /// How vertices are claimed.
 pub trait Access: Send {
     /// Whether a claim that is refused now is refused until the round ends. Then it is best to claim early what will be needed.
-    const IS_LASTING: bool = false;
+    const REFUSES_UNTIL_ROUND_ENDS: bool = false;
 
     /// Whether no other thread works on the mesh.
     const IS_ALONE: bool = false;
@@ -112,7 +112,7 @@ impl Owned {
 }
 
 impl Access for Owned {
-    const IS_LASTING: bool = true;
+    const REFUSES_UNTIL_ROUND_ENDS: bool = true;
 
     #[inline(always)]
     fn claim(&mut self, store: &Store, v: VertexId) -> Result<(), Refusal> {

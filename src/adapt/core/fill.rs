@@ -181,7 +181,7 @@ impl Filling<'_> {
                 for (i, &n) in faces.neighbours[t].iter().enumerate().filter(|(_, n)| **n != NONE) {
                     self.store.set_neighbour(id, i, self.order.tet_ids[n as usize]);
                 }
-                vertices.iter().for_each(|&v| self.store.lower_tet_of(v, id));
+                vertices.iter().for_each(|&v| self.store.offer_tet(v, id));
             }
         });
     }
@@ -274,19 +274,19 @@ impl Filling<'_> {
         let walls = self.team.collect(GRAIN, self.mesh.tets.len(), |range, walls| {
             for t in range {
                 let open = (0..4).filter(|&i| faces.neighbours[t][i] == NONE);
-                walls.extend(open.map(|i| FACES[i].map(|k| self.id(self.mesh.tets.nodes[t][k]))));
+                walls.extend(open.map(|i| FACES[i].map(|k| self.id(self.mesh.tets.nodes[t][k]).0)));
             }
         });
-        let at = |v| self.store.position(v);
+        let at = |v| self.store.position(VertexId(v));
         // What moves by less than a triangle draws back cannot bring it through another: most meshes are on their model to rounding.
         let is_asked = |i: usize| {
             let [a, b, c] = walls[i].map(at);
             let size = distance(a, b).max(distance(a, c));
-            walls[i].into_iter().any(|v| distance(at(v), before(v)) > DRAWN_BACK * size)
+            walls[i].into_iter().any(|v| distance(at(v), before(VertexId(v))) > DRAWN_BACK * size)
         };
         let crossings = crossings_of(self.team, &walls, at, is_asked, crossing, usize::MAX);
         let many = unprojected.len();
-        for v in crossings.first.iter().flat_map(|crossing| crossing.triangles).flat_map(|i| walls[i]) {
+        for v in crossings.first.iter().flat_map(|crossing| crossing.triangles).flat_map(|i| walls[i].map(VertexId)) {
             if is_moved(v) {
                 self.store.set_position(v, before(v));
                 unprojected.push(v);

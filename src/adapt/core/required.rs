@@ -52,7 +52,7 @@ impl Required {
             nodes.iter().for_each(|&v| required.frozen[v as usize] = true);
         }
         if required.frozen.contains(&true) {
-            required.forget_hanging(&mesh.tets.nodes);
+            required.forget_unused(&mesh.tets.nodes);
         }
         if !required.frozen.contains(&true) {
             required.frozen.clear();
@@ -61,7 +61,7 @@ impl Required {
     }
 
     /// Forgets vertices that no tetrahedron has, and their edges.
-    fn forget_hanging(&mut self, tets: &[[u32; 4]]) {
+    fn forget_unused(&mut self, tets: &[[u32; 4]]) {
         let mut hangs = self.frozen.clone();
         tets.iter().flatten().for_each(|&v| hangs[v as usize] = false);
         self.frozen.iter_mut().zip(&hangs).for_each(|(frozen, hangs)| *frozen &= !hangs);

@@ -75,7 +75,7 @@ struct Seen {
 
 /// A face that a tetrahedron may stand on.
 #[derive(Clone, Copy)]
-struct Wanted {
+struct CavityFace {
     t: TetId,
     behind: TetId,
     tag: u32,
@@ -97,7 +97,7 @@ pub struct Star {
     linked: StampedSet,
     seen: Vec<Seen>,
     open: Vec<(TetId, usize)>,
-    wanted: Vec<Wanted>,
+    wanted: Vec<CavityFace>,
     /// Vertices that the apex will be joined to.
     pub link: Vec<VertexId>,
     /// Surface triangles that go (outward), with their tags.
@@ -145,17 +145,17 @@ impl<A: Access> Worker<'_, '_, A> {
         loop {
             while star.wanted.len() < LANES {
                 let Some((t, i)) = star.open.pop() else { break };
-                self.look_at_face(star, seed, apex.id, (t, i))?;
+                self.classify_face(star, seed, apex.id, (t, i))?;
             }
             if star.wanted.is_empty() {
                 return Ok(());
             }
-            self.judge_faces(star, &apex, bounds)?;
+            self.measure_faces(star, &apex, bounds)?;
         }
     }
 
     /// Decides what a face of the cavity is: a surface triangle that goes, a face inside, or the base of a new tetrahedron.
-    fn look_at_face(
+    fn classify_face(
         &mut self,
         star: &mut Star,
         seed: Seed,
@@ -179,13 +179,13 @@ impl<A: Access> Worker<'_, '_, A> {
         if face.contains(&apex) {
             star.seen.push(Seen { behind, tag, tet: NewTet { vertices, region: u32::MAX, quality: 1.0 } });
         } else {
-            star.wanted.push(Wanted { t, behind, tag, vertices });
+            star.wanted.push(CavityFace { t, behind, tag, vertices });
         }
         Ok(())
     }
 
     /// Measures the tetrahedra on several faces. A face is good enough, or the cavity grows over it.
-    fn judge_faces(&mut self, star: &mut Star, apex: &Apex, bounds: Bounds) -> Result<(), Refusal> {
+    fn measure_faces(&mut self, star: &mut Star, apex: &Apex, bounds: Bounds) -> Result<(), Refusal> {
         let count = star.wanted.len();
         let (store, batch) = (self.store, &mut self.state.batch);
         for lane in 0..LANES {
@@ -198,7 +198,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let qualities = batch.shapes(apex.point, &apex.log).mean_ratios();
         for lane in (0..count).rev() {
             let quality = qualities[lane];
-            let Some(Wanted { t, behind, tag, vertices }) = star.wanted.pop() else { break };
+            let Some(CavityFace { t, behind, tag, vertices }) = star.wanted.pop() else { break };
             if behind.is_some() && star.inside.contains(behind.0) {
                 // The cavity has grown over the face meanwhile.
                 if tag != 0 {

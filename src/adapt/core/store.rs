@@ -361,7 +361,7 @@ impl Store {
 
     /// Offers the vertex one of its tetrahedra. It keeps the one with the least id of all that are offered.
     #[inline]
-    pub(super) fn lower_tet_of(&self, v: VertexId, t: TetId) {
+    pub(super) fn offer_tet(&self, v: VertexId, t: TetId) {
         let first = &self.vertices[v.index()].tet;
         if t.0 < first.load(Relaxed) {
             first.fetch_min(t.0, Relaxed);

@@ -32,7 +32,7 @@ pub struct State<'m> {
     /// The ball of a vertex.
     pub ball: Ball,
     /// A ball for use within one function.
-    pub passing_ball: Ball,
+    pub unclaimed_ball: Ball,
     /// The ring about an edge.
     pub shell: super::shell::Shell,
     /// Boundary vertices that are not yet on the model.
@@ -55,7 +55,7 @@ impl<'m> State<'m> {
             set: StampedSet::default(),
             near: StampedSet::default(),
             ball: Ball::default(),
-            passing_ball: Ball::default(),
+            unclaimed_ball: Ball::default(),
             shell: super::shell::Shell::default(),
             unprojected: Vec::new(),
             surface_change: super::voids::SurfaceChange::default(),
@@ -99,7 +99,7 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
     }
 
     /// Claims a tetrahedron that may be changing: its vertices are read, claimed, and read again.
-    pub fn claim_moving_tet(&mut self, t: TetId) -> Result<[VertexId; 4], Refusal> {
+    pub fn claim_current_tet(&mut self, t: TetId) -> Result<[VertexId; 4], Refusal> {
         let vertices = self.store.peek(t);
         for v in vertices {
             if !v.is_some() || v.index() >= self.store.vertex_bound() {
@@ -137,10 +137,10 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
 
     /// Looks at the ball of a claimed vertex, of which no other is claimed.
     pub fn with_passing_ball<T>(&mut self, v: VertexId, look: impl FnOnce(&Ball) -> T) -> T {
-        let mut ball = std::mem::take(&mut self.state.passing_ball);
+        let mut ball = std::mem::take(&mut self.state.unclaimed_ball);
         self.collect_ball(v, &mut ball);
         let seen = look(&ball);
-        self.state.passing_ball = ball;
+        self.state.unclaimed_ball = ball;
         seen
     }
 }

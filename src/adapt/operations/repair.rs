@@ -42,14 +42,14 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Repairs one bad tetrahedron: a larger cavity becomes a star about one of its vertices, or a vertex goes onto any neighbour, if
     /// the worst tetrahedron becomes clearly better by it.
     pub fn repair(&mut self, scratch: &mut CollapseScratch, t: TetId) -> Result<(), Refusal> {
-        let vertices = self.claim_moving_tet(t)?;
+        let vertices = self.claim_current_tet(t)?;
         let quality = self.store.quality(t);
         if quality >= self.context.limits.improve_below {
             return Err(Refusal::Stale);
         }
         let floor = (GAIN * quality).max(1e-9);
         for v in vertices {
-            match self.restar(v, floor) {
+            match self.retetrahedralize_ball(v, floor) {
                 Err(Refusal::Conflict) => return Err(Refusal::Conflict),
                 Err(_) => {}
                 Ok(()) => return Ok(()),
@@ -62,12 +62,12 @@ impl<A: Access> Worker<'_, '_, A> {
                 Ok(()) => return Ok(()),
             }
         }
-        if quality < SPLIT_BELOW { self.split_opposite(t, vertices) } else { Err(Refusal::Shape) }
+        if quality < SPLIT_BELOW { self.split_longest_edge(t, vertices) } else { Err(Refusal::Shape) }
     }
 
     /// Splits the longest edge of a tetrahedron that can be split at the point closest to another of its vertices. The limits of this pass
     /// ask of an insertion that the worst tetrahedron becomes better, and nothing about lengths.
-    fn split_opposite(&mut self, t: TetId, vertices: [VertexId; 4]) -> Result<(), Refusal> {
+    fn split_longest_edge(&mut self, t: TetId, vertices: [VertexId; 4]) -> Result<(), Refusal> {
         let mut edges = EDGE.map(|[i, j]| (self.length(vertices[i], vertices[j]), i, j));
         edges.sort_by(|x, y| y.0.total_cmp(&x.0));
         for (_, i, j) in edges {
@@ -94,7 +94,7 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// Makes the ball of a vertex a star over a cavity that grows where tetrahedra would be bad.
-    fn restar(&mut self, v: VertexId, floor: f64) -> Result<(), Refusal> {
+    fn retetrahedralize_ball(&mut self, v: VertexId, floor: f64) -> Result<(), Refusal> {
         let mut ball = std::mem::take(&mut self.state.ball);
         let bounds = Bounds { wanted: self.context.limits.improve_below, floor };
         let gathered = self.gather_ball(v, &mut ball);

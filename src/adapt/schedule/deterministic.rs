@@ -70,7 +70,7 @@ pub fn run<'m, O: Operation>(
             let rest: Vec<_> = left.iter().map(|&i| items[i as usize]).collect();
             counts.add(&sequential::run(operation, &rest, context, &mut threads[0], advance));
             if shared {
-                give_back(&context.store, (pool, plan));
+                clear_owners(&context.store, (pool, plan));
             }
             return counts;
         }
@@ -83,7 +83,7 @@ pub fn run<'m, O: Operation>(
 }
 
 /// Clears the owners of all vertices.
-fn give_back(store: &Store, (pool, plan): (&Pool, Plan)) {
+fn clear_owners(store: &Store, (pool, plan): (&Pool, Plan)) {
     pool.task_for(Plan { grain: GRAIN, ..plan }, store.vertex_bound(), |_, range| {
         range.for_each(|i| store.owner(VertexId(i as u32)).store(0, Relaxed));
     });
@@ -124,7 +124,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     /// Does what can be done; returns what is left.
     fn run(&mut self, threads: &mut [ThreadContext<'_, 'm, O>], counts: &mut Counts, advance: Advance<'_>) -> Vec<u32> {
         let store = &self.context.store;
-        self.give_out(&Parts::of(store, self.left.iter().map(|&i| self.item(i)), self.parts));
+        self.assign_owners(&Parts::of(store, self.left.iter().map(|&i| self.item(i)), self.parts));
         let parts_of = self.parts_of_items();
         let (sorted, starts, mut again) = self.sorted(&parts_of, counts);
         let id_pools = threads[0].state.id_pool.split(store, self.parts);
@@ -153,7 +153,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     }
 
     /// Writes the owners of the vertices. Dead ids have none: any part may get them.
-    fn give_out(&self, parts: &Parts) {
+    fn assign_owners(&self, parts: &Parts) {
         let store = &self.context.store;
         self.pool.task_for(Plan { grain: GRAIN, ..self.plan }, store.vertex_bound(), |_, range| {
             for start in range.clone().step_by(AT_ONCE) {

@@ -29,7 +29,7 @@ pub struct WorstDeviation {
 }
 
 /// A triangle whose normal has a greater cosine than this with that of another lies as the other does.
-const STILL: f64 = 0.97;
+const SAME_PLANE: f64 = 0.97;
 
 /// A distance; one that is no number is beyond any bound.
 fn or_far(distance: f64) -> f64 {
@@ -130,14 +130,14 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// Whether each new surface triangle of the star has nearly the normal of an old one on the same face.
-    pub fn turns_little(&self) -> bool {
+    pub fn keeps_normals(&self) -> bool {
         let normal = |triangle: [VertexId; 3]| {
             let [a, b, c] = triangle.map(|v| self.store.position(v));
             unit(area2(a, b, c))
         };
         self.state.replacement.faces.iter().all(|&(new, tag)| {
             let old = self.state.star.surface.iter().filter(|(_, of)| *of == tag);
-            old.map(|&(triangle, _)| dot(normal(triangle), normal(new))).any(|cosine| cosine > STILL)
+            old.map(|&(triangle, _)| dot(normal(triangle), normal(new))).any(|cosine| cosine > SAME_PLANE)
         })
     }
 

@@ -71,6 +71,8 @@ pub struct Given {
     pub logs: Option<Vec<Sym3>>,
     /// What its references are called, by the file beside it.
     pub names: Names,
+    /// Whether it is the result of a cycle: manifold, and with a report that tells where its boundary crosses itself.
+    pub is_result: bool,
 }
 
 /// All that the adapter needs.
@@ -115,11 +117,11 @@ impl InputArguments {
         notices.extend(read.notices);
         let mesh = read.content;
         let names = names::read(&self.mesh)?;
-        let Some(path) = &self.field.metric else { return Ok(Given { mesh, logs: None, names }) };
+        let Some(path) = &self.field.metric else { return Ok(Given { mesh, logs: None, names, is_result: false }) };
         let read = Field::read_logs(team, path, mesh.vertices.len())?;
         notices.extend(read.notices);
         stage("metric read");
-        Ok(Given { mesh, logs: Some(read.content), names })
+        Ok(Given { mesh, logs: Some(read.content), names, is_result: false })
     }
 
     /// Completes the boundary, puts the mesh on its model, and brings the metric to its complexity.
@@ -131,25 +133,17 @@ impl InputArguments {
         cad: Option<Model>,
         notices: &mut Vec<String>,
     ) -> Result<Input, Error> {
-        let Given { mut mesh, mut logs, mut names } = given;
+        let Given { mut mesh, mut logs, mut names, is_result } = given;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let added = complete_matched(team, &mut mesh, &faces);
         stage("boundary complete");
         if added > 0 {
             notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
         }
-        let crossings = crossing::of_boundary(team, &mesh, &faces, 1);
-        if let [first] = &crossings.first[..] {
-            notices.push(format!(
-                "the boundary of {} crosses itself: {} pairs of triangles, the first at {}; `geo-adapt inspect` names them, and adapting \
-                 need not mend them",
-                self.mesh.display(),
-                crossings.count,
-                place(first.at)
-            ));
+        if !is_result {
+            self.tell_crossings(team, &mesh, &faces, notices);
         }
-        stage("boundary held against itself");
-        let copies = self.take_apart(team, &mut mesh, &faces, notices)?;
+        let copies = if is_result { Vec::new() } else { self.take_apart(team, &mut mesh, &faces, notices)? };
         logs.iter_mut().for_each(|logs| copy_values(logs, &copies));
         let mesh = Arc::new(mesh);
         let (model, place) = self.place(team, &mesh, cad, notices).map_err(|error| match copies.is_empty() {
@@ -172,6 +166,21 @@ impl InputArguments {
         self.scale(team, &mesh, &mut source, made.is_some())?;
         stage("complexity");
         Ok(Input { mesh, place, model, source, made, names })
+    }
+
+    /// Tells where the boundary of the mesh passes through itself.
+    fn tell_crossings(&self, team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, notices: &mut Vec<String>) {
+        let crossings = crossing::of_boundary(team, mesh, faces, 1);
+        if let [first] = &crossings.first[..] {
+            notices.push(format!(
+                "the boundary of {} crosses itself: {} pairs of triangles, the first at {}; `geo-adapt inspect` names them, and adapting \
+                 need not mend them",
+                self.mesh.display(),
+                crossings.count,
+                place(first.at)
+            ));
+        }
+        stage("boundary held against itself");
     }
 
     /// Takes the mesh apart where it hangs together in edges or vertices alone: the new vertices' origins.

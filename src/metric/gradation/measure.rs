@@ -24,24 +24,25 @@ pub fn measure(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Growths {
     let edges = Edges::of(team, &mesh.tets.nodes);
     let edges: Vec<[u32; 2]> =
         team.collect(GRAIN, edges.nodes(), |range, found| edges.for_each(range, |edge| found.push(edge)));
-    let is_graded = |[p, q]: [u32; 2], pace: f64| {
+    let is_graded = |[p, q]: [u32; 2], growth: f64| {
         let e = sub(mesh.vertices[q as usize], mesh.vertices[p as usize]);
         let [of_p, of_q] = [p, q].map(|v| &frames[v as usize]);
-        let within = |from: &Frame, to: &Frame| to.relative(from, from.grown(e, pace)).is_below(1.0 + TOLERANCE);
+        let within = |from: &Frame, to: &Frame| to.relative(from, from.grown(e, growth)).is_below(1.0 + TOLERANCE);
         within(of_p, of_q) && within(of_q, of_p)
     };
     let step = edges.len().div_ceil(SAMPLES).max(1);
-    let sample = team
-        .map(GRAIN / 16, edges.len().div_ceil(step), |i| needed(0.0, |pace| is_graded(edges[i * step], pace)).exp());
+    let sample = team.map(GRAIN / 16, edges.len().div_ceil(step), |i| {
+        needed(0.0, |growth| is_graded(edges[i * step], growth)).exp()
+    });
     let greatest = team.chunks(GRAIN, edges.len(), |range| {
-        edges[range].iter().fold(0.0, |least, &edge| needed(least, |pace| is_graded(edge, pace)))
+        edges[range].iter().fold(0.0, |least, &edge| needed(least, |growth| is_graded(edge, growth)))
     });
     let mut growths = Percentiles::of(sample);
-    growths.greatest = greatest.into_iter().fold(growths.greatest, |a, pace| a.max(pace.exp()));
+    growths.greatest = greatest.into_iter().fold(growths.greatest, |a, growth| a.max(growth.exp()));
     growths
 }
 
-/// The least pace, not below `least`, at which an edge is graded, to 1e-4 of it.
+/// The least growth ln r, not below `least`, at which an edge is graded, to 1e-4 of it.
 fn needed(least: f64, is_graded: impl Fn(f64) -> bool) -> f64 {
     if is_graded(least) {
         return least;

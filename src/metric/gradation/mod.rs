@@ -1,12 +1,12 @@
-//! Gradation: sizes grow from vertex to vertex at a bounded pace. Mixed-space homogeneous (Alauzet 2010, §6.2.1; METHOD.md §1.7).
+//! Gradation: sizes grow from vertex to vertex at a bounded rate. Mixed-space homogeneous (Alauzet 2010, §6.2.1; METHOD.md §1.7).
 //!
 //! For an edge pq with vector e the metric of p grows to q: G has the eigenvectors of M_p and the eigenvalues
 //! λ_i · [(1 + √λ_i |e| ln r)^t (1 + L_p(e) ln r)^(1−t)]^(−2), t = 1/8; M_q ← M_q ∩ G, both ways, until nothing changes.
 //!
-//! A front does it. Only vertices that have changed (that have *news*) tell their neighbours, those with the least changed size first, since
-//! sizes only grow on their way (as Δ-stepping does for shortest paths: Meyer & Sanders 2003). A round takes all vertices whose news are
-//! within a class of sizes. Each neighbour intersects its metric with the grown ones of the vertices that tell it, in the order of their
-//! numbers, from the values of the round before. So the result is the same bit for bit on any number of threads.
+//! Only vertices that have changed are sources of a round, those with the least changed size first, since sizes only grow on their way (as
+//! Δ-stepping does for shortest paths: Meyer & Sanders 2003). A round takes all changed vertices whose least changed sizes are within a
+//! class. Each neighbour of a source intersects its metric with those grown from its sources, in the order of their numbers, from the
+//! values of the round before. So the result is the same bit for bit on any number of threads.
 mod growth;
 mod measure;
 #[cfg(test)]
@@ -26,13 +26,13 @@ use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering::Relaxed};
 /// turning anisotropy takes half as many updates more, for sizes that no mesh can tell apart.
 const TOLERANCE: f64 = 1e-3;
 
-/// News within this factor of the least size that is news are one class.
+/// Changed sizes within this factor of the least one are one class.
 const CLASS: f64 = 1.25;
 
 /// Vertices a task: one takes a microsecond or two.
 const FEW: usize = 1 << 8;
 
-/// Words of 64 vertices a task of the search for vertices that are told. Most words are zero.
+/// Words of 64 vertices a task of the search for targets. Most words are zero.
 const WORDS: usize = 1 << 14;
 
 /// What grading did.
@@ -71,7 +71,7 @@ pub fn grade_with(
     Grading::new(team, vertices, around, logs, ratio.ln()).run()
 }
 
-/// The list in which a vertex waits to tell its neighbours.
+/// The list in which a vertex waits to be a source.
 const NOWHERE: u8 = 0;
 const NEAR: u8 = 1;
 const FAR: u8 = 2;
@@ -83,7 +83,7 @@ struct Update {
     log: Sym3,
     frame: Frame,
     /// The least size that has changed.
-    news: f64,
+    least_changed: f64,
 }
 
 struct Grading<'a> {
@@ -94,15 +94,15 @@ struct Grading<'a> {
     /// The frames of `logs`, always made by [`Frame::of_log`], so that a second grading starts from the same bits.
     frames: Vec<Frame>,
     /// ln r.
-    pace: f64,
+    growth: f64,
     /// [`NOWHERE`], [`NEAR`] or [`FAR`].
     places: Vec<AtomicU8>,
-    /// For each vertex that waits, the least size that is news.
-    news: Vec<f64>,
-    /// Who tells its neighbours in this round.
-    telling: Vec<AtomicBool>,
-    /// Who is told, a bit each.
-    told: Vec<AtomicU64>,
+    /// For each vertex that waits, its least changed size.
+    least_changed: Vec<f64>,
+    /// Whether a vertex is a source of this round.
+    is_source: Vec<AtomicBool>,
+    /// Whether a vertex is a neighbour of a source, a bit each.
+    targets: Vec<AtomicU64>,
     changed: Vec<bool>,
 }
 
@@ -112,7 +112,7 @@ impl<'a> Grading<'a> {
         vertices: &'a [Vec3],
         around: &'a VertexNeighbours,
         logs: &'a mut [Sym3],
-        pace: f64,
+        growth: f64,
     ) -> Self {
         let count = logs.len();
         Self {
@@ -121,11 +121,11 @@ impl<'a> Grading<'a> {
             around,
             frames: team.map(GRAIN, count, |v| Frame::of_log(&logs[v])),
             logs,
-            pace,
+            growth,
             places: team.map_with(GRAIN, count, || (), |(), _| AtomicU8::new(NOWHERE)),
-            news: vec![0.0; count],
-            telling: team.map_with(GRAIN, count, || (), |(), _| AtomicBool::new(false)),
-            told: (0..count.div_ceil(64)).map(|_| AtomicU64::new(0)).collect(),
+            least_changed: vec![0.0; count],
+            is_source: team.map_with(GRAIN, count, || (), |(), _| AtomicBool::new(false)),
+            targets: (0..count.div_ceil(64)).map(|_| AtomicU64::new(0)).collect(),
             changed: vec![false; count],
         }
     }
@@ -134,7 +134,7 @@ impl<'a> Grading<'a> {
         let mut graded = Graded::default();
         let mut waiting = self.violators(|_, _| true);
         loop {
-            let [rounds, updates] = self.settle(&waiting);
+            let [rounds, updates] = self.propagate(&waiting);
             graded.rounds += rounds;
             graded.updates += updates;
             if updates == 0 {
@@ -149,7 +149,7 @@ impl<'a> Grading<'a> {
         graded
     }
 
-    /// The vertices whose metric, grown along an edge, is finer than that at the other end, with the least size that is news there. Only
+    /// The vertices whose metric, grown along an edge, is finer than that at the other end, with the least size that changes there. Only
     /// edges from p to q that are `is_open` are looked at: all others are known to be graded.
     fn violators(&self, is_open: impl Fn(u32, u32) -> bool + Sync) -> Vec<(u32, f64)> {
         self.team.collect(FEW, self.logs.len(), |range, found| {
@@ -172,7 +172,7 @@ impl<'a> Grading<'a> {
             return None;
         }
         let e = sub(self.vertices[q as usize], self.vertices[p as usize]);
-        let grown = of_p.grown(e, self.pace);
+        let grown = of_p.grown(e, self.growth);
         if grown[2] <= of_q.roots[0] {
             return None;
         }
@@ -180,19 +180,19 @@ impl<'a> Grading<'a> {
         (!relative.is_below(1.0 + TOLERANCE)).then_some(relative)
     }
 
-    /// Lets these vertices tell their neighbours, and these theirs, until nothing changes. Returns the numbers of rounds and updates.
-    fn settle(&mut self, waiting: &[(u32, f64)]) -> [usize; 2] {
+    /// Grows the metrics of these vertices to their neighbours, and on from there, until nothing changes. Returns the numbers of rounds and updates.
+    fn propagate(&mut self, waiting: &[(u32, f64)]) -> [usize; 2] {
         let (mut near, mut far) = (Vec::new(), Vec::with_capacity(waiting.len()));
-        for &(v, news) in waiting {
+        for &(v, least_changed) in waiting {
             *self.places[v as usize].get_mut() = FAR;
-            self.news[v as usize] = news;
+            self.least_changed[v as usize] = least_changed;
             far.push(v);
         }
         let mut limit = 0.0;
         let [mut rounds, mut updates] = [0; 2];
         loop {
             if near.is_empty() {
-                let Some(least) = self.least_news(&far) else { return [rounds, updates] };
+                let Some(least) = self.least_waiting(&far) else { return [rounds, updates] };
                 limit = least * CLASS;
                 [near, far] = self.split(&far, limit);
             }
@@ -211,7 +211,7 @@ impl<'a> Grading<'a> {
             let (mut near, mut far) = (Vec::new(), Vec::new());
             for &v in &waiting[range] {
                 let place = &self.places[v as usize];
-                if self.news[v as usize] > limit {
+                if self.least_changed[v as usize] > limit {
                     far.extend((place.load(Relaxed) == FAR).then_some(v));
                 } else {
                     // Of two entries of a vertex only one finds it far.
@@ -234,11 +234,11 @@ impl<'a> Grading<'a> {
         let tasks = if updated.len() < 2 * FEW || self.team.threads() == 1 { 1 } else { 4 * self.team.threads() };
         let own = self.logs.len().div_ceil(tasks).max(1);
         let kept = self.logs.chunks_mut(own).zip(self.frames.chunks_mut(own));
-        let kept = kept.zip(self.news.chunks_mut(own)).zip(self.changed.chunks_mut(own));
+        let kept = kept.zip(self.least_changed.chunks_mut(own)).zip(self.changed.chunks_mut(own));
         let kept = kept.zip(self.places.chunks_mut(own));
         let mut parts: Vec<_> = kept.map(|kept| (kept, [Vec::new(), Vec::new()])).collect();
         self.team.fill(1, &mut parts, |chunk, parts| {
-            for (chunk, ((((logs, frames), news), changed), places), [near, far]) in
+            for (chunk, ((((logs, frames), least_changed), changed), places), [near, far]) in
                 parts.iter_mut().zip(chunk..).map(|((kept, lists), chunk)| (chunk, kept, lists))
             {
                 let place_of = |vertex: usize| updated.partition_point(|update| (update.vertex as usize) < vertex);
@@ -246,8 +246,12 @@ impl<'a> Grading<'a> {
                     let at = update.vertex as usize - chunk * own;
                     (logs[at], frames[at], changed[at]) = (update.log, update.frame, true);
                     let place = places[at].get_mut();
-                    news[at] = if *place == NOWHERE { update.news } else { update.news.min(news[at]) };
-                    let now = if news[at] <= limit { NEAR } else { FAR };
+                    least_changed[at] = if *place == NOWHERE {
+                        update.least_changed
+                    } else {
+                        update.least_changed.min(least_changed[at])
+                    };
+                    let now = if least_changed[at] <= limit { NEAR } else { FAR };
                     if *place != now {
                         *place = now;
                         if now == NEAR { near.push(update.vertex) } else { far.push(update.vertex) }
@@ -259,62 +263,62 @@ impl<'a> Grading<'a> {
         self.joined(lists)
     }
 
-    /// The least size that is news at these vertices.
-    fn least_news(&self, vertices: &[u32]) -> Option<f64> {
-        let news = |&v: &u32| self.news[v as usize];
-        let least = |range: Range<usize>| vertices[range].iter().map(news).fold(f64::INFINITY, f64::min);
+    /// The least changed size of these vertices.
+    fn least_waiting(&self, vertices: &[u32]) -> Option<f64> {
+        let least_changed = |&v: &u32| self.least_changed[v as usize];
+        let least = |range: Range<usize>| vertices[range].iter().map(least_changed).fold(f64::INFINITY, f64::min);
         self.team.chunks(GRAIN, vertices.len(), least).into_iter().reduce(f64::min)
     }
 
-    /// The changed metrics of the neighbours of `tellers`, in the order of the vertices.
-    fn round(&self, tellers: &[u32]) -> Vec<Update> {
-        self.team.for_each(FEW, tellers.len(), |range| {
-            for &p in &tellers[range] {
+    /// The changed metrics of the neighbours of `sources`, in the order of the vertices.
+    fn round(&self, sources: &[u32]) -> Vec<Update> {
+        self.team.for_each(FEW, sources.len(), |range| {
+            for &p in &sources[range] {
                 self.places[p as usize].store(NOWHERE, Relaxed);
-                self.telling[p as usize].store(true, Relaxed);
+                self.is_source[p as usize].store(true, Relaxed);
                 for &q in self.around.of_vertex(p) {
-                    let (word, bit) = (&self.told[q as usize / 64], 1 << (q % 64));
+                    let (word, bit) = (&self.targets[q as usize / 64], 1 << (q % 64));
                     if word.load(Relaxed) & bit == 0 {
                         word.fetch_or(bit, Relaxed);
                     }
                 }
             }
         });
-        let told = self.team.collect(WORDS, self.told.len(), |range, told| {
+        let targets = self.team.collect(WORDS, self.targets.len(), |range, targets| {
             for at in range {
-                let mut word = self.told[at].load(Relaxed);
+                let mut word = self.targets[at].load(Relaxed);
                 if word == 0 {
                     continue;
                 }
-                self.told[at].store(0, Relaxed);
+                self.targets[at].store(0, Relaxed);
                 while word != 0 {
-                    told.push(64 * at as u32 + word.trailing_zeros());
+                    targets.push(64 * at as u32 + word.trailing_zeros());
                     word &= word - 1;
                 }
             }
         });
-        let updated = self.team.collect(FEW, told.len(), |range, updated| {
-            updated.extend(told[range].iter().filter_map(|&q| self.updated(q)));
+        let updated = self.team.collect(FEW, targets.len(), |range, updated| {
+            updated.extend(targets[range].iter().filter_map(|&q| self.updated(q)));
         });
-        self.team.for_each(GRAIN, tellers.len(), |range| {
-            tellers[range].iter().for_each(|&p| self.telling[p as usize].store(false, Relaxed));
+        self.team.for_each(GRAIN, sources.len(), |range| {
+            sources[range].iter().for_each(|&p| self.is_source[p as usize].store(false, Relaxed));
         });
         updated
     }
 
-    /// The intersection of the metric of q with those grown from the neighbours that tell it; none when that is no change.
+    /// The intersection of the metric of q with those grown from the sources among its neighbours; none when that is no change.
     fn updated(&self, q: u32) -> Option<Update> {
         let before = self.frames[q as usize];
-        let (mut now, mut news) = (before, f64::INFINITY);
-        for &p in self.around.of_vertex(q).iter().filter(|&&p| self.telling[p as usize].load(Relaxed)) {
+        let (mut now, mut least_changed) = (before, f64::INFINITY);
+        for &p in self.around.of_vertex(q).iter().filter(|&&p| self.is_source[p as usize].load(Relaxed)) {
             let excess = self.excess(p, &now, q);
             if let Some((both, least)) = excess.and_then(|relative| now.intersection(&relative, 1.0 + TOLERANCE)) {
-                (now, news) = (both, news.min(least));
+                (now, least_changed) = (both, least_changed.min(least));
             }
         }
-        let log = (news < f64::INFINITY).then(|| now.log())?;
+        let log = (least_changed < f64::INFINITY).then(|| now.log())?;
         // An intersection raises ln det M. What does not is rounding, of sizes that differ too much for double precision.
         let rises = log.trace() - self.logs[q as usize].trace() > 0.5 * TOLERANCE;
-        rises.then(|| Update { vertex: q, log, frame: Frame::of_log(&log), news })
+        rises.then(|| Update { vertex: q, log, frame: Frame::of_log(&log), least_changed })
     }
 }

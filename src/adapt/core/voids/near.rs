@@ -1,6 +1,6 @@
 //! Finds the narrow voids: boundary triangles that face each other across a void, nearer than they may move until they are looked for again.
 use super::triangles::Triangle;
-use super::{Narrow, Voids, bounds, overlap};
+use super::{Narrow, Voids, bounds};
 use crate::adapt::core::context::{Context, LONG};
 use crate::adapt::core::ids::{FACE, VertexId};
 use crate::adapt::core::store::Store;
@@ -10,9 +10,6 @@ use crate::mesh::triangle_pair::{Corners, way};
 use crate::mesh::vector::{Vec3, add, area2, dot, norm, scale, sub, unit};
 use crate::metric::quality::edge_length;
 use crate::tasks::{GRAIN, Team};
-
-/// Triangles of which another's neighbours are looked for, a task.
-const FEW: usize = 256;
 
 /// Until voids are looked for again, edges get longer by at most this factor.
 const GROWTH: f64 = 2.5;
@@ -98,21 +95,27 @@ fn reaches(team: Team<'_>, context: &Context<'_>, walls: &[Wall], normals: &[[Ve
 
 /// The mean normals of each triangle's face at its corners; on a plane they are not asked for.
 fn normals(team: Team<'_>, context: &Context<'_>, walls: &[Wall]) -> Vec<[Vec3; 3]> {
-    let mut corners = team.collect(GRAIN, walls.len(), |range, corners| {
-        for i in range.filter(|&i| context.planes[walls[i].face as usize].is_none()) {
-            corners.extend([0, 1, 2].map(|k| (walls[i].face, walls[i].vertices[k], (3 * i + k) as u32)));
+    let store = &context.store;
+    let is_curved = |wall: &Wall| context.planes[wall.face as usize].is_none();
+    let area = |[a, b, c]: Corners| area2(a, b, c);
+    // Inside a face the triangles at a vertex are all of one face.
+    let mut of_inner = vec![[0.0; 3]; store.vertex_bound()];
+    let mut corners: Vec<(u32, VertexId, u32)> = Vec::new();
+    for (wall, i) in walls.iter().zip(0..).filter(|(wall, _)| is_curved(wall)) {
+        let area = area(wall.corners);
+        for (k, v) in (0..).zip(wall.vertices) {
+            match store.dimension(v) {
+                2 => of_inner[v.index()] = add(of_inner[v.index()], area),
+                _ => corners.push((wall.face, v, 3 * i + k)),
+            }
         }
-    });
+    }
+    let mut normals = team.map(GRAIN, walls.len(), |i| walls[i].vertices.map(|v| unit(of_inner[v.index()])));
     team.sort(&mut corners);
-    let mut normals = vec![[[0.0; 3]; 3]; walls.len()];
     for same in corners.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        let area = |at: u32| {
-            let [a, b, c] = walls[at as usize / 3].corners;
-            area2(a, b, c)
-        };
-        let normal = unit(same.iter().fold([0.0; 3], |sum, corner| add(sum, area(corner.2))));
+        let sum = same.iter().fold([0.0; 3], |sum, corner| add(sum, area(walls[corner.2 as usize / 3].corners)));
         for &(_, _, at) in same {
-            normals[at as usize / 3][at as usize % 3] = normal;
+            normals[at as usize / 3][at as usize % 3] = unit(sum);
         }
     }
     normals
@@ -178,7 +181,6 @@ fn near_others(
     let are_near = |i: usize, j: usize| {
         reaches[i] + reaches[j] > 0.0
             && dot(normals[i], normals[j]) < FACING
-            && overlap(&boxes[i], &boxes[j])
             && !walls[i].vertices.iter().any(|v| walls[j].vertices.contains(v))
             && !is_one_wall(i, j)
             && is_above(i, j)
@@ -192,11 +194,50 @@ fn near_others(
                 length <= reach
             }
     };
-    team.collect(FEW, walls.len(), |range, near| {
-        near.extend(range.filter(|&i| {
-            let mut is_near = false;
-            tree.overlapping(&boxes[i], |j| is_near = is_near || are_near(i, j as usize));
-            is_near
-        }));
-    })
+    let cones = tree.of_nodes(|items| Cone::of(items.iter().map(|&i| normals[i as usize])));
+    let may_face = |leaf: usize, node: usize| cones[leaf].may_face(&cones[node]);
+    let pairs = tree.overlapping_pairs(
+        team,
+        |i| boxes[i as usize],
+        may_face,
+        |near: &mut Vec<u32>, i, j| {
+            if are_near(i as usize, j as usize) {
+                near.extend([i, j]);
+            }
+        },
+    );
+    let mut near = vec![false; walls.len()];
+    pairs.iter().flatten().for_each(|&i| near[i as usize] = true);
+    (0..walls.len()).filter(|&i| near[i]).collect()
+}
+
+/// Directions about an axis.
+struct Cone {
+    axis: Vec3,
+    /// Cosine and sine of the greatest angle from the axis.
+    angle: [f64; 2],
+}
+
+impl Cone {
+    /// About these directions.
+    fn of(directions: impl Iterator<Item = Vec3> + Clone) -> Self {
+        let axis = unit(directions.clone().fold([0.0; 3], add));
+        let cosine = directions.map(|d| dot(d, axis)).fold(1.0, f64::min);
+        Self { axis, angle: [cosine, sine(cosine)] }
+    }
+
+    /// Whether triangles with normals in these two may face each other ([`FACING`]).
+    fn may_face(&self, other: &Self) -> bool {
+        let cosine = dot(self.axis, other.axis);
+        let angles = [[cosine, sine(cosine)], self.angle, other.angle];
+        // The cosine of the sum of the angles: of one and two, then with the third. It falls as long as the sum is below 180°.
+        let sum = |[c, s]: [f64; 2], [d, t]: [f64; 2]| [c * d - s * t, s * d + c * t];
+        let are_acute = angles.iter().all(|angle| angle[0] > 0.0);
+        let two = sum(angles[0], angles[1]);
+        !(are_acute && two[0] > 0.0 && sum(two, angles[2])[0] > FACING + 1e-12)
+    }
+}
+
+fn sine(cosine: f64) -> f64 {
+    (1.0 - cosine * cosine).max(0.0).sqrt()
 }

@@ -123,7 +123,7 @@ impl<A: Access> Worker<'_, '_, A> {
     /// `Stale` when no edge is too long or the tetrahedron was made in this sweep, `Length` when all candidates are too near to
     /// vertices, else the refusal of the last insertion.
     pub fn refine_tet(&mut self, t: TetId) -> Result<(), Refusal> {
-        let v = self.claim_moving_tet(t)?;
+        let v = self.claim_current_tet(t)?;
         if self.store.stamp(t) == self.store.clock() || !EDGE.iter().any(|&[i, j]| self.is_long(v[i], v[j])) {
             return Err(Refusal::Stale);
         }
@@ -146,7 +146,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         result.unwrap_or_else(|| {
             let candidate = Candidate { seed: Seed::Inside, entity: Entity::Interior, point, metric, around: &v };
-            self.insert_apart(&candidate, &[t])
+            self.insert_if_spaced(&candidate, &[t])
         })
     }
 
@@ -171,7 +171,7 @@ impl<A: Access> Worker<'_, '_, A> {
             let (seed, entity) = (Seed::Face(face), Entity::Face(tag - 1));
             let seeds = [t, self.store.neighbour(t, i)];
             let seeds = if seeds[1].is_some() { &seeds[..] } else { &seeds[..1] };
-            self.insert_apart(&Candidate { seed, entity, point, metric, around: &face }, seeds)
+            self.insert_if_spaced(&Candidate { seed, entity, point, metric, around: &face }, seeds)
         }))
     }
 
@@ -194,7 +194,7 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// Inserts a candidate into the tetrahedra that hold it, unless it is too near to a vertex.
-    pub fn insert_apart(&mut self, candidate: &Candidate, seeds: &[TetId]) -> Result<(), Refusal> {
+    pub fn insert_if_spaced(&mut self, candidate: &Candidate, seeds: &[TetId]) -> Result<(), Refusal> {
         let &Candidate { seed, entity, point, around, .. } = candidate;
         for &t in seeds {
             self.claim_tet(t)?;

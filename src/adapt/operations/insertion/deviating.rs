@@ -27,7 +27,7 @@ impl Operation for SplitDeviating {
 impl<A: Access> Worker<'_, '_, A> {
     /// Splits one edge of a tetrahedron: of all edges of its surface triangles that deviate, the one whose middle is farthest from the model.
     pub fn split_deviating(&mut self, t: TetId) -> Result<(), Refusal> {
-        let vertices = self.claim_moving_tet(t)?;
+        let vertices = self.claim_current_tet(t)?;
         let tags = self.store.tags(t);
         let mut farthest: Option<(f64, [VertexId; 2])> = None;
         for i in (0..4).filter(|&i| tags[i] != 0) {

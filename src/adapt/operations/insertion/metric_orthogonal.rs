@@ -100,7 +100,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if (0..4).any(encroaches) || self.is_near_any(&candidate, &ball.link) {
             return Err(Refusal::Length);
         }
-        self.insert_apart(&candidate, &[t])
+        self.insert_if_spaced(&candidate, &[t])
     }
 
     /// Whether the point lies in a tetrahedron, or on its boundary. All its vertices are held; the cavity grows from it.

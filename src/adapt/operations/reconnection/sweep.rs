@@ -37,11 +37,11 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Removes the first edge of a tetrahedron, else the first face, by whose removal the criterion gains.
     pub fn reconnect(&mut self, ring: &mut Ring, t: TetId, criterion: Criterion) -> Result<(), Refusal> {
-        let v = self.claim_moving_tet(t)?;
+        let v = self.claim_current_tet(t)?;
         if self.store.quality(t) >= self.context.limits.flip_below {
             return Err(Refusal::Stale);
         }
-        if A::IS_LASTING {
+        if A::REFUSES_UNTIL_ROUND_ENDS {
             // Its edges and faces need these vertices in any case.
             for n in self.store.neighbours(t).into_iter().filter(|n| n.is_some()) {
                 self.claim_tet(n)?;

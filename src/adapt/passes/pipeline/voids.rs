@@ -2,13 +2,13 @@
 use super::Pipeline;
 use crate::adapt::core::voids::Voids;
 
-/// In so many first passes much changes, and voids are looked for in each.
+/// In so many first passes edges grow most, and voids are looked for in each that follows upon some change.
 const FIRST_PASSES: usize = 4;
 
 /// Voids are looked for again after changes to this share of the vertices.
 const MUCH: f64 = 0.3;
 
-/// The same where there are narrow voids, which have to be known well.
+/// The same in the first passes, and where there are narrow voids, which have to be known well.
 const SOME: f64 = 0.05;
 
 /// What is known of the voids.
@@ -26,9 +26,9 @@ impl Pipeline<'_, '_> {
         let changes = self.changes();
         if let Some((pass, vertices, before)) = self.voids.when {
             let lost = self.voids.narrow && self.context.voids.is_empty();
-            let much = if self.voids.narrow { SOME } else { MUCH };
-            let is_early = self.pass != pass && self.pass <= FIRST_PASSES && changes > before;
-            if !lost && !is_early && ((changes - before) as f64) < much * vertices as f64 {
+            let is_early = self.pass != pass && self.pass <= FIRST_PASSES;
+            let much = if self.voids.narrow || is_early { SOME } else { MUCH };
+            if !lost && ((changes - before) as f64) < much * vertices as f64 {
                 return;
             }
         }

@@ -1,14 +1,14 @@
 //! Runs a prepared case, some steps at a time, until it stands still or its steps are used up. What blows up is repeated, to see where, then with
 //! first order there, and if that does not help with smaller steps.
 use super::dictionaries::{Steps, write_stage};
+use super::first_order::FirstOrderCells;
 use super::flow::Flow;
 use super::forces::{Coefficients, Walls};
-use super::marks::Marks;
 use super::mean::Mean;
 use super::method::{Method, Scheme, Stage};
-use super::pace::Pace;
 use super::programs::{Failure, solve};
 use super::state::{State, field};
+use super::step_control::StepControl;
 use crate::formats::foam;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::volume6;
@@ -135,9 +135,9 @@ struct Run<'a> {
     state: State,
     coefficients: Coefficients,
     change: f64,
-    pace: Pace,
+    pace: StepControl,
     repeated: usize,
-    marks: Marks,
+    marks: FirstOrderCells,
     mean: Mean,
 }
 
@@ -151,7 +151,7 @@ impl<'a> Run<'a> {
         let state = State::read(&case.join("0"), volumes.len())?;
         let walls = Walls::of(mesh, &plan.walls);
         let (coefficients, change) = (Coefficients::default(), f64::INFINITY);
-        let (pace, marks) = (Pace::default(), Marks::none(volumes.len()));
+        let (pace, marks) = (StepControl::default(), FirstOrderCells::none(volumes.len()));
         let mean = Mean::from(plan.start_steps + plan.steps.div_ceil(2));
         Ok(Self {
             case,
@@ -186,7 +186,7 @@ impl<'a> Run<'a> {
             write_stage(self.case, &self.plan.flow, slower, Steps { start, end, watched, marked })?;
             let ended = self.start(end);
             if marked {
-                Marks::remove(&time);
+                FirstOrderCells::remove(&time);
             }
             let error = match ended {
                 Ok(state) => {
@@ -224,7 +224,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Marks where the block that blew up has failed, as its last fields show it; how many cells, which had no mark before.
+    /// FirstOrderCells where the block that blew up has failed, as its last fields show it; how many cells, which had no mark before.
     fn mark(&mut self) -> usize {
         let Ok(last) = last_time(self.case) else { return 0 };
         let (cells, before) = (self.volumes.len(), &self.state);

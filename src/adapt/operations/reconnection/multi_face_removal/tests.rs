@@ -183,7 +183,7 @@ fn under_locks(
 ) -> Result<(), Refusal> {
     let mut locked = Worker::new(worker.context, worker.state, Speculative::new(0));
     for t in tets {
-        locked.claim_moving_tet(t)?;
+        locked.claim_current_tet(t)?;
     }
     let result = locked.remove_faces(face, tets, ends, criterion);
     locked.access.release(locked.store);

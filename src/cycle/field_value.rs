@@ -73,7 +73,7 @@ fn known(fields: &[FieldName]) -> String {
 ///
 /// # Errors
 /// As [`Value::find`]; when nothing is named and nothing is a scalar.
-pub fn picked(wanted: &[String], fields: &[FieldName]) -> Result<Vec<Value>, String> {
+pub fn values_of(wanted: &[String], fields: &[FieldName]) -> Result<Vec<Value>, String> {
     if !wanted.is_empty() {
         let found = wanted.iter().map(|word| Value::find(word, fields));
         return found.collect::<Result<_, _>>().map_err(|error| format!("[metric] fields: {error}"));
@@ -101,7 +101,7 @@ mod tests {
         let field = |name: &str, values| FieldName { name: name.into(), values };
         let fields = [field("p", 1), field("U", 3), field("T", 1)];
         let words = |words: &[&str]| words.iter().map(|&word| word.into()).collect::<Vec<String>>();
-        let take = |names: &[&str]| picked(&words(names), &fields).map(|values| as_words(&values));
+        let take = |names: &[&str]| values_of(&words(names), &fields).map(|values| as_words(&values));
         assert_eq!(take(&[]).unwrap(), "1,5");
         assert_eq!(take(&["T", "U:norm", "U:z", "U:1"]).unwrap(), "5,norm:2-4,4,2");
         assert!(take(&["q"]).unwrap_err().contains("'q'; there are p, U, T"));
@@ -109,6 +109,6 @@ mod tests {
         assert!(take(&["U:4"]).unwrap_err().contains("U:3"));
         assert_eq!(Value::find("U:norm", &fields).unwrap().of(&[9.0, 1.0, 2.0, 2.0, 7.0]), 3.0);
         assert_eq!(Value::find("T", &fields).unwrap().of(&[9.0, 1.0, 2.0, 2.0, 7.0]), 7.0);
-        assert!(picked(&[], &fields[1..2]).unwrap_err().contains("no field is a scalar"));
+        assert!(values_of(&[], &fields[1..2]).unwrap_err().contains("no field is a scalar"));
     }
 }

@@ -6,21 +6,21 @@ const HALVINGS: usize = 5;
 /// Blocks without trouble after which what was halved is doubled again.
 const CALM: usize = 4;
 
-/// Blow-ups at a pace after which it is not taken up again: a flow may bear later what it did not at its beginning, but where it
-/// fails again it would for ever, and each time what it had settled to is stirred up.
+/// Blow-ups at a number of halvings after which it is not tried again. A flow may bear later what it did not at its beginning, but where
+/// it fails a second time it would fail for ever, and each failure disturbs a flow that had converged.
 const TRIALS: u8 = 2;
 
-/// The pace of a solve.
+/// The length of steps (Courant number or relaxation), by how often it was halved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Pace {
+pub struct StepControl {
     halvings: usize,
     /// Blocks since the last trouble.
     calm: usize,
-    /// Blow-ups at each pace.
+    /// Blow-ups at each number of halvings.
     failed: [u8; HALVINGS + 1],
 }
 
-impl Pace {
+impl StepControl {
     /// How often it is halved.
     pub fn halvings(&self) -> i32 {
         self.halvings as i32
@@ -35,7 +35,7 @@ impl Pace {
         can
     }
 
-    /// After a block that ended well: faster again if there were some, and that pace has not failed too often.
+    /// After a block that ended well: one halving less if there were enough of them, and if that has not failed too often.
     pub fn go_on(&mut self) {
         self.calm += 1;
         if self.calm >= CALM && self.halvings > 0 && self.failed[self.halvings - 1] < TRIALS {
@@ -50,26 +50,26 @@ mod tests {
 
     #[test]
     fn a_pace_that_fails_twice_is_not_taken_up_again() {
-        let mut pace = Pace::default();
+        let mut control = StepControl::default();
         for _ in 0..2 {
-            assert!(pace.halvings() == 0 && pace.slow_down() && pace.halvings() == 1);
-            (0..CALM).for_each(|_| pace.go_on());
+            assert!(control.halvings() == 0 && control.slow_down() && control.halvings() == 1);
+            (0..CALM).for_each(|_| control.go_on());
         }
-        (0..10 * CALM).for_each(|_| pace.go_on());
-        assert_eq!(pace.halvings(), 1);
+        (0..10 * CALM).for_each(|_| control.go_on());
+        assert_eq!(control.halvings(), 1);
         // The next lower one still has its trial.
-        assert!(pace.slow_down() && pace.halvings() == 2);
-        (0..CALM).for_each(|_| pace.go_on());
-        assert_eq!(pace.halvings(), 1);
+        assert!(control.slow_down() && control.halvings() == 2);
+        (0..CALM).for_each(|_| control.go_on());
+        assert_eq!(control.halvings(), 1);
     }
 
     #[test]
     fn it_is_given_up_after_some_halvings() {
-        let mut pace = Pace::default();
+        let mut control = StepControl::default();
         for halvings in 1..=HALVINGS as i32 {
-            assert!(pace.slow_down());
-            assert_eq!(pace.halvings(), halvings);
+            assert!(control.slow_down());
+            assert_eq!(control.halvings(), halvings);
         }
-        assert!(!pace.slow_down() && pace.halvings() == HALVINGS as i32);
+        assert!(!control.slow_down() && control.halvings() == HALVINGS as i32);
     }
 }

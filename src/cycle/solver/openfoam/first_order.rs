@@ -13,14 +13,14 @@ const OF_PRESSURE: f64 = 0.5;
 /// or the temperature to less than this one.
 const OF_TEMPERATURE: f64 = 0.7;
 
-/// Marks on the cells of a mesh.
-pub struct Marks {
+/// The cells of a mesh that are solved to first order.
+pub struct FirstOrderCells {
     marked: Vec<bool>,
     /// How many are marked.
     pub count: usize,
 }
 
-impl Marks {
+impl FirstOrderCells {
     /// None on so many cells.
     pub fn none(cells: usize) -> Self {
         Self { marked: vec![false; cells], count: 0 }
@@ -77,7 +77,7 @@ mod tests {
         let mesh = cube(4);
         let cells = mesh.tets.len();
         let (p, t) = (vec![1.0; cells], vec![1.0; cells]);
-        let mut marks = Marks::none(cells);
+        let mut marks = FirstOrderCells::none(cells);
         assert_eq!((marks.add(&mesh, [&p, &t], [&p, &t]), marks.count), (0, 0));
         let mut fallen = p.clone();
         fallen[7] = -0.1;
