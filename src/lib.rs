@@ -9,7 +9,7 @@
 //! | | |
 //! | --- | --- |
 //! | in | [`MeshView`] (slices) or a [`TetMesh`]; metrics as [`Sym3`], `[f64; 6]` or nalgebra's `Matrix3<f64>`; [`Settings`] with [`Options`] |
-//! | model | [`Adapter::on_cad`] reads a file, [`Adapter::on_model`] takes a [`Model`], [`Adapter::discrete`] takes the mesh's own surface |
+//! | model | [`Adapter::on_cad`] reads a file, [`Adapter::on_model`] takes a [`Model`], [`Adapter::discrete`] takes the mesh's own surface, [`Adapter::on_surface`] that of another mesh, which stays |
 //! | out | [`AdaptedMesh`]: the mesh, its metric, [`Parents`] to bring fields along, its place on the model; [`Report`] measures it |
 //! | files | [`io`]: libMeshb's .meshb and .solb |
 //! | wrong input | [`Error`], never a panic |
@@ -110,8 +110,8 @@ pub mod view;
 
 #[doc(inline)]
 pub use api::{
-    AdaptedMesh, Adapter, Association, Backend, Classification, Counts, Criterion, Deviation, Distribution, Eigen,
-    Elements, Entity, Error, Farthest, Fidelity, Freeze, Geometry, Grains, Kind, MeshView, Model, Observer, OnEdge,
-    OnFace, OnVertex, Options, Parents, Plan, PointCreation, Refusal, Report, Scheduler, Settings, Statistics,
-    Strategy, SurfaceBounds, Sym3, TetMesh, Topology, Vec3, coordinates, io,
+    AdaptedMesh, Adapter, Association, Backend, Classification, Counts, Criterion, Deviation, DiscreteOptions,
+    Distribution, Eigen, Elements, Entity, Error, Farthest, Fidelity, Freeze, Geometry, Grains, Kind, MeshView, Model,
+    Observer, OnEdge, OnFace, OnVertex, Options, Parents, Plan, PointCreation, Refusal, Report, Scheduler, Settings,
+    Statistics, Strategy, SurfaceBounds, Sym3, TetMesh, Topology, Vec3, coordinates, io,
 };

@@ -36,6 +36,8 @@ pub mod io;
 mod output;
 mod place;
 mod report;
+#[cfg(test)]
+mod surface_tests;
 mod view;
 
 pub use error::Error;
@@ -50,6 +52,8 @@ pub use crate::adapt::{
 };
 #[doc(inline)]
 pub use crate::geometry::classify::Classification;
+#[doc(inline)]
+pub use crate::geometry::discrete::DiscreteOptions;
 #[doc(inline)]
 pub use crate::geometry::fidelity::{Deviation, Farthest, Fidelity};
 #[doc(inline)]
@@ -66,7 +70,7 @@ pub use crate::tasks::{Backend, Plan, Strategy};
 use crate::adapt;
 use crate::geometry::Discrete;
 use crate::geometry::classify;
-use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
+use crate::geometry::discrete::{complete_boundary, complete_matched};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::metric::{Background, Field, Source, field};
@@ -86,6 +90,8 @@ pub struct Settings {
     pub complexity: Option<f64>,
     /// How far a vertex of the input may be from the CAD model, in its units. By default 1e-6 of the model's diagonal.
     pub tolerance: Option<f64>,
+    /// How triangles become a model where there is none: the ridge angle, and whether it is smooth.
+    pub surface: DiscreteOptions,
     /// All else: what is frozen, bounds of the surface, the scheduler.
     pub options: Options,
 }
@@ -122,6 +128,18 @@ impl Adapter {
     /// the threads.
     pub fn on_cad(path: &Path, settings: Settings) -> Result<Self, Error> {
         Self::on_model(Model::read(path)?, settings)
+    }
+
+    /// On the surface of a mesh, which stays the model of all meshes that come: their boundaries lie on it, and nothing drifts over a loop.
+    /// It may be of triangles alone; then these look outward. `settings.surface` says how it becomes a model.
+    ///
+    /// # Errors
+    /// [`Error`], by what is wrong with the surface; [`Error::Threads`] when the system refuses the threads.
+    pub fn on_surface(view: &MeshView<'_>, settings: Settings) -> Result<Self, Error> {
+        let mut mesh = view.mesh()?;
+        complete_boundary(Team::alone(), &mut mesh);
+        let (model, _) = Discrete::new(Team::alone(), &mesh, &settings.surface)?;
+        Self::on_model(Model::Discrete(model), settings)
     }
 
     /// On a model that was read before.
@@ -230,10 +248,12 @@ fn placed(team: Team<'_>, ground: &mut Ground, mesh: &TetMesh, settings: &Settin
     match ground {
         Ground::Cad(model) => {
             let options = classify::Options { tolerance: settings.tolerance, ..classify::Options::default() };
-            Ok(classify::classify(team, mesh, model, &options).map_err(crate::geometry::Error::from)?.0)
+            let place = classify::classify(team, mesh, model, &options).map_err(crate::geometry::Error::from)?.0;
+            model.adopt_references(mesh, &place);
+            Ok(place)
         }
         Ground::Surface(kept) => {
-            let (model, place) = Discrete::from_mesh(team, mesh, DEFAULT_RIDGE_ANGLE)?;
+            let (model, place) = Discrete::new(team, mesh, &settings.surface)?;
             *kept = Some(Model::Discrete(model));
             Ok(place)
         }

@@ -1,6 +1,7 @@
 //! `geo-adapt classify`.
 use super::files::{Files, Outputs};
 use super::names::on_mesh;
+use super::surface::SurfaceArguments;
 use super::{Outcome, load};
 use crate::geometry::classify::{Associated, Options, Report, associate, classify};
 use crate::geometry::discrete::complete_boundary;
@@ -17,8 +18,10 @@ pub struct Arguments {
     /// The mesh: .mesh or .meshb
     mesh: PathBuf,
     /// The model: .step, .stp, .iges, .igs, .brep or .egads
-    #[arg(long, value_name = "MODEL")]
-    cad: PathBuf,
+    #[arg(long, value_name = "MODEL", required_unless_present = "surface")]
+    cad: Option<PathBuf>,
+    #[command(flatten)]
+    surface: SurfaceArguments,
     /// Where the mesh with its association goes
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     output: PathBuf,
@@ -30,20 +33,28 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_models([&arguments.cad]);
+    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_models(&arguments.cad);
+    files = files.reads_any(&arguments.surface.surface);
     let target = files.writes_mesh(&arguments.output, "-o")?;
     let pool = super::pool()?;
     let team = Team::new(&pool, Plan::default());
     let mut read = io::read_mesh_on(team, &arguments.mesh)?;
+    let (model, path) = match (&arguments.cad, &arguments.surface.surface) {
+        (Some(path), _) => (load::model(path)?, path),
+        (None, Some(path)) => {
+            let model = arguments.surface.model(team, &mut read.notices)?;
+            (model.ok_or_else(|| format!("{}: no model", path.display()))?, path)
+        }
+        (None, None) => return Err("give a model: --cad, or --surface".into()),
+    };
     let mesh = &mut read.content;
-    let model = load::model(&arguments.cad)?;
     let added = complete_boundary(team, mesh);
     if added > 0 {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
     }
     let options = Options { tolerance: arguments.tolerance, ..Options::default() };
     let (classification, report) = classify(team, mesh, &model, &options)
-        .map_err(|error| format!("{} on {}: {error}", arguments.mesh.display(), arguments.cad.display()))?;
+        .map_err(|error| format!("{} on {}: {error}", arguments.mesh.display(), path.display()))?;
     let given = names::read(&arguments.mesh)?;
     let associated = associate(mesh, &classification);
     let known = !given.is_empty() && !associated.references_replaced;

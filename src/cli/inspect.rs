@@ -1,6 +1,7 @@
 //! `geo-adapt inspect`.
+use super::Outcome;
+use super::surface::SurfaceArguments;
 use super::table::{Table, place};
-use super::{Outcome, load};
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Model, classify};
 use crate::mesh::TetMesh;
@@ -30,6 +31,8 @@ pub struct Arguments {
     /// The CAD model the mesh lies on: .step, .stp, .iges, .igs, .brep or .egads
     #[arg(long, value_name = "MODEL")]
     cad: Option<PathBuf>,
+    #[command(flatten)]
+    surface: SurfaceArguments,
     /// Print JSON; there the indices count from 0
     #[arg(long)]
     json: bool,
@@ -72,7 +75,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let pool = super::pool()?;
     let team = Team::new(&pool, Plan::default());
     let mesh = read(&arguments.mesh)?;
-    let model = arguments.cad.as_deref().map(load::model).transpose()?;
+    let model = arguments.surface.model_or(team, arguments.cad.as_deref())?;
     let statistics = match metrics(arguments, &mesh)? {
         Some(metrics) => Statistics::in_metric(team, &mesh, &metrics),
         None => Statistics::in_space(team, &mesh),

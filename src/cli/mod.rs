@@ -21,6 +21,7 @@ mod metric;
 mod model;
 mod names;
 mod openfoam;
+mod surface;
 mod table;
 mod terminal;
 mod transfer;

@@ -98,6 +98,9 @@ impl Solved {
 pub struct Begun {
     /// The model that boundaries lie on, if any.
     pub cad: Option<PathBuf>,
+    /// The surface that they lie on instead.
+    #[serde(default)]
+    pub surface: Option<PathBuf>,
 }
 
 /// A solve's result.

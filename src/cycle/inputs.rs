@@ -17,7 +17,8 @@ pub type Fingerprints = BTreeMap<String, String>;
 /// When one cannot be read.
 pub fn fingerprints(loaded: &Loaded) -> Result<Fingerprints, Error> {
     let mesh = &loaded.config.mesh;
-    let given = [&mesh.file, &mesh.bootstrap, &mesh.cad].into_iter().flatten().map(|path| loaded.at(path));
+    let given =
+        [&mesh.file, &mesh.bootstrap, &mesh.cad, &mesh.surface].into_iter().flatten().map(|path| loaded.at(path));
     let mut files: Vec<PathBuf> = given.flat_map(|path| [names::beside(&path), path]).collect();
     files.retain(|path| path.is_file());
     files.extend(loaded.config.solver.solver().inputs(&loaded.base));

@@ -1,5 +1,5 @@
 //! The steps of a cycle, each by the commands that make it.
-use super::config::{Loaded, TransferMethod};
+use super::config::{FIRST, Loaded, TransferMethod};
 use super::data::{Adapted, Begun, FieldName, SolveResult, text};
 use super::done::Done;
 use super::error::Error;
@@ -51,11 +51,12 @@ impl<'a> Pipeline<'a> {
                 words.extend(mesh.options.iter().cloned().chain(self.threads.clone()));
                 running.geo_adapt(words)?;
                 let domain = target.with_extension("brep");
-                return Ok(Begun { cad: Some(if mesh.far_field.is_some() { domain } else { model }) });
+                let cad = Some(if mesh.far_field.is_some() { domain } else { model });
+                return Ok(Begun { cad, surface: None });
             }
             if let Some(cells) = mesh.cube {
                 write_mesh(&target, &cube(cells))?;
-                return Ok(Begun { cad: mesh.cad.as_deref().map(|cad| self.loaded.at(cad)) });
+                return Ok(self.begun(&target));
             }
             let Some(file) = &mesh.file else {
                 return Err(Error::Failed("[mesh] names neither file nor bootstrap".into()));
@@ -67,8 +68,15 @@ impl<'a> Pipeline<'a> {
             } else {
                 running.geo_adapt(vec!["convert".into(), text(&file), text(&target)])?;
             }
-            Ok(Begun { cad: mesh.cad.as_deref().map(|cad| self.loaded.at(cad)) })
+            Ok(self.begun(&target))
         })
+    }
+
+    /// What the boundary of the first mesh lies on.
+    fn begun(&self, first: &Path) -> Begun {
+        let mesh = &self.loaded.config.mesh;
+        let at = |path: &Path| if path == Path::new(FIRST) { first.to_owned() } else { self.loaded.at(path) };
+        Begun { cad: mesh.cad.as_deref().map(|cad| self.loaded.at(cad)), surface: mesh.surface.as_deref().map(at) }
     }
 
     /// The solution on the mesh of a cycle; `before` are the fields of the last one, where it was brought here.
@@ -169,7 +177,7 @@ impl<'a> Pipeline<'a> {
     }
 
     /// The next mesh.
-    pub fn adapt(&self, cycle: u32, cad: Option<&Path>) -> Result<Done<Adapted>, Error> {
+    pub fn adapt(&self, cycle: u32, Begun { cad, surface }: &Begun) -> Result<Done<Adapted>, Error> {
         let (layout, config) = (self.layout(), &self.loaded.config);
         let complexity = config.schedule.of_cycle(cycle);
         self.steps.step(layout.step(cycle, "adapt"), |running| {
@@ -178,7 +186,8 @@ impl<'a> Pipeline<'a> {
             words.extend(["--field".into(), text(&layout.step(cycle, "metric").join("sensors.solb"))]);
             words.extend(["--complexity".into(), complexity.to_string()]);
             words.extend(["--report".into(), text(&running.file("report.json"))]);
-            option(&mut words, "--cad", cad.map(text).as_ref());
+            option(&mut words, "--cad", cad.as_deref().map(text).as_ref());
+            option(&mut words, "--surface", surface.as_deref().map(text).as_ref());
             let metric = &config.metric;
             option(&mut words, "--norm", metric.norm.as_ref());
             option(&mut words, "--hessian", metric.hessian.map(|word| word.name()).as_ref());
@@ -189,7 +198,7 @@ impl<'a> Pipeline<'a> {
             if !metric.local.is_empty() {
                 words.extend(["--local".into(), metric.local.join(",")]);
             }
-            if cad.is_some() && metric.geometry == Some(false) {
+            if (cad.is_some() || surface.is_some()) && metric.geometry == Some(false) {
                 words.push("--no-geometry".into());
             }
             option(&mut words, "--segments", metric.segments.as_ref());

@@ -136,7 +136,7 @@ fn begin(loaded: &Loaded, options: &Options, steps: Steps<'_>) -> Result<(), Err
 
 fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<Ended, Error> {
     let (layout, config) = (pipeline.steps.layout, &pipeline.loaded.config);
-    let cad = pipeline.start()?.result.cad;
+    let begun = pipeline.start()?.result;
     let transfers = config.transfer.method != TransferMethod::None;
     let mut functional = Vec::new();
     let mut before: Option<SolveResult> = None;
@@ -171,7 +171,7 @@ fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<E
             break (reason, history);
         }
         pipeline.metric(cycle, &solved.fields)?;
-        pipeline.adapt(cycle, cad.as_deref())?;
+        pipeline.adapt(cycle, &begun)?;
         if transfers {
             pipeline.transfer(cycle)?;
         }

@@ -18,6 +18,7 @@ mod msh;
 mod orientation;
 mod scan;
 mod su2;
+mod surfaces;
 mod text;
 pub mod ugrid;
 mod unsupported;
@@ -27,6 +28,7 @@ pub use cells::{cells_to_vertices, vertices_to_cells};
 pub use dataset::{Dataset, NamedField};
 pub use format::Format;
 pub use msh::read_msh;
+pub use surfaces::read_surface;
 
 use crate::geometry::names;
 use crate::mesh::io::{Batch, Error, Read};

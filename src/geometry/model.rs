@@ -1,5 +1,7 @@
 //! A model of any backend. The kernel works on this type: backends are told apart by a match, not by a virtual call.
+use super::classify::Classification;
 use super::{CurveFrame, Discrete, Evaluate, FarField, Geometry, Names, OnCurve, OnSurface, SurfaceFrame, Topology};
+use crate::mesh::TetMesh;
 use crate::mesh::vector::Vec3;
 use std::collections::BTreeMap;
 
@@ -75,6 +77,17 @@ impl Model {
             #[cfg(feature = "occt")]
             Model::Occt(model) => model.rename(names),
             Model::Discrete(_) => drop(names),
+        }
+    }
+
+    /// Takes over the references of a mesh that is put on a surface: see [`Discrete::adopt_references`]. A CAD model has none.
+    pub fn adopt_references(&mut self, mesh: &TetMesh, place: &Classification) {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(_) => {
+                let _ = (mesh, place);
+            }
+            Model::Discrete(model) => model.adopt_references(mesh, place),
         }
     }
 

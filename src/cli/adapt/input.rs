@@ -7,10 +7,11 @@ use super::parts::{self, Local};
 use crate::adapt;
 use crate::cli::metric::fields::{Made, MultiscaleArguments};
 use crate::cli::metric::geometry::GeometryArguments;
+use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::place;
 use crate::geometry::classify::{self, Classification};
-use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_matched};
-use crate::geometry::{Discrete, Model, Names, names};
+use crate::geometry::discrete::complete_matched;
+use crate::geometry::{Model, Names, names};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::bisection::Halved;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
@@ -42,6 +43,8 @@ pub struct InputArguments {
     #[arg(long, value_name = "MODEL")]
     pub cad: Option<PathBuf>,
     #[command(flatten)]
+    pub surface: SurfaceArguments,
+    #[command(flatten)]
     pub field: FieldArguments,
     /// Scale the metric to this complexity: about half the number of vertices
     #[arg(long, value_name = "C", value_parser = crate::cli::positive, allow_negative_numbers = true)]
@@ -56,7 +59,7 @@ pub struct InputArguments {
     multiscale: MultiscaleArguments,
     #[command(flatten)]
     geometry: GeometryArguments,
-    /// Leaves the geometry out, whose sizes are intersected when there is a --cad
+    /// Leaves the geometry out, whose sizes are intersected when there is a --cad or a --surface
     #[arg(long, conflicts_with_all = ["segments", "feature_cells"])]
     no_geometry: bool,
 }
@@ -92,10 +95,20 @@ pub struct Input {
 type Error = Box<dyn std::error::Error>;
 
 impl InputArguments {
+    /// Whether the model is given: it is no surface of the mesh itself.
+    pub fn has_model(&self) -> bool {
+        self.cad.is_some() || self.surface.surface.is_some()
+    }
+
     /// The files that are read.
     pub fn files(&self) -> Files {
-        let Self { mesh, cad, field, .. } = self;
-        Files::new().reads_meshes([mesh]).reads_models(cad).reads(&field.metric).reads(&field.field)
+        let Self { mesh, cad, surface, field, .. } = self;
+        Files::new()
+            .reads_meshes([mesh])
+            .reads_models(cad)
+            .reads_any(&surface.surface)
+            .reads(&field.metric)
+            .reads(&field.field)
     }
 
     /// Reads the mesh and, if it comes from a file, its metric. What the user should know is added to `notices`.
@@ -113,7 +126,7 @@ impl InputArguments {
     }
 
     /// Completes the boundary, puts the mesh on its model, and brings the metric to its complexity.
-    /// `cad` is the CAD model, when it is there already.
+    /// `cad` is the model, when it is there already.
     pub fn prepare(
         &self,
         team: Team<'_>,
@@ -272,7 +285,7 @@ impl InputArguments {
         complexity: f64,
         notices: &mut Vec<String>,
     ) -> Result<(Option<Vec<Sym3>>, Option<Halved>), String> {
-        if self.cad.is_none() || self.no_geometry {
+        if !self.has_model() || self.no_geometry {
             return Ok((self.local_sizes(team, mesh, names)?, None));
         }
         let gradation = self.multiscale.growth();
@@ -341,15 +354,19 @@ impl InputArguments {
         notices: &mut Vec<String>,
     ) -> Result<(Model, Classification), Error> {
         let name = self.mesh.display();
-        let Some(path) = &self.cad else {
-            let (model, place) =
-                Discrete::from_mesh(team, mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
-            return Ok((Model::Discrete(model), place));
+        let Some(path) = self.cad.as_ref().or(self.surface.surface.as_ref()) else {
+            return Ok(self.surface.own(team, mesh).map_err(|error| format!("{name}: {error}"))?);
         };
-        let model = cad.map_or_else(|| load::model(path), Ok)?;
+        let given = match (cad, &self.cad) {
+            (Some(model), _) => Some(model),
+            (None, Some(path)) => Some(load::model(path)?),
+            (None, None) => self.surface.model(team, notices)?,
+        };
+        let Some(mut model) = given else { return Err(format!("{}: no model", path.display()).into()) };
         let options = classify::Options { tolerance: self.tolerance, ..classify::Options::default() };
         let (place, report) = classify::classify(team, mesh, &model, &options)
             .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
+        model.adopt_references(mesh, &place);
         notices.extend(report.notices);
         Ok((model, place))
     }

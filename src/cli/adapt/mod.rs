@@ -136,7 +136,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
         given = Given { mesh: std::mem::take(&mut report.mesh), logs, names: report.names.clone(), is_result: true };
-        cad = arguments.input.cad.is_some().then_some(input.model);
+        cad = arguments.input.has_model().then_some(input.model);
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,11 +1,12 @@
 //! `geo-adapt metric geometry`.
 use super::common::{self, Failure, GradationArgument, LimitArguments, OutputArgument, RunArguments};
 use crate::cli::files::{Files, Outputs};
+use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::{Table, figure, place};
 use crate::cli::{Outcome, load, positive};
 use crate::geometry::classify::{self, Classification};
-use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
-use crate::geometry::{Discrete, Geometry, Model};
+use crate::geometry::discrete::complete_boundary;
+use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::io::read_mesh_on;
 use crate::metric::Limits;
@@ -27,6 +28,8 @@ pub struct Arguments {
     #[arg(long, value_name = "MODEL")]
     cad: Option<PathBuf>,
     #[command(flatten)]
+    surface: SurfaceArguments,
+    #[command(flatten)]
     output: OutputArgument,
     #[command(flatten)]
     sizes: GeometryArguments,
@@ -37,7 +40,7 @@ pub struct Arguments {
     #[command(flatten)]
     gradation: GradationArgument,
     /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model states for an entity]
-    #[arg(long, value_name = "T", value_parser = positive, requires = "cad", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// Write what was found as JSON; there the indices count from 0
     #[arg(long, value_name = "FILE.json")]
@@ -96,6 +99,7 @@ struct Seconds {
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_models(&arguments.cad);
+    files = files.reads_any(&arguments.surface.surface);
     let target = arguments.output.target(&mut files)?;
     let json = common::report(&mut files, arguments.report.as_ref())?;
     let limits = arguments.limits.limits()?;
@@ -135,15 +139,19 @@ pub fn run(arguments: &Arguments) -> Outcome {
 /// The model, and where the mesh lies on it.
 fn lies(team: Team<'_>, arguments: &Arguments, mesh: &TetMesh) -> Result<(Model, Classification), Failure> {
     let name = arguments.mesh.display();
-    let Some(path) = &arguments.cad else {
-        let (model, place) =
-            Discrete::from_mesh(team, mesh, DEFAULT_RIDGE_ANGLE).map_err(|error| format!("{name}: {error}"))?;
+    let Some(path) = arguments.cad.as_ref().or(arguments.surface.surface.as_ref()) else {
+        let (model, place) = arguments.surface.own(team, mesh).map_err(|error| format!("{name}: {error}"))?;
         let note =
             "without --cad the curvature is an estimate from the mesh's triangles; it can be no better than they are";
         arguments.run.note(&[note.into()]);
-        return Ok((Model::Discrete(model), place));
+        return Ok((model, place));
     };
-    let model = load::model(path)?;
+    let mut notices = Vec::new();
+    let model = match arguments.surface.model(team, &mut notices)? {
+        Some(model) => model,
+        None => load::model(path)?,
+    };
+    arguments.run.note(&notices);
     let options = classify::Options { tolerance: arguments.tolerance, ..classify::Options::default() };
     let (place, report) = classify::classify(team, mesh, &model, &options)
         .map_err(|error| format!("{name} on {}: {error}", path.display()))?;

@@ -2,8 +2,8 @@
 mod look;
 
 use super::files::{Files, Outputs, Target};
-use super::load;
 use super::metric::common::{Failure, RunArguments};
+use super::surface::SurfaceArguments;
 use super::table::figure;
 use crate::geometry::{Evaluate, Geometry, Model, classify, fidelity, names};
 use crate::mesh::TetMesh;
@@ -33,6 +33,8 @@ pub struct Arguments {
     /// The CAD model: its edges, and distances from it
     #[arg(long, value_name = "MODEL")]
     cad: Option<PathBuf>,
+    #[command(flatten)]
+    surface: SurfaceArguments,
     /// The metric at the mesh's vertices that shapes are measured in: .sol or .solb
     #[arg(long, value_name = "FILE", conflicts_with = "analytic")]
     metric: Option<PathBuf>,
@@ -88,7 +90,7 @@ type Outcome = Result<ExitCode, Failure>;
 impl Arguments {
     /// Page and picture, as far as they are asked for.
     fn targets(&self) -> Result<[Option<Target>; 2], String> {
-        let files = Files::new().reads_meshes([&self.mesh]).reads_models(&self.cad);
+        let files = Files::new().reads_meshes([&self.mesh]).reads_models(&self.cad).reads_any(&self.surface.surface);
         let mut files = files.reads(&self.metric).reads(&self.field);
         let mut target = |path: &Option<PathBuf>, by: &str, ending: &str| {
             path.as_ref().map(|path| files.writes(path, by, &[ending])).transpose()
@@ -110,8 +112,7 @@ impl Arguments {
             fields.extend(self.read_field(team, path, mesh.vertices.len())?);
         }
         let mut model_edges = Vec::new();
-        if let Some(path) = &self.cad {
-            let model = load::model(path)?;
+        if let Some(model) = self.surface.model_or(team, self.cad.as_deref())? {
             model_edges = edges_of(&model);
             fields.push(self.distances(team, mesh, &model, &mut figures));
         }

@@ -1,5 +1,5 @@
 //! Refuses configurations whose keys are each allowed, but not together, before the loop begins.
-use super::{Growth, Loaded, NormWord};
+use super::{FIRST, Growth, Loaded, NormWord};
 use crate::metric::multiscale::Norm;
 use crate::view::cut::Plane;
 use std::path::Path;
@@ -36,11 +36,17 @@ impl Loaded {
         if mesh.bootstrap.is_some() && mesh.cad.is_some() {
             return Err("[mesh] cad belongs to file: bootstrap's own model is the model".into());
         }
+        if mesh.surface.is_some() && (mesh.bootstrap.is_some() || mesh.cad.is_some()) {
+            return Err("[mesh] surface belongs to file, and stands instead of cad: leave one of them out".into());
+        }
         if mesh.cube.is_some_and(|cells| !(1..=100).contains(&cells)) {
             return Err("[mesh] cube: give 1 to 100 cells along an edge".into());
         }
         for (key, path) in [("[mesh] file", &mesh.file), ("[mesh] bootstrap", &mesh.bootstrap)] {
             path.as_deref().map_or(Ok(()), |path| self.check_file(key, path))?;
+        }
+        if let Some(surface) = mesh.surface.as_deref().filter(|surface| *surface != Path::new(FIRST)) {
+            self.check_file("[mesh] surface", surface)?;
         }
         mesh.cad.as_deref().map_or(Ok(()), |cad| self.check_file("[mesh] cad", cad))
     }
@@ -90,8 +96,8 @@ impl Loaded {
             return Err("[metric] aspect_ratio: give 1 or more".into());
         }
         let mesh = &self.config.mesh;
-        if metric.geometry == Some(true) && mesh.cad.is_none() && mesh.bootstrap.is_none() {
-            return Err("[metric] geometry = true needs a model: give [mesh] cad, or bootstrap".into());
+        if metric.geometry == Some(true) && mesh.cad.is_none() && mesh.bootstrap.is_none() && mesh.surface.is_none() {
+            return Err("[metric] geometry = true needs a model: give [mesh] cad, surface, or bootstrap".into());
         }
         if metric.geometry == Some(false) && (metric.segments.is_some() || metric.feature_cells.is_some()) {
             return Err(

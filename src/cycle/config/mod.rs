@@ -4,7 +4,9 @@
 mod check;
 mod parts;
 
-pub use parts::{Adapt, Converged, Growth, Mesh, Metric, NormWord, Output, Probe, Schedule, Transfer, TransferMethod};
+pub use parts::{
+    Adapt, Converged, FIRST, Growth, Mesh, Metric, NormWord, Output, Probe, Schedule, Transfer, TransferMethod,
+};
 
 use super::solver::Choice;
 use serde::{Deserialize, Serialize};

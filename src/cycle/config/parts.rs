@@ -3,6 +3,9 @@ use crate::metric::recovery::Recovery;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
+/// What `surface` says for the first mesh itself.
+pub const FIRST: &str = "first";
+
 /// `[mesh]`: a mesh that is there, a model that `geo-adapt bootstrap` makes one of, or the unit cube.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -15,6 +18,8 @@ pub struct Mesh {
     pub bootstrap: Option<PathBuf>,
     /// The model that the boundary of `file` lies on.
     pub cad: Option<PathBuf>,
+    /// Instead of `cad`, the surface that the boundary of `file` lies on, as `adapt --surface` has it. "first" is the first mesh.
+    pub surface: Option<PathBuf>,
     /// The space around the model, as `bootstrap --far-field` has it.
     pub far_field: Option<String>,
     /// The direction in which the model is one half: x, y or z.

@@ -1,14 +1,22 @@
 //! Building a discrete geometry from a mesh.
+use super::corners::find_corners;
+use super::cubic::{CubicCurve, arc};
+use super::foot::NONE;
+use super::nets::Nets;
 use super::patch::Patch;
-use super::polyline::Polyline;
+use super::plane::Plane;
+use super::polyline::{Polyline, is_straight};
+use super::smooth::Smooth;
+use super::tangents::tangents;
 use super::tree::box_of;
-use super::{Chain, Features, outward_triangles, trace_chains};
+use super::vertex_normals::Surface;
+use super::{Chain, EdgeTable, Features, outward_triangles, trace_chains};
 use crate::geometry::classify::{Classification, Error as Unfit};
 use crate::geometry::{
     CurveKind, EdgeEntity, Entity, Error, Evaluate, FaceEntity, Geometry, SurfaceKind, Topology, VertexEntity,
 };
 use crate::mesh::TetMesh;
-use crate::mesh::vector::{Vec3, distance, dot, sub, unit};
+use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team};
 
 /// Dihedral angle in degrees beyond which an edge is a ridge by default.
@@ -18,13 +26,42 @@ pub const DEFAULT_RIDGE_ANGLE: f64 = 45.0;
 /// of a file in single precision.
 const FLAT: f64 = 1e-7;
 
+/// A vertex is on the plane of its neighbours, or on a straight run of a ridge, within this share of the mesh's diagonal; where all
+/// coordinates are numbers of single precision within this share of the greatest of them.
+const ROUNDING: f64 = 1e-11;
+const SINGLE: f64 = 1.2e-7;
+
+/// How a mesh becomes a geometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscreteOptions {
+    /// Dihedral angle in degrees beyond which an edge is a ridge; 180 for none but those that the mesh lists and those between references.
+    pub ridge_angle_deg: f64,
+    /// Whether faces and edges are smooth: cubic patches and curves; else the triangles and edges as they are.
+    pub smooth: bool,
+}
+
+impl Default for DiscreteOptions {
+    fn default() -> Self {
+        Self { ridge_angle_deg: DEFAULT_RIDGE_ANGLE, smooth: true }
+    }
+}
+
+/// A side of a triangle beside a segment of an edge.
+pub(super) struct Beside {
+    pub face: u32,
+    /// 3·triangle + side within the face.
+    pub side: u32,
+    /// Whether the side runs as the edge does.
+    pub along: bool,
+}
+
 /// The surface of a mesh as a geometry: patches of triangles are faces, chains of ridges edges.
 pub struct Discrete {
     pub(super) topology: Topology,
     pub(super) curves: Vec<Polyline>,
     pub(super) patches: Vec<Patch>,
-    /// Per edge and segment the faces beside it, each with the triangle of that face.
-    pub(super) beside: Vec<Vec<Vec<(u32, u32)>>>,
+    /// Per edge and segment the sides of triangles there.
+    pub(super) beside: Vec<Vec<Vec<Beside>>>,
     /// Reference of the triangles of each face.
     pub(super) face_refs: Vec<i32>,
     /// Reference of the listed edges of each edge.
@@ -32,19 +69,27 @@ pub struct Discrete {
 }
 
 impl Discrete {
+    /// The mesh's surface as its own geometry, smooth, and the mesh put on it: [`Discrete::new`] with the ridge angle (degrees).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn from_mesh(team: Team<'_>, mesh: &TetMesh, ridge_angle_deg: f64) -> Result<(Self, Classification), Error> {
+        Self::new(team, mesh, &DiscreteOptions { ridge_angle_deg, ..DiscreteOptions::default() })
+    }
+
     /// The mesh's surface as its own geometry, and the mesh put on it.
     ///
     /// Ridges are the mesh's listed edges, edges between references, non-manifold edges, and edges with a dihedral angle
-    /// beyond `ridge_angle_deg` (degrees). Corners are listed ones, required vertices, ends and branches of ridges,
+    /// beyond the ridge angle. Corners are listed ones, required vertices, ends and branches of ridges,
     /// and vertices at which a chain of ridges turns by more than the angle, or changes its reference or its faces.
     ///
     /// # Errors
     /// If the mesh has no triangles; see [`super::complete_boundary`].
-    pub fn from_mesh(team: Team<'_>, mesh: &TetMesh, ridge_angle_deg: f64) -> Result<(Self, Classification), Error> {
+    pub fn new(team: Team<'_>, mesh: &TetMesh, options: &DiscreteOptions) -> Result<(Self, Classification), Error> {
         if mesh.triangles.is_empty() {
             return Err(Unfit::NoTriangles.into());
         }
-        let builder = Builder::new(team, mesh, ridge_angle_deg);
+        let builder = Builder::new(team, mesh, options);
         let model = builder.model();
         let classification = builder.classification(&model);
         Ok((model, classification))
@@ -55,6 +100,9 @@ impl Discrete {
 struct Builder<'a> {
     team: Team<'a>,
     mesh: &'a TetMesh,
+    smooth: bool,
+    /// The triangles, outward.
+    triangles: Vec<[u32; 3]>,
     features: Features,
     /// Ridges as indices into the features' edges.
     ridges: Vec<u32>,
@@ -64,8 +112,14 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(team: Team<'a>, mesh: &'a TetMesh, ridge_angle_deg: f64) -> Self {
-        let features = Features::detect(team, mesh, ridge_angle_deg);
+    fn new(team: Team<'a>, mesh: &'a TetMesh, options: &DiscreteOptions) -> Self {
+        let DiscreteOptions { ridge_angle_deg, smooth } = *options;
+        let triangles = outward_triangles(team, mesh);
+        let mut features = Features::detect(team, mesh, ridge_angle_deg);
+        if triangles != mesh.triangles.nodes {
+            // The same edges, by the sides of the triangles as they are now.
+            features.edges = EdgeTable::new(team, &triangles);
+        }
         let ridges: Vec<u32> = (0..features.edges.len() as u32).filter(|&e| features.ridge[e as usize]).collect();
         let is_corner = find_corners(mesh, &features, &ridges, ridge_angle_deg);
         let nodes: Vec<[u32; 2]> = ridges.iter().map(|&e| features.edges.nodes[e as usize]).collect();
@@ -78,24 +132,41 @@ impl<'a> Builder<'a> {
             })
         };
         let corners = is_corner.into_iter().map(&mut number).collect();
-        Self { team, mesh, features, ridges, chains, corners }
+        Self { team, mesh, smooth, triangles, features, ridges, chains, corners }
     }
 
     fn model(&self) -> Discrete {
-        let triangles = outward_triangles(self.team, self.mesh);
         let members = self.features.members();
         let bounds = box_of(self.mesh.triangles.nodes.iter().flatten().map(|&v| self.mesh.vertices[v as usize]));
-        let flat = FLAT * distance(bounds[0], bounds[1]);
-        let patches: Vec<Patch> = members
+        let diagonal = distance(bounds[0], bounds[1]);
+        let of_face =
+            |members: &[u32]| -> Vec<[u32; 3]> { members.iter().map(|&t| self.triangles[t as usize]).collect() };
+        let planes: Vec<Option<Plane>> = members
             .iter()
             .map(|members| {
-                let nodes: Vec<[u32; 3]> = members.iter().map(|&t| triangles[t as usize]).collect();
-                Patch::new(&self.mesh.vertices, &nodes, flat)
+                let corners = |nodes: [u32; 3]| nodes.map(|v| self.mesh.vertices[v as usize]);
+                let triangles: Vec<[Vec3; 3]> = of_face(members).into_iter().map(corners).collect();
+                Plane::fit(&triangles, FLAT * diagonal)
             })
             .collect();
-        let beside = self.beside(&members);
-        let curves: Vec<Polyline> =
-            self.chains.iter().map(|chain| Polyline::new(self.points(&chain.vertices), self.is_ring(chain))).collect();
+        let within = self.within(&members);
+        let (mut smooth, curves) = match self.smooth {
+            true => self.smooth(&members, &within, &planes, diagonal),
+            false => (members.iter().map(|_| None).collect(), self.chains.iter().map(|_| Vec::new()).collect()),
+        };
+        let patches: Vec<Patch> = members
+            .iter()
+            .zip(planes)
+            .zip(smooth.drain(..))
+            .map(|((members, plane), smooth)| Patch::new(&self.mesh.vertices, &of_face(members), plane, smooth))
+            .collect();
+        let beside = self.beside(&within);
+        let curves: Vec<Polyline> = self
+            .chains
+            .iter()
+            .zip(curves)
+            .map(|(chain, curves)| Polyline::new(self.points(&chain.vertices), curves, self.is_ring(chain)))
+            .collect();
         let mut topology = Topology { solids: 1, bounds, ..Topology::default() };
         self.list_vertices(&mut topology);
         self.list_edges(&mut topology, &curves, &beside);
@@ -119,17 +190,103 @@ impl<'a> Builder<'a> {
         chain.is_closed() && self.corners[chain.vertices[0] as usize].is_none()
     }
 
-    /// Per chain and step the faces beside, with the triangle's number within its patch.
-    fn beside(&self, members: &[Vec<u32>]) -> Vec<Vec<Vec<(u32, u32)>>> {
+    /// The number of each triangle within its face.
+    fn within(&self, members: &[Vec<u32>]) -> Vec<u32> {
         let mut within = vec![0u32; self.features.patch.len()];
         for members in members {
             members.iter().enumerate().for_each(|(k, &t)| within[t as usize] = k as u32);
         }
-        let step = |&ridge: &u32| {
+        within
+    }
+
+    /// Per chain and step the sides of triangles there.
+    fn beside(&self, within: &[u32]) -> Vec<Vec<Vec<Beside>>> {
+        let step = |(&ridge, &start): (&u32, &u32)| {
             let edge = self.ridges[ridge as usize] as usize;
-            self.features.edges.triangles(edge).map(|t| (self.features.patch[t], within[t])).collect()
+            let sides = self.features.edges.sides(edge).iter().map(|&side| {
+                let (t, k) = (side as usize / 3, side as usize % 3);
+                let along = self.triangles[t][k] == start;
+                Beside { face: self.features.patch[t], side: 3 * within[t] + k as u32, along }
+            });
+            sides.collect()
         };
-        self.chains.iter().map(|chain| chain.edges.iter().map(step).collect()).collect()
+        self.chains.iter().map(|chain| chain.edges.iter().zip(&chain.vertices).map(step).collect()).collect()
+    }
+
+    /// The cubic patches of the faces, and the curves of the chains; none where all are flat or straight.
+    fn smooth(
+        &self,
+        members: &[Vec<u32>],
+        within: &[u32],
+        planes: &[Option<Plane>],
+        diagonal: f64,
+    ) -> (Vec<Option<Smooth>>, Vec<Vec<CubicCurve>>) {
+        let edges = &self.features.edges;
+        let mut is_flat: Vec<bool> = planes.iter().map(Option::is_some).collect();
+        let rounding = self.rounding(diagonal);
+        for edge in (0..edges.len()).filter(|&edge| !self.features.ridge[edge]) {
+            if let &[first, second] = edges.sides(edge) {
+                let start = |side: u32| self.triangles[side as usize / 3][side as usize % 3];
+                is_flat[self.features.patch[first as usize / 3] as usize] |= start(first) == start(second);
+            }
+        }
+        // The curve of each ridge, from its first node to its second.
+        let (mut ridges, mut ridge_of) = (Vec::with_capacity(self.ridges.len()), vec![None; edges.len()]);
+        for chain in &self.chains {
+            let points = self.points(&chain.vertices);
+            let tangents = tangents(&points, self.is_ring(chain), rounding);
+            for (i, &ridge) in chain.edges.iter().enumerate() {
+                let edge = self.ridges[ridge as usize] as usize;
+                let mut curve = arc(points[i], points[i + 1], [tangents[i], tangents[i + 1]]);
+                if edges.nodes[edge][0] != chain.vertices[i] {
+                    curve.reverse();
+                }
+                ridge_of[edge] = Some(ridges.len() as u32);
+                ridges.push(curve);
+            }
+        }
+        let (points, triangles, features) = (&self.mesh.vertices, &self.triangles, &self.features);
+        let surface = Surface { points, triangles, features, is_flat: &is_flat, rounding };
+        let nets = Nets::new(self.team, &surface, ridges, &ridge_of);
+        let mut rest = nets.ridges.into_iter();
+        let mut curves_of = |chain: &Chain| {
+            let mut curves: Vec<CubicCurve> = rest.by_ref().take(chain.edges.len()).collect();
+            for (i, curve) in curves.iter_mut().enumerate() {
+                if edges.nodes[self.ridges[chain.edges[i] as usize] as usize][0] != chain.vertices[i] {
+                    curve.reverse();
+                }
+            }
+            if curves.iter().all(is_straight) { Vec::new() } else { curves }
+        };
+        let curves = self.chains.iter().map(&mut curves_of).collect();
+        let shapes = std::sync::Arc::new(nets.shapes);
+        let beyond = |t: u32, k: usize| {
+            let edge = edges.of_side[3 * t as usize + k] as usize;
+            let own = 3 * t + k as u32;
+            match edges.sides(edge) {
+                &[first, second] if !features.ridge[edge] => {
+                    let other = if first == own { second } else { first };
+                    3 * within[other as usize / 3] + other % 3
+                }
+                _ => NONE,
+            }
+        };
+        let smooth = members.iter().map(|members| {
+            Smooth::new(
+                members.iter().map(|&t| nets.of_triangle[t as usize]),
+                members.iter().flat_map(|&t| [0, 1, 2].map(|k| beyond(t, k))).collect(),
+                std::sync::Arc::clone(&shapes),
+                members.iter().map(|&t| [0, 1, 2].map(|k| nets.sectors.of_corner[3 * t as usize + k])).collect(),
+            )
+        });
+        (smooth.collect(), curves)
+    }
+
+    /// How far a point may be off by the rounding of the file, model units.
+    fn rounding(&self, diagonal: f64) -> f64 {
+        let used = || self.mesh.triangles.nodes.iter().flatten().flat_map(|&v| self.mesh.vertices[v as usize]);
+        let is_single = used().all(|x| f64::from(x as f32) == x);
+        if is_single { SINGLE * used().fold(0.0, |most, x| x.abs().max(most)) } else { ROUNDING * diagonal }
     }
 
     fn list_vertices(&self, topology: &mut Topology) {
@@ -141,7 +298,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn list_edges(&self, topology: &mut Topology, curves: &[Polyline], beside: &[Vec<Vec<(u32, u32)>>]) {
+    fn list_edges(&self, topology: &mut Topology, curves: &[Polyline], beside: &[Vec<Vec<Beside>>]) {
         for (e, chain) in self.chains.iter().enumerate() {
             let ends = [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]];
             let vertices = ends.map(|v| self.corners[v as usize]);
@@ -150,7 +307,7 @@ impl<'a> Builder<'a> {
                     topology.vertices[*vertex as usize].edges.push(e as u32);
                 }
             }
-            let mut faces: Vec<u32> = beside[e].iter().flatten().map(|(face, _)| *face).collect();
+            let mut faces: Vec<u32> = beside[e].iter().flatten().map(|beside| beside.face).collect();
             faces.sort_unstable();
             faces.dedup();
             let length = curves[e].length();
@@ -229,78 +386,4 @@ impl<'a> Builder<'a> {
         }
         result
     }
-}
-
-/// Which mesh vertices are corners of the surface.
-fn find_corners(mesh: &TetMesh, features: &Features, ridges: &[u32], angle_deg: f64) -> Vec<bool> {
-    let count = mesh.vertices.len();
-    let mut on_surface = vec![false; count];
-    mesh.triangles.nodes.iter().flatten().for_each(|&v| on_surface[v as usize] = true);
-    let mut corner = vec![false; count];
-    for &v in mesh.corners.iter().chain(&mesh.required_vertices) {
-        corner[v as usize] = on_surface[v as usize];
-    }
-    // Ridges at each vertex: how many, and the first two.
-    let mut at = vec![(0u32, [0u32; 2]); count];
-    for &edge in ridges {
-        for v in features.edges.nodes[edge as usize] {
-            let (n, first) = &mut at[v as usize];
-            if *n < 2 {
-                first[*n as usize] = edge;
-            }
-            *n += 1;
-        }
-    }
-    let least_cosine = angle_deg.to_radians().cos();
-    for v in 0..count {
-        corner[v] |= match at[v] {
-            (0, _) => false,
-            (2, pair) => splits(mesh, features, v as u32, pair, least_cosine),
-            _ => true,
-        };
-    }
-    for v in touching_patches(mesh, features, &at) {
-        corner[v] = true;
-    }
-    corner
-}
-
-/// Whether two ridges that meet at a vertex belong to different edges of the geometry.
-fn splits(mesh: &TetMesh, features: &Features, v: u32, [e, f]: [u32; 2], least_cosine: f64) -> bool {
-    let other = |edge: u32| {
-        let [a, b] = features.edges.nodes[edge as usize];
-        mesh.vertices[(a ^ b ^ v) as usize]
-    };
-    let here = mesh.vertices[v as usize];
-    let turn = dot(unit(sub(here, other(e))), unit(sub(other(f), here)));
-    turn < least_cosine
-        || features.listed[e as usize] != features.listed[f as usize]
-        || patches_beside(features, e) != patches_beside(features, f)
-}
-
-fn patches_beside(features: &Features, edge: u32) -> Vec<u32> {
-    let mut patches: Vec<u32> = features.edges.triangles(edge as usize).map(|t| features.patch[t]).collect();
-    patches.sort_unstable();
-    patches.dedup();
-    patches
-}
-
-/// Vertices at which a patch touches others without a ridge between them.
-fn touching_patches(mesh: &TetMesh, features: &Features, at: &[(u32, [u32; 2])]) -> Vec<usize> {
-    let mut found = Vec::new();
-    let mut only = vec![u32::MAX; mesh.vertices.len()];
-    for (nodes, &patch) in mesh.triangles.nodes.iter().zip(&features.patch) {
-        for v in nodes.map(|v| v as usize) {
-            let foreign = match at[v] {
-                (0, _) => only[v] != u32::MAX && only[v] != patch,
-                (2, [edge, _]) => !patches_beside(features, edge).contains(&patch),
-                _ => false,
-            };
-            only[v] = patch;
-            if foreign {
-                found.push(v);
-            }
-        }
-    }
-    found
 }

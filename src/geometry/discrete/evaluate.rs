@@ -32,11 +32,12 @@ impl Evaluate for DiscreteEvaluator<'_> {
     }
 
     fn edge_on_face(&mut self, edge: u32, t: f64, face: u32) -> Option<[f64; 2]> {
-        let curve = &self.0.curves[edge as usize];
-        let (segment, _) = curve.locate(t);
-        let (_, triangle) =
-            self.0.beside[edge as usize][segment].iter().find(|(beside, _)| *beside == face).copied()?;
-        Some(self.0.patches[face as usize].parameters_on(triangle as usize, curve.frame(t).point))
+        let (segment, s) = self.0.curves[edge as usize].locate(t);
+        let beside = self.0.beside[edge as usize][segment].iter().find(|beside| beside.face == face)?;
+        Some(
+            self.0.patches[face as usize]
+                .parameters_on_side(beside.side as usize, if beside.along { s } else { 1.0 - s }),
+        )
     }
 
     fn closest_on_edge(&mut self, edge: u32, point: Vec3, guess: Option<f64>) -> OnCurve {

@@ -2,20 +2,32 @@
 mod boundary;
 mod build;
 mod chains;
+mod corners;
+mod cubic;
 mod edges;
 mod evaluate;
 mod features;
+mod foot;
+mod local_fit;
+mod nets;
 mod patch;
+mod plane;
 mod polyline;
 mod restore;
 #[cfg(test)]
 pub(crate) mod samples;
+mod sectors;
+mod smooth;
+#[cfg(test)]
+mod smooth_tests;
+mod tangents;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod vertex_normals;
 
 pub use boundary::{complete_boundary, complete_matched, outward_triangles};
-pub use build::{DEFAULT_RIDGE_ANGLE, Discrete};
+pub use build::{DEFAULT_RIDGE_ANGLE, Discrete, DiscreteOptions};
 pub use evaluate::DiscreteEvaluator;
 
 pub(crate) use chains::{Chain, trace_chains};

@@ -1,17 +1,12 @@
-//! The shape of a discrete face: a patch of triangles, exact where it is plane.
+//! The shape of a discrete face: a patch of triangles, exact where it is plane, smooth where it has cubic patches.
+use super::plane::Plane;
 use super::polyline::closest_on_triangle;
-use super::tree::{Box3, BoxTree, box_of, join};
+use super::smooth::Smooth;
+use super::tree::{Box3, BoxTree, EMPTY, box_of, join};
 use crate::geometry::{OnSurface, SurfaceFrame, principal};
 use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale, sub, unit};
 use nalgebra::{Matrix2, Matrix6x3, RowVector3, Vector3, Vector6};
 use std::collections::HashMap;
-
-/// A plane with its axes: e1 × e2 = normal.
-struct Plane {
-    origin: Vec3,
-    axes: [Vec3; 2],
-    normal: Vec3,
-}
 
 /// Triangles of one discrete face, normals outward.
 ///
@@ -23,20 +18,22 @@ pub(crate) struct Patch {
     /// Normals of the patch at the corners of each triangle, mean over the patch's triangles there.
     corner_normals: Vec<[Vec3; 3]>,
     plane: Option<Plane>,
+    /// What makes it smooth; none where all triangles are flat.
+    smooth: Option<Smooth>,
     tree: BoxTree,
     bounds: Box3,
 }
 
 impl Patch {
-    /// A patch of at least one triangle; plane if no vertex is farther than `flat` from its mean plane.
-    pub fn new(points: &[Vec3], nodes: &[[u32; 3]], flat: f64) -> Self {
+    /// A patch of at least one triangle, plane or with cubic patches or of flat triangles alone.
+    pub fn new(points: &[Vec3], nodes: &[[u32; 3]], plane: Option<Plane>, smooth: Option<Smooth>) -> Self {
         let triangles: Vec<[Vec3; 3]> = nodes.iter().map(|n| n.map(|v| points[v as usize])).collect();
         let normals: Vec<Vec3> = triangles.iter().map(|&[a, b, c]| unit(area2(a, b, c))).collect();
         let boxes: Vec<Box3> = triangles.iter().map(|&corners| box_of(corners)).collect();
-        let plane = Plane::fit(&triangles, &normals, flat);
-        let corner_normals = if plane.is_some() { Vec::new() } else { corner_normals(nodes, &triangles) };
-        let bounds = boxes.iter().copied().reduce(join).unwrap_or([[0.0; 3]; 2]);
-        Self { tree: BoxTree::new(&boxes), triangles, normals, corner_normals, plane, bounds }
+        let is_flat = plane.is_none() && smooth.is_none();
+        let corner_normals = if is_flat { corner_normals(nodes, &triangles) } else { Vec::new() };
+        let bounds = boxes.iter().copied().chain(smooth.iter().map(Smooth::bounds)).fold(EMPTY, join);
+        Self { tree: BoxTree::new(&boxes), triangles, normals, corner_normals, plane, smooth, bounds }
     }
 
     /// Box of the patch.
@@ -64,9 +61,12 @@ impl Patch {
         }
     }
 
-    /// Parameters of a point known to be on triangle k.
-    pub fn parameters_on(&self, k: usize, p: Vec3) -> [f64; 2] {
-        self.parameters(k, closest_on_triangle(self.triangles[k], p))
+    /// Parameters at the share s of a side, 3·triangle + side.
+    pub fn parameters_on_side(&self, side: usize, s: f64) -> [f64; 2] {
+        let mut weights = [0.0; 3];
+        weights[side % 3] = 1.0 - s;
+        weights[(side % 3 + 1) % 3] = s;
+        self.parameters(side / 3, weights)
     }
 
     /// Triangle and weights at parameters, of a patch that is not plane.
@@ -79,18 +79,29 @@ impl Patch {
         (k, [1.0 - (b1 + b2) / sum, b1 / sum, b2 / sum])
     }
 
+    /// The point of triangle k, or of its cubic patch, with barycentric weights.
     fn at(&self, k: usize, weights: [f64; 3]) -> Vec3 {
+        match &self.smooth {
+            Some(smooth) => smooth.point(k, self.triangles[k], weights),
+            None => self.on_chord(k, weights),
+        }
+    }
+
+    fn on_chord(&self, k: usize, weights: [f64; 3]) -> Vec3 {
         let [a, b, c] = self.triangles[k];
         add(add(scale(a, weights[0]), scale(b, weights[1])), scale(c, weights[2]))
     }
 
-    /// Outward normal at parameters. It is the triangle's own at its centroid and tends to the mean of the
+    /// Outward normal at parameters. On flat triangles it is the triangle's own at its centroid and tends to the mean of the
     /// neighbours towards its sides, so it is continuous and the input's triangles have no normal deviation.
     pub fn normal(&self, uv: [f64; 2]) -> Vec3 {
         if let Some(plane) = &self.plane {
             return plane.normal;
         }
         let (k, w) = self.locate(uv);
+        if let Some(smooth) = &self.smooth {
+            return smooth.normal(k, self.triangles[k], w);
+        }
         let bubble = 27.0 * w[0] * w[1] * w[2];
         let [a, b, c] = self.corner_normals[k];
         let rim = add(add(scale(a, w[0]), scale(b, w[1])), scale(c, w[2]));
@@ -104,6 +115,9 @@ impl Patch {
         }
         let (k, weights) = self.locate(uv);
         let [a, b, c] = self.triangles[k];
+        if let Some(smooth) = &self.smooth {
+            return smooth.frame(k, [a, b, c], weights);
+        }
         let (curvatures, directions) = self.curvatures(k);
         SurfaceFrame {
             point: self.at(k, weights),
@@ -115,26 +129,33 @@ impl Patch {
         }
     }
 
-    /// Closest point of the patch. The guess only bounds the search.
+    /// Closest point of the patch. The guess only bounds the search for the closest flat triangle; on cubic patches the foot is looked
+    /// for from there.
     pub fn closest(&self, p: Vec3, guess: Option<[f64; 2]>) -> OnSurface {
         let first = match (guess, &self.plane) {
             (Some(uv), None) => self.locate(uv).0,
             _ => 0,
         };
         let measure = |k: usize| {
-            let away = sub(p, self.at(k, closest_on_triangle(self.triangles[k], p)));
+            let away = sub(p, self.on_chord(k, closest_on_triangle(self.triangles[k], p)));
             dot(away, away)
         };
         let nearest = self.tree.nearest(p, measure(first), |k| measure(k as usize)).map_or(first, |k| k as usize);
-        let weights = closest_on_triangle(self.triangles[nearest], p);
-        let mut point = self.at(nearest, weights);
+        let mut k = nearest;
+        let mut weights = closest_on_triangle(self.triangles[k], p);
+        let mut inside = weights.iter().all(|&w| w > 0.0);
+        let mut point = self.on_chord(k, weights);
+        if let Some(smooth) = self.smooth.as_ref().filter(|smooth| !(inside && smooth.is_chord(k))) {
+            let foot = smooth.foot(p, k, weights, |k| self.triangles[k]);
+            (k, weights, point) = (foot.triangle, foot.weights, foot.point);
+            inside = weights.iter().all(|&w| w > 0.0);
+        }
         if let Some(plane) = &self.plane {
             // The mean plane is the face. Its triangles only bound it.
-            let inside = weights.iter().all(|&w| w > 0.0);
             point = plane.project(if inside { p } else { point });
             return OnSurface { uv: plane.parameters(point), point, distance: distance(p, point) };
         }
-        OnSurface { uv: self.parameters(nearest, weights), point, distance: distance(p, point) }
+        OnSurface { uv: self.parameters(k, weights), point, distance: distance(p, point) }
     }
 
     /// Closest point of the plane of a plane patch, whether or not the triangles reach there; else as [`Patch::closest`].
@@ -176,44 +197,6 @@ fn least_squares(a: Matrix6x3<f64>, b: Vector6<f64>) -> Option<Vector3<f64>> {
     let (q, r) = a.qr().unpack();
     let is_told = (0..3).all(|k| r[(k, k)].abs() > SINGULAR * a.column(k).norm());
     is_told.then(|| r.solve_upper_triangular(&q.tr_mul(&b))).flatten()
-}
-
-impl Plane {
-    fn fit(triangles: &[[Vec3; 3]], normals: &[Vec3], flat: f64) -> Option<Self> {
-        let (mut sum, mut moment, mut total) = ([0.0; 3], [0.0; 3], 0.0);
-        for &[a, b, c] in triangles {
-            let twice = area2(a, b, c);
-            sum = add(sum, twice);
-            total += norm(twice);
-            moment = add(moment, scale(add(add(a, b), c), norm(twice) / 3.0));
-        }
-        if total == 0.0 || normals.iter().any(|&n| dot(n, sum) < 0.0) {
-            return None;
-        }
-        let (origin, normal) = (scale(moment, 1.0 / total), unit(sum));
-        if triangles.iter().flatten().any(|&p| dot(sub(p, origin), normal).abs() > flat) {
-            return None;
-        }
-        let least = (1..3).fold(0, |m, i| if normal[i].abs() < normal[m].abs() { i } else { m });
-        let mut axis = [0.0; 3];
-        axis[least] = 1.0;
-        let e1 = unit(cross(axis, normal));
-        Some(Self { origin, axes: [e1, cross(normal, e1)], normal })
-    }
-
-    fn parameters(&self, p: Vec3) -> [f64; 2] {
-        self.axes.map(|axis| dot(sub(p, self.origin), axis))
-    }
-
-    fn project(&self, p: Vec3) -> Vec3 {
-        sub(p, scale(self.normal, dot(sub(p, self.origin), self.normal)))
-    }
-
-    fn frame(&self, uv: [f64; 2]) -> SurfaceFrame {
-        let point = add(self.origin, add(scale(self.axes[0], uv[0]), scale(self.axes[1], uv[1])));
-        let [du, dv] = self.axes;
-        SurfaceFrame { point, du, dv, normal: self.normal, curvatures: [0.0; 2], directions: self.axes }
-    }
 }
 
 /// Means of the triangles' normals at the patch's vertices, weighted with the angle there.

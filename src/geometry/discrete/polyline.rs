@@ -1,15 +1,26 @@
-//! The shape of a discrete edge: a polyline by arc length.
+//! The shape of a discrete edge: a chain of segments, each straight or a cubic curve, by arc length.
+use super::cubic::{CubicCurve, curve_at, straight};
 use super::tree::{BoxTree, box_of};
 use crate::geometry::{CurveFrame, OnCurve};
-use crate::mesh::vector::{Vec3, add, distance, dot, lerp, scale, sub, unit};
+use crate::mesh::vector::{Vec3, add, distance, dot, lerp, norm, scale, sub, unit};
 
-/// A chain of segments, parametrised by arc length from 0.
+/// Gauss' points and weights on [0, 1], of order 6: arc length.
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+/// Newton's steps on a segment, and moves from one to the next.
+const STEPS: usize = 16;
+const MOVES: usize = 6;
+
+/// A chain of segments, parametrised by arc length from 0; within a segment the parameter is that of its cubic.
 pub(crate) struct Polyline {
     /// Points, a closed line repeats the first at the end; shape (segments + 1, 3).
     points: Vec<Vec3>,
+    /// The curves between them; none where all are straight.
+    curves: Vec<CubicCurve>,
     /// Arc length at each point.
     lengths: Vec<f64>,
-    /// Curvature vector C″ at each point, from the turn between its two segments.
+    /// Curvature vector C″ at each point, from the turn between its two segments: of a line of straight segments.
     bends: Vec<Vec3>,
     tree: BoxTree,
     /// Whether the line is a smooth ring: its parameter has a period.
@@ -17,15 +28,24 @@ pub(crate) struct Polyline {
 }
 
 impl Polyline {
-    /// A polyline through at least two points; `ring` when it is closed and has no corner.
-    pub fn new(points: Vec<Vec3>, ring: bool) -> Self {
+    /// A polyline through at least two points; `ring` when it is closed and has no corner. Without curves it is straight between them.
+    pub fn new(points: Vec<Vec3>, curves: Vec<CubicCurve>, ring: bool) -> Self {
+        let segments = points.len() - 1;
         let mut lengths = vec![0.0; points.len()];
-        for i in 1..points.len() {
-            lengths[i] = lengths[i - 1] + distance(points[i - 1], points[i]);
+        for i in 0..segments {
+            let speed = |s: f64| norm(curve_at(&curves[i], s)[1]);
+            let arc = match curves.is_empty() {
+                true => distance(points[i], points[i + 1]),
+                false => GAUSS.iter().map(|&(s, weight)| weight * speed(s)).sum(),
+            };
+            lengths[i + 1] = lengths[i] + arc;
         }
-        let boxes: Vec<_> = points.windows(2).map(|ends| box_of([ends[0], ends[1]])).collect();
-        let bends = bends(&points, ring);
-        Self { tree: BoxTree::new(&boxes), points, lengths, bends, ring }
+        let boxes: Vec<_> = match curves.is_empty() {
+            true => points.windows(2).map(|ends| box_of([ends[0], ends[1]])).collect(),
+            false => curves.iter().map(|curve| box_of(*curve)).collect(),
+        };
+        let bends = if curves.is_empty() { bends(&points, ring) } else { Vec::new() };
+        Self { tree: BoxTree::new(&boxes), points, curves, lengths, bends, ring }
     }
 
     /// Arc length of the whole.
@@ -46,6 +66,12 @@ impl Polyline {
     /// Point and derivatives at arc length t.
     pub fn frame(&self, t: f64) -> CurveFrame {
         let (i, s) = self.locate(t);
+        if let Some(curve) = self.curves.get(i) {
+            let [point, d1, d2] = curve_at(curve, s);
+            let step = self.lengths[i + 1] - self.lengths[i];
+            let by = if step > 0.0 { 1.0 / step } else { 0.0 };
+            return CurveFrame { point, d1: scale(d1, by), d2: scale(d2, by * by) };
+        }
         CurveFrame {
             point: lerp(self.points[i], self.points[i + 1], s),
             d1: unit(sub(self.points[i + 1], self.points[i])),
@@ -53,23 +79,97 @@ impl Polyline {
         }
     }
 
-    /// Closest point, over all segments; the guess only bounds the search.
+    /// Closest point; the guess only bounds the search. On curves it is looked for from the closest chord.
     pub fn closest(&self, p: Vec3, guess: Option<f64>) -> OnCurve {
         let first = guess.filter(|t| t.is_finite()).map_or(0, |t| self.locate(t).0);
-        let bound = self.on_segment(first, p).distance;
-        let nearer = self.tree.nearest(p, bound * bound, |i| self.on_segment(i as usize, p).distance.powi(2));
-        self.on_segment(nearer.map_or(first, |i| i as usize), p)
+        let bound = self.on_chord(first, p).1;
+        let nearer = self.tree.nearest(p, bound * bound, |i| self.on_chord(i as usize, p).1.powi(2));
+        let i = nearer.map_or(first, |i| i as usize);
+        let (s, distance) = self.on_chord(i, p);
+        if self.curves.is_empty() {
+            return self.on_segment(i, s, (lerp(self.points[i], self.points[i + 1], s), distance));
+        }
+        self.walk(i, s, p)
     }
 
-    fn on_segment(&self, i: usize, p: Vec3) -> OnCurve {
+    /// Fraction of the chord of segment i that is closest to p, and its distance.
+    fn on_chord(&self, i: usize, p: Vec3) -> (f64, f64) {
         let (a, b) = (self.points[i], self.points[i + 1]);
         let along = sub(b, a);
         let square = dot(along, along);
         let s = if square > 0.0 { (dot(sub(p, a), along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        let point = lerp(a, b, s);
-        let t = self.lengths[i] + s * (self.lengths[i + 1] - self.lengths[i]);
-        OnCurve { t, point, distance: distance(p, point) }
+        (s, distance(p, lerp(a, b, s)))
     }
+
+    fn on_segment(&self, i: usize, s: f64, (point, distance): (Vec3, f64)) -> OnCurve {
+        OnCurve { t: self.lengths[i] + s * (self.lengths[i + 1] - self.lengths[i]), point, distance }
+    }
+
+    /// The foot of p on the curves, from a place on one of them; over the end of one to the next.
+    fn walk(&self, mut i: usize, mut s: f64, p: Vec3) -> OnCurve {
+        let count = self.curves.len();
+        let mut best: Option<OnCurve> = None;
+        for _ in 0..MOVES {
+            s = closest_on_curve(&self.curves[i], s, p);
+            let point = curve_at(&self.curves[i], s)[0];
+            let found = self.on_segment(i, s, (point, distance(p, point)));
+            if best.is_some_and(|best| best.distance <= found.distance) {
+                break;
+            }
+            best = Some(found);
+            let next = match s {
+                0.0 if i > 0 => (i - 1, 1.0),
+                0.0 if self.ring => (count - 1, 1.0),
+                1.0 if i + 1 < count => (i + 1, 0.0),
+                1.0 if self.ring => (0, 0.0),
+                _ => break,
+            };
+            (i, s) = next;
+        }
+        best.unwrap_or_else(|| self.on_segment(i, s, (self.points[i], distance(p, self.points[i]))))
+    }
+}
+
+/// The parameter in [0, 1] at which a curve is closest to p, from one nearby: Newton's steps for (C − p)·C′ = 0, halved until the
+/// distance falls.
+pub(crate) fn closest_on_curve(curve: &CubicCurve, from: f64, p: Vec3) -> f64 {
+    let mut s = from;
+    let mut at = curve_at(curve, s);
+    for _ in 0..STEPS {
+        let away = sub(at[0], p);
+        let (slope, square) = (dot(away, at[1]), dot(at[1], at[1]));
+        let bend = square + dot(away, at[2]);
+        // Where the distance is not convex, the step of Gauss and Newton goes down all the same.
+        let by = if bend > 0.1 * square { bend } else { square };
+        let moves = by > 0.0;
+        if !moves {
+            break;
+        }
+        let mut next = (s - slope / by).clamp(0.0, 1.0);
+        let mut there = curve_at(curve, next);
+        let here = dot(away, away);
+        for _ in 0..4 {
+            let square = dot(sub(there[0], p), sub(there[0], p));
+            if square <= here * (1.0 + 1e-12) {
+                break;
+            }
+            next = 0.5 * (s + next);
+            there = curve_at(curve, next);
+        }
+        let step = (next - s).abs();
+        (s, at) = (next, there);
+        if step < 1e-13 {
+            break;
+        }
+    }
+    s
+}
+
+/// Whether a curve is its chord, at constant speed, but for rounding.
+pub(crate) fn is_straight(curve: &CubicCurve) -> bool {
+    let line = straight(curve[0], curve[3]);
+    let chord = distance(curve[0], curve[3]);
+    distance(curve[1], line[1]).max(distance(curve[2], line[2])) <= 1e-13 * chord
 }
 
 /// C″ at the points: the turn of the unit tangent over the mean length of the two segments. The ends of an

@@ -1,6 +1,6 @@
 //! Tests of the discrete geometry on meshes built here.
 use super::samples::{cube, sphere};
-use super::{DEFAULT_RIDGE_ANGLE, Discrete, complete_boundary, outward_triangles};
+use super::{DEFAULT_RIDGE_ANGLE, Discrete, DiscreteOptions, complete_boundary, outward_triangles};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Geometry};
 use crate::mesh::TetMesh;
@@ -9,6 +9,10 @@ use crate::tasks::Team;
 
 fn discrete(mesh: &TetMesh) -> (Discrete, Classification) {
     Discrete::from_mesh(Team::alone(), mesh, DEFAULT_RIDGE_ANGLE).unwrap()
+}
+
+fn flat(mesh: &TetMesh) -> (Discrete, Classification) {
+    Discrete::new(Team::alone(), mesh, &DiscreteOptions { smooth: false, ..DiscreteOptions::default() }).unwrap()
 }
 
 fn count(classification: &Classification, dimension: u32) -> usize {
@@ -76,10 +80,10 @@ fn parameters_give_back_the_points_of_the_classification() {
 }
 
 #[test]
-fn a_smooth_sphere_is_one_face_and_has_its_curvature() {
+fn a_sphere_of_flat_triangles_is_one_face_and_has_its_curvature() {
     let mut mesh = sphere(16);
     mesh.triangles.refs.fill(1);
-    let (model, classification) = discrete(&mesh);
+    let (model, classification) = flat(&mesh);
     let topology = model.topology();
     assert_eq!([topology.vertices.len(), topology.edges.len(), topology.faces.len()], [0, 0, 1]);
     assert!(classification.ridges.is_empty());
@@ -104,7 +108,7 @@ fn a_smooth_sphere_is_one_face_and_has_its_curvature() {
 #[test]
 fn closest_points_are_closest_whatever_the_guess() {
     let mesh = sphere(8);
-    let (model, classification) = discrete(&mesh);
+    let (model, classification) = flat(&mesh);
     let mut evaluator = model.evaluator();
     let mut seed = 1u64;
     let mut random = || {
