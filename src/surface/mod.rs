@@ -77,6 +77,15 @@ pub struct Surface {
     pub missing: Vec<u32>,
     /// Pairs of triangles that cross.
     pub crossings: Vec<[u32; 2]>,
+    /// How many triangles have no height worth the name.
+    pub flat: usize,
+}
+
+impl Surface {
+    /// What is wrong with it: fewer is better.
+    fn faults(&self) -> (usize, usize) {
+        (self.missing.len(), self.crossings.len() + self.flat)
+    }
 }
 
 /// A face at work.
@@ -101,7 +110,8 @@ const CONFLICTS: usize = 9;
 const TURNED: usize = 3;
 
 /// Further attempts: by how much finer curvature is followed, and how much faster sizes grow.
-const ATTEMPTS: [(f64, f64); 3] = [(1.2, 1.4), (1.5, 0.8), (0.85, 1.0)];
+const ATTEMPTS: [(f64, f64); 7] =
+    [(1.2, 1.4), (1.5, 0.8), (0.85, 1.0), (1.0, 0.7), (0.85, 1.6), (0.7, 1.0), (2.0, 1.0)];
 /// No further attempt is made where the first has more triangles.
 const LARGE: usize = 20_000;
 /// So many pairs that cross are a fault of the model: no division helps.
@@ -121,14 +131,14 @@ struct Asked {
 pub fn triangulate(model: &OcctModel, options: &Options) -> Surface {
     let mut best = attempt(model, options);
     for (finer, growth) in ATTEMPTS {
-        if best.crossings.is_empty() || best.triangles.len() > LARGE || best.crossings.len() > MANY {
+        if best.faults().1 == 0 || best.triangles.len() > LARGE || best.crossings.len() > MANY {
             break;
         }
         let other = attempt(
             model,
             &Options { segments: finer * options.segments, growth: growth * options.growth, ..*options },
         );
-        if (other.missing.len(), other.crossings.len()) < (best.missing.len(), best.crossings.len()) {
+        if other.faults() < best.faults() {
             best = other;
         }
     }

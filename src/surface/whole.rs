@@ -6,8 +6,11 @@ use super::{Asked, Face, Options, Surface, WISHES, Wish};
 use crate::geometry::{Evaluate, Geometry, OcctEvaluator, OcctModel, Side};
 use crate::mesh::box_tree::{Bounds, BoxTree};
 use crate::mesh::triangle_pair::meeting;
-use crate::mesh::vector::{Vec3, add, distance, dot, lerp, scale, sub};
+use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, norm, scale, sub};
 use crate::tasks::Team;
+
+/// Height over length below which a triangle is flat.
+const FLAT: f64 = 1e-10;
 
 /// The solids behind and before the normal Su × Sv of each face.
 fn solids_beside(model: &OcctModel) -> Vec<[Option<u32>; 2]> {
@@ -142,7 +145,7 @@ pub fn find_faults(
             asked.pieces.push((edge, piece));
         }
     }
-    let faults = surface.crossings.len() + barred.len();
+    let faults = surface.crossings.len() + surface.flat + barred.len();
     for (face, ends) in barred {
         if faces[face as usize].barred.insert(ends) {
             asked.faces.insert(face);
@@ -250,6 +253,11 @@ pub fn find_crossings(surface: &mut Surface) {
             }
         },
     );
+    let is_flat = |t: &u32| {
+        let all = corners(*t);
+        norm(area2(all[0], all[1], all[2])) <= FLAT * longest(&all).1.powi(2)
+    };
+    surface.flat = (0..surface.triangles.len() as u32).filter(is_flat).count();
     let mut all = parts.concat();
     all.sort_unstable();
     surface.crossings = all;

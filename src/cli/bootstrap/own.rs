@@ -22,7 +22,8 @@ pub struct Own {
 pub fn run(model: &Model, limit: Duration) -> Result<Own, String> {
     let Model::Occt(cad) = model else { return Err("it is no CAD model".into()) };
     let options = Options::new(model.topology().diagonal());
-    let surface = triangulate(cad, &options);
+    let mut surface = triangulate(cad, &options);
+    merge(&mut surface);
     crate::tasks::stage("surface");
     if let Some(face) = surface.missing.first() {
         let count = surface.missing.len();
@@ -41,6 +42,26 @@ pub fn run(model: &Model, limit: Duration) -> Result<Own, String> {
         .map_err(|error| describe(&error, &surface))?;
     crate::tasks::stage("tetrahedra");
     Ok(meshed(model, &surface, &filled))
+}
+
+/// Makes one of points at the same place: edges of bodies that touch there. (Our kernel takes the bodies apart again.)
+fn merge(surface: &mut Surface) {
+    let mut first: HashMap<[u64; 3], u32> = HashMap::new();
+    let (mut points, mut places) = (Vec::new(), Vec::new());
+    let mut number = Vec::with_capacity(surface.points.len());
+    for (point, place) in surface.points.iter().zip(&surface.places) {
+        // −0 and 0 are the same place.
+        let known = *first.entry(point.map(|x| (x + 0.0).to_bits())).or_insert(points.len() as u32);
+        if known as usize == points.len() {
+            points.push(*point);
+            places.push(*place);
+        }
+        number.push(known);
+    }
+    let renumber = |v: &mut u32| *v = number[*v as usize];
+    surface.triangles.iter_mut().flatten().for_each(renumber);
+    surface.chains.iter_mut().flatten().for_each(renumber);
+    (surface.points, surface.places) = (points, places);
 }
 
 /// A limit that is none.
