@@ -105,8 +105,6 @@ public:
   /// The faces that bound a solid, each with the side that the solid is on.
   rust::Vec<FaceSide> solid_sides(std::uint32_t solid) const;
   double solid_volume(std::uint32_t solid) const;
-  /// OpenCASCADE's own triangles of a copy of the model: nodes (x, y, z, u, v) and triangles (face, three nodes, from 0).
-  void reference_triangles(double deflection, double angle, rust::Vec<double>& nodes, rust::Vec<std::uint32_t>& triangles) const;
   /// Of an edge (dimension 1), face (2) or solid (3).
   LabelRecord label(std::uint32_t dimension, std::uint32_t index) const;
   /// The far field without this body.

@@ -3,6 +3,7 @@ use super::Options;
 use super::twins::Twins;
 use crate::geometry::{Evaluate, Geometry, OcctEvaluator, OcctModel, Topology};
 use crate::mesh::vector::{Vec3, cross, distance, dot, norm};
+use std::cmp::Ordering;
 
 /// How much longer than the size of a face's curvature an edge along it may be.
 pub const STRETCH: f64 = 4.0;
@@ -54,7 +55,7 @@ pub fn divided(model: &OcctModel, options: &Options, twins: &Twins) -> Vec<Vec<f
 fn profile(on: &mut OcctEvaluator, topology: &Topology, edge: u32, options: &Options) -> Option<Profile> {
     let entity = &topology.edges[edge as usize];
     let [from, to] = entity.range;
-    if entity.degenerate || !(to > from) {
+    if entity.degenerate || to.partial_cmp(&from) != Some(Ordering::Greater) {
         return None;
     }
     let mut count = PLACES[0];

@@ -151,13 +151,6 @@ pub mod ffi {
         ) -> Result<bool>;
         fn solid_sides(self: &Model, solid: u32) -> Result<Vec<FaceSide>>;
         fn solid_volume(self: &Model, solid: u32) -> Result<f64>;
-        fn reference_triangles(
-            self: &Model,
-            deflection: f64,
-            angle: f64,
-            nodes: &mut Vec<f64>,
-            triangles: &mut Vec<u32>,
-        ) -> Result<()>;
         /// Of an edge (dimension 1), face (2) or solid (3).
         fn label(self: &Model, dimension: u32, index: u32) -> Result<LabelRecord>;
         fn domain(self: &Model, domain: &DomainRecord) -> Result<SharedPtr<Model>>;

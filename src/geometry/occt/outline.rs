@@ -86,15 +86,6 @@ impl OcctModel {
     pub fn solid_volume(&self, solid: u32) -> Option<f64> {
         self.occt.solid_volume(solid).ok()
     }
-
-    /// OpenCASCADE's own triangles: nodes (x, y, z, u, v), and triangles as a face and three nodes. To compare with.
-    #[doc(hidden)]
-    pub fn reference_triangles(&self, deflection: f64, angle: f64) -> Option<(Vec<[f64; 5]>, Vec<[u32; 4]>)> {
-        let (mut nodes, mut triangles) = (Vec::new(), Vec::new());
-        self.occt.reference_triangles(deflection, angle, &mut nodes, &mut triangles).ok()?;
-        let nodes = nodes.chunks_exact(5).map(|p| [p[0], p[1], p[2], p[3], p[4]]).collect();
-        Some((nodes, triangles.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect()))
-    }
 }
 
 impl OcctEvaluator<'_> {

@@ -57,7 +57,8 @@ fn sample(on: &mut OcctEvaluator, face: u32, uv: Point) -> Sample {
     let jet = on.surface(face, uv);
     let across = cross(jet.du, jet.dv);
     let (area, sides) = (norm(across), norm(jet.du) * norm(jet.dv));
-    if !(area > 1e-7 * sides) || !(area > 0.0) {
+    let has_area = area > 1e-7 * sides && area > 0.0;
+    if !has_area {
         return Sample { at: jet.point, normal: [0.0; 3], bend: 0.0 };
     }
     let normal = scale(across, 1.0 / area);
@@ -215,7 +216,8 @@ fn look([p, q, r]: [Vec3; 3], normals: [Vec3; 3]) -> f64 {
     let mean = add(add(normals[0], normals[1]), normals[2]);
     let size = norm(n) * norm(mean);
     let is_flat = norm(n) <= 1e-12 * distance(p, q).max(distance(q, r)).powi(2);
-    if !(size > 0.0) {
+    let is_positive = size > 0.0;
+    if !is_positive {
         1.0
     } else if is_flat {
         0.0

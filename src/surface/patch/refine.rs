@@ -5,6 +5,7 @@ use super::super::{Options, Wish};
 use super::{Patch, sample, sorted};
 use crate::geometry::OcctEvaluator;
 use crate::mesh::vector::{Vec3, distance, dot, lerp, norm, sub};
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 /// Rounds of halving at most.
@@ -150,7 +151,7 @@ impl Patch {
     ) -> f64 {
         let [p, q] = [a, b].map(|c| self.spot(c));
         let length = distance(p, q);
-        if !(length > options.least) {
+        if length.partial_cmp(&options.least) != Some(Ordering::Greater) {
             return 0.0;
         }
         let middle = self.middle(a, b);

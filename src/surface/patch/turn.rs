@@ -46,7 +46,8 @@ impl Patch {
         }
         let turned = sin_a * cos_d + cos_a * sin_d;
         let size = (sin_a.hypot(cos_a)) * (sin_d.hypot(cos_d));
-        if !is_flat && (!(size > 0.0) || !(turned < -1e-9 * size)) {
+        let is_turned = size > 0.0 && turned < -1e-9 * size;
+        if !is_flat && !is_turned {
             return false;
         }
         if !(turn(a2, b2, d2) > 0.0 && turn(a2, d2, c2) > 0.0) {

@@ -23,8 +23,8 @@ impl Plane {
             turn(self.point(b), self.point(c), point) == 0.0
         });
         let mut stack = match on {
-            Some(i) => self.into_edge(triangle, i, vertex)?,
-            None => self.into_triangle(triangle, vertex),
+            Some(i) => self.split_edge(triangle, i, vertex)?,
+            None => self.split_triangle(triangle, vertex),
         };
         self.legalise(&mut stack);
         self.last = self.at[vertex as usize];
@@ -56,7 +56,7 @@ impl Plane {
     }
 
     /// Divides a triangle into three.
-    fn into_triangle(&mut self, t: u32, vertex: u32) -> Vec<(u32, usize)> {
+    fn split_triangle(&mut self, t: u32, vertex: u32) -> Vec<(u32, usize)> {
         let [a, b, c] = self.triangles[t as usize];
         let [bc, ca, ab] = self.beside[t as usize];
         let [fixed_bc, fixed_ca, fixed_ab] = self.fixed[t as usize];
@@ -76,7 +76,7 @@ impl Plane {
     }
 
     /// Divides the two triangles at an edge into four.
-    fn into_edge(&mut self, t: u32, i: usize, vertex: u32) -> Result<Vec<(u32, usize)>, Conflict> {
+    fn split_edge(&mut self, t: u32, i: usize, vertex: u32) -> Result<Vec<(u32, usize)>, Conflict> {
         let u = self.beside[t as usize][i];
         if u == NONE {
             return Err(Conflict::Lost);

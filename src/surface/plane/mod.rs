@@ -82,7 +82,8 @@ impl Plane {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for point in points {
             for k in 0..2 {
-                if !(point[k].abs() < 1e100) {
+                let is_moderate = point[k].abs() < 1e100;
+                if !is_moderate {
                     return Err(Conflict::Lost);
                 }
                 low[k] = low[k].min(point[k]);
