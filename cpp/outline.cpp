@@ -2,12 +2,9 @@
 #include "geo-adapt/cpp/occt.hpp"
 #include "geo-adapt/src/geometry/occt/bridge.rs.h"
 
-#include <BRepBuilderAPI_Copy.hxx>
 #include <BRepGProp.hxx>
-#include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
-#include <Poly_Triangulation.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopLoc_Location.hxx>
@@ -87,40 +84,6 @@ double Model::solid_volume(std::uint32_t solid) const
   GProp_GProps properties;
   BRepGProp::VolumeProperties(solids(static_cast<int>(solid) + 1), properties);
   return properties.Mass();
-}
-
-void Model::reference_triangles(double deflection, double angle, rust::Vec<double>& nodes,
-                                rust::Vec<std::uint32_t>& triangles) const
-{
-  // Triangles stay with a shape: this one is not to change.
-  BRepBuilderAPI_Copy copy(shape, Standard_False, Standard_False);
-  const TopoDS_Shape own = copy.Shape();
-  BRepMesh_IncrementalMesh(own, deflection, Standard_False, angle, Standard_False);
-  TopTools_IndexedMapOfShape own_faces;
-  TopExp::MapShapes(own, TopAbs_FACE, own_faces);
-  for (int i = 1; i <= own_faces.Extent(); ++i) {
-    TopLoc_Location place;
-    const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(TopoDS::Face(own_faces(i)), place);
-    if (mesh.IsNull()) {
-      continue;
-    }
-    const auto first = static_cast<std::uint32_t>(nodes.size() / 5);
-    for (int node = 1; node <= mesh->NbNodes(); ++node) {
-      const gp_Pnt point = mesh->Node(node).Transformed(place.Transformation());
-      const gp_Pnt2d uv = mesh->HasUVNodes() ? mesh->UVNode(node) : gp_Pnt2d(0.0, 0.0);
-      for (const double x : {point.X(), point.Y(), point.Z(), uv.X(), uv.Y()}) {
-        nodes.push_back(x);
-      }
-    }
-    for (int triangle = 1; triangle <= mesh->NbTriangles(); ++triangle) {
-      int a = 0, b = 0, c = 0;
-      mesh->Triangle(triangle).Get(a, b, c);
-      triangles.push_back(static_cast<std::uint32_t>(i - 1));
-      for (const int node : {a, b, c}) {
-        triangles.push_back(first + static_cast<std::uint32_t>(node - 1));
-      }
-    }
-  }
 }
 
 } // namespace geo_adapt

@@ -137,6 +137,8 @@ fn is_well(words: &[String], code: Option<i32>, said: &str) -> bool {
         Some(ENDED) => said.lines().any(|line| line.contains("memory") || line.contains("cannot start")),
         // The loader's own words.
         Some(NOT_LOADED) => said.contains("error while loading shared libraries"),
+        // Those of Rust, before our main begins.
+        None => said.contains("failed to allocate an alternative stack"),
         // There is no mesher.
         Some(2) => words[0] == "bootstrap" && said.contains("there is no mesher"),
         _ => false,

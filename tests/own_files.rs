@@ -276,7 +276,10 @@ fn nothing_else_in_the_command_line_writes_files() {
         if own.contains(&name) || name.starts_with("files/") || name == "terminal.rs" {
             continue;
         }
-        for (line, number) in fs::read_to_string(path).unwrap().lines().zip(1..) {
+        let text = fs::read_to_string(path).unwrap();
+        // Tests write to folders of their own.
+        let code = text.lines().take_while(|line| *line != "#[cfg(test)]");
+        for (line, number) in code.zip(1..) {
             let code = line.split("//").next().unwrap_or_default();
             let is_own = [
                 "write_logs",

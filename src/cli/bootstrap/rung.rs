@@ -94,7 +94,7 @@ impl Rung {
 impl std::fmt::Display for Rung {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let finer = match *self {
-            Self::Own => return f.write_str("geo-adapt (constrained Delaunay)"),
+            Self::Own => return write!(f, "geo-adapt (constrained Delaunay)"),
             Self::Gmsh { surface, volume, finer, least } => {
                 write!(f, "gmsh ({} surfaces, {} volumes", algorithm(surface), algorithm_3d(volume))?;
                 if least == Least::Large {
