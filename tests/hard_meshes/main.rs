@@ -108,7 +108,8 @@ fn run(
     [threads, backend]: [&str; 2],
 ) -> Result<(Vec<Vec<u8>>, Value), String> {
     let json = text(&work.path("report.json"));
-    let own = ["--quiet", "--report", &json, "--threads", threads, "--backend", backend];
+    // Of flat triangles, so that volumes are known; smooth patches bend over the tip of a fan.
+    let own = ["--quiet", "--flat-surface", "--report", &json, "--threads", threads, "--backend", backend];
     let outputs = ["out.meshb", "out.solb", "report.json"].map(|name| work.path(name));
     outputs.iter().filter(|path| path.exists()).for_each(|path| std::fs::remove_file(path).unwrap());
     let run = work.command(input, &[arguments, &own].concat()).output().unwrap();
