@@ -50,7 +50,7 @@ fn area_of(loop_: &[Point]) -> f64 {
 #[test]
 fn points_on_one_circle_and_on_a_grid() {
     let circle: Vec<Point> = (0..60).map(|k| (f64::from(k) * std::f64::consts::TAU / 60.0).sin_cos().into()).collect();
-    let round = bounded(&circle, &[0..60]).unwrap();
+    let round = bounded(&circle, std::slice::from_ref(&(0..60))).unwrap();
     assert_eq!(round.triangles.len(), 58);
     assert!((checked(&circle, &round) - area_of(&circle).abs()).abs() < 1e-12);
     let grid: Vec<Point> = (0..81).map(|k| [f64::from(k % 9), f64::from(k / 9)]).collect();
@@ -119,7 +119,7 @@ proptest! {
         let centre = [offset, -0.7 * offset];
         let mut points = star(&outer, 4.0, centre, is_coarse);
         let mut expected = area_of(&points);
-        let mut loops = vec![0..points.len() as u32];
+        let mut loops: Vec<_> = std::iter::once(0..points.len() as u32).collect();
         for (k, hole) in holes.iter().enumerate() {
             let (sin, cos) = (k as f64).sin_cos();
             let first = points.len() as u32;
