@@ -164,6 +164,8 @@ mod tests {
         command.args(["-c", "sleep 60 & echo $!; read line"]).stdin(Stdio::piped()).stderr(file).stdout(Stdio::piped());
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn().unwrap();
+        let mut line = String::new();
+        std::io::BufRead::read_line(&mut std::io::BufReader::new(child.stdout.take().unwrap()), &mut line).unwrap();
         let group = Group::of(child.id());
         assert_eq!(Group::parse(&group.text()), Some(group.clone()));
         assert!(group.is_there(&log) && who_has_open(&log).unwrap().contains("(s"));
@@ -171,8 +173,6 @@ mod tests {
         let other = Group { since: format!("1 {}", boot().unwrap()), ..group.clone() };
         assert!(!other.is_there(&log) && !Group { since: String::new(), ..group.clone() }.is_there(&log));
         // The first process has ended, and one of its children works on: it is known by the file that it has open.
-        let mut line = String::new();
-        std::io::BufRead::read_line(&mut std::io::BufReader::new(child.stdout.take().unwrap()), &mut line).unwrap();
         drop(child.stdin.take());
         child.wait().unwrap();
         assert!(group.is_there(&log) && !group.is_there(&folder.path().join("other")));
