@@ -3,7 +3,7 @@ use super::places::{gmsh_places, netgen_places};
 use super::queue::Queue;
 use super::rung::{Choice, Rung};
 use super::wish::Wish;
-use super::{gmsh, netgen, own};
+use super::{gmsh, netgen};
 use crate::cli::table;
 use crate::cli::workplace::Workplace;
 use crate::formats;
@@ -118,8 +118,8 @@ impl<'a> Ladder<'a> {
     /// One rung: the mesh, valid and on the model.
     fn attempt(&self, rung: Rung, limit: Duration) -> Result<(TetMesh, Classification), Miss> {
         if rung == Rung::Own {
-            let own = own::run(self.model, limit).map_err(Miss::Failed)?;
-            return judge(self.team, own.mesh, self.model, Some(own.on_model)).map_err(Miss::Failed);
+            let (mesh, on_model) = own(self.model, limit).map_err(Miss::Failed)?;
+            return judge(self.team, mesh, self.model, Some(on_model)).map_err(Miss::Failed);
         }
         let out = self.place.file("out.msh");
         let _ = std::fs::remove_file(&out);
@@ -142,6 +142,17 @@ impl<'a> Ladder<'a> {
     pub fn refuse(&mut self, rung: Rung, why: String) {
         self.failed.push((rung, why));
     }
+}
+
+/// Our own mesh, and where its vertices belong on the model.
+#[cfg(feature = "occt")]
+fn own(model: &Model, limit: Duration) -> Result<(TetMesh, Vec<Vec3>), String> {
+    super::own::run(model, limit).map(|own| (own.mesh, own.on_model))
+}
+
+#[cfg(not(feature = "occt"))]
+fn own(_: &Model, _: Duration) -> Result<(TetMesh, Vec<Vec3>), String> {
+    Err("this program was built without OpenCASCADE".into())
 }
 
 /// The error of a ladder without a good rung.

@@ -7,6 +7,7 @@ pub mod domain;
 mod gmsh;
 mod ladder;
 mod netgen;
+#[cfg(feature = "occt")]
 mod own;
 mod places;
 mod queue;
