@@ -425,6 +425,30 @@ fn where_no_mesher_is_the_error_says_what_to_install() {
 }
 
 #[test]
+fn our_own_mesher_needs_no_other_program() {
+    let place = Place::new();
+    // Faces and volume: a seam, a cavity, two regions, thin walls.
+    for (name, faces, volume) in [
+        ("cube", 6, 1.0),
+        ("torus", 1, 1.7765),
+        ("sphere-in-box", 7, 3.7269),
+        ("two-materials", 11, f64::NAN),
+        ("thin-plate", 6, f64::NAN),
+    ] {
+        let mut command = place.command(&model(&format!("{name}.step")), &["--mesher", "own"]);
+        command.env("GEO_ADAPT_GMSH", "/nowhere").env("GEO_ADAPT_NETGEN_PYTHON", "/nowhere");
+        let run = command.output().unwrap();
+        assert_eq!(run.status.code(), Some(0), "{name}: {}", stderr(&run));
+        let mesh = io::read_mesh(&place.path("out.meshb")).unwrap().content;
+        assert!(validity::check(&mesh).is_valid(), "{name}: {:?}", validity::check(&mesh));
+        assert_eq!(mesh.triangles.refs.iter().collect::<BTreeSet<_>>().len(), faces, "{name}");
+        if volume.is_finite() {
+            near(volumes(&mesh).values().sum(), volume, 0.1);
+        }
+    }
+}
+
+#[test]
 fn netgen_takes_over_where_gmsh_fails() {
     let python = Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv/mesher/bin/python3");
     if !python.exists() {
