@@ -1,6 +1,7 @@
 //! Tetrahedra of a triangulation in flat arrays with their neighbours. Its hull is closed by ghost tetrahedra that join each
 //! hull face to a vertex at infinity.
 use super::predicates::orient;
+use crate::mesh::adjacency::sorted3;
 use crate::mesh::vector::Vec3;
 
 /// The vertex at infinity. In a ghost tetrahedron it is the last node.
@@ -223,13 +224,13 @@ impl Triangulation {
             for i in 0..4 {
                 let n = self.across[t as usize][i];
                 if self.seen[(n >> 2) as usize] != self.visit {
-                    faces.push((sorted(self.face(t, i)), n, true));
+                    faces.push((sorted3(self.face(t, i)), n, true));
                 }
             }
         }
         for (k, t) in new.iter().enumerate() {
             for i in 0..4 {
-                faces.push((sorted(FACE[i].map(|j| t[j])), (4 * k + i) as u32, false));
+                faces.push((sorted3(FACE[i].map(|j| t[j])), (4 * k + i) as u32, false));
             }
         }
         faces.sort_unstable();
@@ -274,21 +275,6 @@ pub fn others(i: usize, j: usize) -> (usize, usize) {
     (f[(k + 1) % 3], f[(k + 2) % 3])
 }
 
-/// The three in rising order.
-#[inline]
-pub fn sorted(mut f: [u32; 3]) -> [u32; 3] {
-    if f[0] > f[1] {
-        f.swap(0, 1);
-    }
-    if f[1] > f[2] {
-        f.swap(1, 2);
-    }
-    if f[0] > f[1] {
-        f.swap(0, 1);
-    }
-    f
-}
-
 #[cfg(test)]
 pub mod check {
     use super::*;
@@ -307,7 +293,7 @@ pub mod check {
             for i in 0..4 {
                 let o = m.across[t as usize][i];
                 assert_eq!(m.across[(o >> 2) as usize][(o & 3) as usize], 4 * t + i as u32);
-                assert_eq!(sorted(m.face(t, i)), sorted(m.face(o >> 2, (o & 3) as usize)));
+                assert_eq!(sorted3(m.face(t, i)), sorted3(m.face(o >> 2, (o & 3) as usize)));
                 let beyond = m.nodes[(o >> 2) as usize][(o & 3) as usize];
                 if n[3] == GHOST && i < 3 {
                     assert!(m.orient(n[0], n[1], n[2], beyond) <= 0.0, "the hull is not convex");

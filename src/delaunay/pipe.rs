@@ -147,7 +147,7 @@ impl Recovery<'_> {
                 let side = [0, 1, 2].map(|k| self.mesh.orient(a, b, f[k], f[(k + 1) % 3]) == 0.0);
                 let protected = match side {
                     [false, false, false] => {
-                        pipe.faces.push(super::complex::sorted(f));
+                        pipe.faces.push(crate::mesh::adjacency::sorted3(f));
                         self.surface
                             .with_nodes(f)
                             .is_some()

@@ -1,9 +1,10 @@
 //! State of the recovery of a surface in a triangulation, and the order in which edges and facets are recovered.
-use super::complex::{NONE, Triangulation, sorted};
+use super::complex::{NONE, Triangulation};
 use super::flips::Journal;
 use super::insert::Scratch;
 use super::triangles::Triangles;
 use super::{Added, Error, Origin, Placement};
+use crate::mesh::adjacency::sorted3;
 use crate::mesh::vector::{Vec3, add, lerp, scale};
 
 /// Depth of the search for flips in the last attempt before a point is added.
@@ -242,7 +243,7 @@ impl Recovery<'_> {
     pub fn crossing(&self, t: Option<u32>, nodes: &[u32], at: Vec3) -> Error {
         let other = match *nodes {
             [u, v] => self.surface.with_edge(u, v),
-            [u, v, w] => self.surface.with_nodes(sorted([u, v, w])),
+            [u, v, w] => self.surface.with_nodes(sorted3([u, v, w])),
             _ => None,
         };
         let source = |t: Option<u32>| t.map_or(NONE, |t| self.surface.source[t as usize]);

@@ -1,6 +1,7 @@
 //! The regions that the triangles of the surface separate.
-use super::complex::{GHOST, NONE, sorted};
+use super::complex::{GHOST, NONE};
 use super::recovery::Recovery;
+use crate::mesh::adjacency::sorted3;
 
 /// Tetrahedra by region.
 pub struct Regions {
@@ -23,7 +24,7 @@ impl Recovery<'_> {
             let f = self.surface.nodes[t];
             let k = self.find_facet(f).ok_or(t as u32)?;
             let i = (0..4).find(|&i| !f.contains(&self.mesh.nodes[k as usize][i])).ok_or(t as u32)?;
-            debug_assert_eq!(sorted(f), sorted(self.mesh.face(k, i)));
+            debug_assert_eq!(sorted3(f), sorted3(self.mesh.face(k, i)));
             let o = self.mesh.across[k as usize][i];
             wall[k as usize] |= 1 << i;
             wall[(o >> 2) as usize] |= 1 << (o & 3);

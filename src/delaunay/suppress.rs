@@ -1,8 +1,9 @@
 //! Takes added points off the surface again: the tetrahedra about one, region by region, are replaced by others with the edge or
 //! triangle that it had split, with a point inside where there is no other way (after George, Borouchaki and Saltel 2003).
-use super::complex::{FACE, sorted};
+use super::complex::FACE;
 use super::fill::{fill, seen_from};
 use super::{Added, Origin, Tetrahedra};
+use crate::mesh::adjacency::sorted3;
 use crate::mesh::vector::{Vec3, add, area2, norm, scale, sub, unit};
 
 /// A tetrahedron or triangle that is no more.
@@ -100,7 +101,7 @@ impl Mesh<'_> {
     fn take_out(&mut self, k: usize) -> bool {
         let m = (self.input + k) as u32;
         let Some(restored) = self.restored(k, m) else { return false };
-        let walls: Vec<[u32; 3]> = self.triangles[k].iter().map(|&t| sorted(self.r.triangles[t as usize])).collect();
+        let walls: Vec<[u32; 3]> = self.triangles[k].iter().map(|&t| sorted3(self.r.triangles[t as usize])).collect();
         // Tetrahedra of one region between the triangles are joined across the faces at m that are none of these.
         let star = self.tets[k].clone();
         let mut group: Vec<usize> = (0..star.len()).collect();
@@ -108,7 +109,7 @@ impl Mesh<'_> {
         for (i, &t) in star.iter().enumerate() {
             let n = self.r.tets[t as usize];
             faces.extend(
-                FACE.map(|f| (sorted(f.map(|j| n[j])), i))
+                FACE.map(|f| (sorted3(f.map(|j| n[j])), i))
                     .into_iter()
                     .filter(|(f, _)| f.contains(&m) && !walls.contains(f)),
             );
@@ -177,7 +178,7 @@ impl Mesh<'_> {
                 let face = f.map(|j| n[j]);
                 if !face.contains(&m) {
                     front.push(face);
-                } else if walls.contains(&sorted(face)) {
+                } else if walls.contains(&sorted3(face)) {
                     let whole = match self.r.added[k].origin {
                         Origin::Edge([u, v]) => face.contains(&u).then(|| face.map(|x| if x == m { v } else { x })),
                         Origin::Triangle(g) => {
@@ -191,7 +192,7 @@ impl Mesh<'_> {
                 }
             }
         }
-        let known = |f: &[u32; 3]| restored.iter().any(|(g, _)| sorted(*g) == sorted(*f));
+        let known = |f: &[u32; 3]| restored.iter().any(|(g, _)| sorted3(*g) == sorted3(*f));
         if !new_faces.iter().all(known) {
             return None;
         }

@@ -1,7 +1,7 @@
 //! Surfaces of many kinds to tetrahedra, each result checked as a whole.
-use super::complex::sorted;
 use super::predicates::orient;
 use super::*;
+use crate::mesh::adjacency::sorted3;
 use crate::mesh::vector::{add, area2, dot, norm, volume6};
 use std::collections::HashMap;
 
@@ -19,7 +19,7 @@ fn check(s: &Shape, r: &Tetrahedra) {
         assert!(orient(at(t[0]), at(t[1]), at(t[2]), at(t[3])) > 0.0, "{t:?} is not positive");
         assert!(*region > 0 && *region < r.region_count);
         for f in complex::FACE {
-            faces.entry(sorted(f.map(|k| t[k]))).or_default().push(*region);
+            faces.entry(sorted3(f.map(|k| t[k]))).or_default().push(*region);
         }
     }
     let mut walls: HashMap<[u32; 3], usize> = HashMap::new();
@@ -27,10 +27,10 @@ fn check(s: &Shape, r: &Tetrahedra) {
     let mut size = vec![0.0; r.region_count as usize];
     let middle = r.points[0];
     for ((f, sides), source) in r.triangles.iter().zip(&r.sides).zip(&r.source) {
-        assert!(walls.insert(sorted(*f), 0).is_none());
+        assert!(walls.insert(sorted3(*f), 0).is_none());
         let mut expected: Vec<u32> = sides.iter().copied().filter(|&k| k > 0).collect();
         expected.sort_unstable();
-        let mut found = faces.get(&sorted(*f)).cloned().unwrap_or_default();
+        let mut found = faces.get(&sorted3(*f)).cloned().unwrap_or_default();
         found.sort_unstable();
         assert_eq!(found, expected, "triangle {f:?} is no face between its regions");
         let v = volume6(middle, at(f[0]), at(f[1]), at(f[2]));

@@ -35,7 +35,9 @@ impl Triangles {
             near.clear();
             // Each triangle is compared at its first vertex.
             near.extend(
-                self.at(u).map(|t| (super::complex::sorted(self.nodes[t as usize]), t)).filter(|n| n.0[0] == u),
+                self.at(u)
+                    .map(|t| (crate::mesh::adjacency::sorted3(self.nodes[t as usize]), t))
+                    .filter(|n| n.0[0] == u),
             );
             near.sort_unstable();
             if let Some(pair) = near.windows(2).find(|p| p[0].0 == p[1].0) {

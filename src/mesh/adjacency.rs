@@ -21,6 +21,12 @@ pub struct FaceKey {
     pub side: u32,
 }
 
+/// Two node numbers, ascending.
+#[inline(always)]
+pub fn sorted2([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
 /// Three node numbers, ascending.
 #[inline(always)]
 pub fn sorted3([a, b, c]: [u32; 3]) -> [u32; 3] {

@@ -154,8 +154,9 @@ fn halves(range: &Range<usize>) -> (Range<usize>, Range<usize>) {
     (range.start..middle, middle..range.end)
 }
 
+/// Whether two boxes touch.
 #[inline(always)]
-fn overlap(a: &Bounds, b: &Bounds) -> bool {
+pub fn overlap(a: &Bounds, b: &Bounds) -> bool {
     (0..3).all(|i| a[0][i] <= b[1][i] && b[0][i] <= a[1][i])
 }
 

@@ -41,7 +41,7 @@ impl Analytic {
         self.spectral(p, |h| -2.0 * h.ln())
     }
 
-    /// Whether the sizes at p are within a ratio that doubles hold for certain, as they are but far away.
+    /// Whether the ratio of the sizes at p is one that doubles hold for certain. Only far away it is not.
     #[inline]
     pub fn is_moderate(p: Vec3) -> bool {
         p.iter().all(|x| x.abs() < 1e3)

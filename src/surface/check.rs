@@ -1,7 +1,8 @@
 //! What a surface is worth: whether it is closed, how far its areas and volumes are from those of the model.
+use super::Surface;
 use super::whole::{edges_of, pieces_of};
-use super::{Surface, sorted};
 use crate::geometry::{Geometry, OcctModel, Use};
+use crate::mesh::adjacency::sorted2;
 use crate::mesh::vector::{Vec3, area2, norm, volume6};
 use std::collections::BTreeMap;
 
@@ -55,7 +56,7 @@ pub fn report(model: &OcctModel, surface: &Surface) -> Report {
                 if *side == Some(solid) {
                     for i in 0..3 {
                         let ends = [corners[i], corners[(i + 1) % 3]];
-                        *directed.entry(sorted(ends)).or_default() += if ends[0] < ends[1] { sign } else { -sign };
+                        *directed.entry(sorted2(ends)).or_default() += if ends[0] < ends[1] { sign } else { -sign };
                     }
                     let from = topology.bounds[0];
                     let [p, q, r]: [Vec3; 3] = corners.map(|v| surface.points[v as usize]);

@@ -17,7 +17,7 @@ pub use points::Place;
 use crate::geometry::{Geometry, OcctModel};
 use crate::mesh::vector::Vec3;
 use outline::{Outline, Segment};
-use patch::{Patch, sorted};
+use patch::Patch;
 use plane::{Conflict, NONE};
 use points::Points;
 use std::collections::BTreeSet;
@@ -77,7 +77,7 @@ pub struct Surface {
     pub missing: Vec<u32>,
     /// Pairs of triangles that cross.
     pub crossings: Vec<[u32; 2]>,
-    /// How many triangles have no height worth the name.
+    /// How many triangles are flat to rounding.
     pub flat: usize,
 }
 
@@ -127,9 +127,9 @@ struct Asked {
 }
 
 /// Triangulates all faces of a model. Where triangles cross in the end, which finer ones do not cure where faces touch, other sizes are tried:
-/// what crosses least is kept.
-pub fn triangulate(model: &OcctModel, options: &Options) -> Surface {
-    let mut best = attempt(model, options);
+/// what crosses least is kept. None where `go_on` said no, which is asked before each face.
+pub fn triangulate(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> bool) -> Option<Surface> {
+    let mut best = attempt(model, options, go_on)?;
     for (finer, growth) in ATTEMPTS {
         if best.faults().1 == 0 || best.triangles.len() > LARGE || best.crossings.len() > MANY {
             break;
@@ -137,16 +137,17 @@ pub fn triangulate(model: &OcctModel, options: &Options) -> Surface {
         let other = attempt(
             model,
             &Options { segments: finer * options.segments, growth: growth * options.growth, ..*options },
-        );
+            go_on,
+        )?;
         if other.faults() < best.faults() {
             best = other;
         }
     }
-    best
+    Some(best)
 }
 
 /// One attempt: what has the fewest faults of all rounds.
-fn attempt(model: &OcctModel, options: &Options) -> Surface {
+fn attempt(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> bool) -> Option<Surface> {
     let topology = model.topology();
     let twins = Twins::of(model);
     let mut points = Points::new(model, edges::divided(model, options, &twins), twins);
@@ -157,6 +158,9 @@ fn attempt(model: &OcctModel, options: &Options) -> Surface {
     for _ in 0..ROUNDS {
         let mut asked = Asked::default();
         for &face in &dirty {
+            if !go_on() {
+                return None;
+            }
             work(model, options, &points, face, &mut faces[face as usize], &mut asked);
         }
         if asked.pieces.is_empty() && asked.faces.is_empty() {
@@ -179,14 +183,15 @@ fn attempt(model: &OcctModel, options: &Options) -> Surface {
             break;
         }
     }
-    best.map_or_else(
+    let surface = best.map_or_else(
         || {
             let mut surface = whole::assemble(model, &points, &faces);
             whole::find_crossings(&mut surface);
             surface
         },
         |(_, surface)| surface,
-    )
+    );
+    Some(surface)
 }
 
 /// Whether further rounds will not help, after so many faults in those before: triangles that are finer cross more often where faces do so in

@@ -10,7 +10,7 @@ fn model(name: &str) -> OcctModel {
 fn of(name: &str) -> (OcctModel, Surface) {
     let model = model(name);
     let options = Options::new(model.topology().diagonal());
-    let surface = triangulate(&model, &options);
+    let surface = triangulate(&model, &options, &|| true).expect("nobody stops it");
     (model, surface)
 }
 
@@ -107,13 +107,20 @@ fn bodies_that_touch_in_an_edge_are_divided_alike() {
 }
 
 #[test]
+fn who_says_no_gets_none() {
+    let model = model("sphere.step");
+    let options = Options::new(model.topology().diagonal());
+    assert!(triangulate(&model, &options, &|| false).is_none());
+}
+
+#[test]
 fn finer_is_finer() {
     let model = model("sphere.step");
     let mut options = Options::new(model.topology().diagonal());
-    let count = |options: &Options| triangulate(&model, options).triangles.len();
-    let coarse = count(&options);
+    let of = |options: &Options| triangulate(&model, options, &|| true).expect("nobody stops it");
+    let coarse = of(&options).triangles.len();
     options.segments = 6.0;
-    let surface = triangulate(&model, &options);
+    let surface = of(&options);
     assert!(surface.triangles.len() > 5 * coarse);
     let found = report(&model, &surface);
     assert!((found.volumes[0][0] / found.volumes[0][1] - 1.0).abs() < 0.012, "{:?}", found.volumes);

@@ -1,9 +1,9 @@
 //! The triangles of all faces as one surface, and where they are to be finer: at edges that are met too often, and where they cross.
-use super::patch::sorted;
 use super::plane::NONE;
 use super::points::{Place, Points};
 use super::{Asked, Face, Options, Surface, WISHES, Wish};
 use crate::geometry::{Evaluate, Geometry, OcctEvaluator, OcctModel, Side};
+use crate::mesh::adjacency::sorted2;
 use crate::mesh::box_tree::{Bounds, BoxTree};
 use crate::mesh::triangle_pair::meeting;
 use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, norm, scale, sub};
@@ -83,7 +83,7 @@ pub fn edges_of(surface: &Surface) -> Vec<([u32; 2], u32)> {
     let mut all = Vec::with_capacity(3 * surface.triangles.len());
     for (t, corners) in surface.triangles.iter().enumerate() {
         for i in 0..3 {
-            all.push((sorted([corners[i], corners[(i + 1) % 3]]), t as u32));
+            all.push((sorted2([corners[i], corners[(i + 1) % 3]]), t as u32));
         }
     }
     all.sort_unstable();
@@ -95,7 +95,7 @@ pub fn pieces_of(surface: &Surface) -> Vec<([u32; 2], u32, u32)> {
     let mut all = Vec::new();
     for (edge, chain) in surface.chains.iter().enumerate() {
         for (piece, ends) in chain.windows(2).enumerate() {
-            all.push((sorted([ends[0], ends[1]]), edge as u32, piece as u32));
+            all.push((sorted2([ends[0], ends[1]]), edge as u32, piece as u32));
         }
     }
     all.sort_unstable();
@@ -204,7 +204,7 @@ fn ask_finer<'p>(
     }
     for k in 0..3 {
         if distance(corners[k], corners[(k + 1) % 3]) > 0.6 * length
-            && let Some(&(_, edge, piece)) = piece_at(sorted([nodes[k], nodes[(k + 1) % 3]]))
+            && let Some(&(_, edge, piece)) = piece_at(sorted2([nodes[k], nodes[(k + 1) % 3]]))
         {
             asked.pieces.push((edge, piece));
         }
@@ -249,7 +249,7 @@ pub fn find_crossings(surface: &mut Surface) {
         |_, _| true,
         |found: &mut Vec<[u32; 2]>, i, j| {
             if meeting(&corners(i), &corners(j)).is_some() {
-                found.push(sorted([i, j]));
+                found.push(sorted2([i, j]));
             }
         },
     );

@@ -38,7 +38,7 @@ pub struct Arguments {
     /// The body is one half: cut the far field at the plane face where the body ends in this direction, and call that symmetry
     #[arg(long, value_enum, value_name = "AXIS", requires = "far_field")]
     pub symmetry: Option<domain::Axis>,
-    /// Leave the mesh as the mesher made it
+    /// Leave the mesh as the mesher made it; our own makes few vertices, whatever the sizes
     #[arg(long)]
     pub no_adapt: bool,
     /// Who makes the mesh that is adapted; by default gmsh, and netgen where gmsh fails

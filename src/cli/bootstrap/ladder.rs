@@ -159,18 +159,23 @@ fn own(_: &Model, _: Duration) -> Result<(TetMesh, Vec<Vec3>), String> {
 fn describe(missing: &[String], failed: &[(Rung, String)], log: &Path, model: &Model) -> String {
     let missing = missing.join("; ");
     let Some((rung, why)) = failed.last() else {
-        return format!("there is no mesher to begin with: {missing}");
+        return format!("there is no mesher to begin with: {missing}; or give --mesher own, which needs none");
     };
-    let count = failed.len();
     let also = if missing.is_empty() { String::new() } else { format!("; not tried: {missing}") };
     let remedy = match flaws(model) {
         Some(flaws) => format!("The model itself is faulty: {flaws}. Repair it in the CAD program"),
         None => "Repair the model (tiny edges, faces that intersect) or give another --size".into(),
     };
-    format!(
-        "no mesher made a valid mesh of it in {count} attempts (all they said is in {}); the last, {rung}: {why}{also}. {remedy}",
-        log.display()
-    )
+    let told = match failed {
+        [_] => format!("{rung} made no valid mesh of it: {why}"),
+        _ => format!("no mesher made a valid mesh of it in {} attempts; the last, {rung}: {why}", failed.len()),
+    };
+    let said = if failed.iter().all(|(rung, _)| *rung == Rung::Own) {
+        String::new()
+    } else {
+        format!(" (all that was said is in {})", log.display())
+    };
+    format!("{told}{also}{said}. {remedy}")
 }
 
 /// How many flaws of a model are told.

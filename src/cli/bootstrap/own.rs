@@ -1,6 +1,8 @@
 //! Our own first mesh: a triangulation of the model's surface, and the constrained Delaunay tetrahedra of that.
-use crate::delaunay::{self, Origin, Placement, Tetrahedra, tetrahedralise};
+use crate::cli::table::place;
+use crate::delaunay::{self, Origin, Placement, PointError, Tetrahedra, tetrahedralise};
 use crate::geometry::{Evaluate, Geometry, Model};
+use crate::mesh::adjacency::sorted2;
 use crate::mesh::vector::Vec3;
 use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
 use crate::surface::{Options, Place, Surface, triangulate};
@@ -22,7 +24,8 @@ pub struct Own {
 pub fn run(model: &Model, limit: Duration) -> Result<Own, String> {
     let Model::Occt(cad) = model else { return Err("it is no CAD model".into()) };
     let options = Options::new(model.topology().diagonal());
-    let mut surface = triangulate(cad, &options);
+    let end = Instant::now() + limit.min(DAY);
+    let mut surface = triangulate(cad, &options, &|| Instant::now() < end).ok_or(ENDED)?;
     merge(&mut surface);
     crate::tasks::stage("surface");
     if let Some(face) = surface.missing.first() {
@@ -34,10 +37,11 @@ pub fn run(model: &Model, limit: Duration) -> Result<Own, String> {
         let at = surface.points[surface.triangles[pair[0] as usize][0] as usize];
         let count = surface.crossings.len();
         return Err(format!(
-            "{count} pairs of triangles of its surface cross, the first of faces {a} and {b} near {at:?}"
+            "{count} pairs of triangles of its surface cross, the first of faces {a} and {b} near {}",
+            place(at)
         ));
     }
-    let mut within = Within(Instant::now() + limit.min(DAY));
+    let mut within = Within(end);
     let filled = tetrahedralise(&surface.points, &surface.triangles, &mut within, delaunay::Options::default())
         .map_err(|error| describe(&error, &surface))?;
     crate::tasks::stage("tetrahedra");
@@ -64,6 +68,9 @@ fn merge(surface: &mut Surface) {
     (surface.points, surface.places) = (points, places);
 }
 
+/// What is told when the time is over.
+const ENDED: &str = "it was ended (--time-limit)";
+
 /// A limit that is none.
 const DAY: Duration = Duration::from_secs(86_400);
 
@@ -88,21 +95,29 @@ impl Placement for Within {
 fn describe(error: &delaunay::Error, surface: &Surface) -> String {
     let face = |t: u32| surface.faces[t as usize] + 1;
     match error {
-        delaunay::Error::Points(error) => format!("its points have no tetrahedra: {error:?}"),
+        delaunay::Error::Points(error) => {
+            let at = |p: u32| place(surface.points[p as usize]);
+            match *error {
+                PointError::NotFinite(p) => format!("point {p} of its surface is at {}", at(p)),
+                PointError::Duplicate([a, b]) => format!("points {a} and {b} of its surface are both at {}", at(a)),
+                PointError::Flat => "its surface lies in one plane".into(),
+                PointError::TooMany => "its surface has too many points for numbers of 32 bits".into(),
+            }
+        }
         delaunay::Error::Corners { triangle } => format!("a triangle of face {} is damaged", face(*triangle)),
         delaunay::Error::Repeated { triangles: [a, b] } => {
             format!("faces {} and {} have the same triangle", face(*a), face(*b))
         }
         delaunay::Error::Crossing { triangles: [a, b], at } => {
-            format!("triangles of faces {} and {} cross near {at:?}", face(*a), face(*b))
+            format!("triangles of faces {} and {} cross near {}", face(*a), face(*b), place(*at))
         }
         delaunay::Error::Touching { triangle, at, .. } => {
-            format!("a point lies on a triangle of face {} near {at:?}", face(*triangle))
+            format!("a point lies on a triangle of face {} near {}", face(*triangle), place(*at))
         }
         delaunay::Error::Unrecovered { triangle, at } => {
-            format!("a triangle of face {} was not recovered near {at:?}", face(*triangle))
+            format!("a triangle of face {} was not recovered near {}", face(*triangle), place(*at))
         }
-        delaunay::Error::Stopped => "it was ended (--time-limit)".into(),
+        delaunay::Error::Stopped => ENDED.into(),
     }
 }
 
@@ -125,7 +140,7 @@ fn meshed(model: &Model, surface: &Surface, filled: &Tetrahedra) -> Own {
     let (mut evaluator, mut on_model) = (model.evaluator(), mesh.vertices.clone());
     let mut pieces: HashMap<[u32; 2], u32> = HashMap::new();
     for (chain, edge) in surface.chains.iter().zip(0..) {
-        pieces.extend(chain.windows(2).map(|ends| (key(ends[0], ends[1]), edge)));
+        pieces.extend(chain.windows(2).map(|ends| (sorted2([ends[0], ends[1]]), edge)));
     }
     let mut face_of = vec![u32::MAX; mesh.vertices.len()];
     for (nodes, source) in filled.triangles.iter().zip(&filled.source) {
@@ -133,11 +148,11 @@ fn meshed(model: &Model, surface: &Surface, filled: &Tetrahedra) -> Own {
     }
     for (added, vertex) in filled.added.iter().zip(surface.points.len() as u32..) {
         let edge = match added.origin {
-            Origin::Edge([a, b]) => pieces.remove(&key(a, b)).map(|edge| ([a, b], edge)),
+            Origin::Edge([a, b]) => pieces.remove(&sorted2([a, b])).map(|edge| ([a, b], edge)),
             Origin::Triangle(_) | Origin::Inside => None,
         };
         if let Some((ends, edge)) = edge {
-            pieces.extend(ends.map(|end| (key(end, vertex), edge)));
+            pieces.extend(ends.map(|end| (sorted2([end, vertex]), edge)));
             let on = evaluator.closest_on_edge(edge, added.point, None);
             on_model[vertex as usize] = on.point;
             associate(&mut mesh, vertex, Place::Edge(edge, on.t));
@@ -152,10 +167,6 @@ fn meshed(model: &Model, surface: &Surface, filled: &Tetrahedra) -> Own {
     ridges.sort_unstable();
     ridges.into_iter().for_each(|(nodes, edge)| mesh.edges.push(nodes, edge as i32 + 1));
     Own { mesh, on_model }
-}
-
-fn key(a: u32, b: u32) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }
 
 fn associate(mesh: &mut TetMesh, vertex: u32, place: Place) {

@@ -40,7 +40,7 @@ impl Shape {
         }
         let mut seen = std::collections::HashSet::new();
         let mut triangles: Vec<[u32; 3]> = self.triangles.iter().map(|t| t.map(|v| number[v as usize])).collect();
-        triangles.retain(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0] && seen.insert(super::sorted(*t)));
+        triangles.retain(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0] && seen.insert(super::sorted3(*t)));
         Shape { points, triangles }
     }
 }

@@ -96,23 +96,7 @@ impl Patch {
         self.points.push(NONE);
         self.is_pole.push(false);
         self.pole_lines.push(None);
-        let of = |all: &[[u32; 3]], t: u32, k: usize| all[t as usize][k % 3];
-        let [ca, ab] = [of(&self.beside, t, i + 1), of(&self.beside, t, i + 2)];
-        let [bd, dc] = [of(&self.beside, u, j + 1), of(&self.beside, u, j + 2)];
-        let [fixed_ca, fixed_ab] = [of(&self.fixed, t, i + 1), of(&self.fixed, t, i + 2)];
-        let [fixed_bd, fixed_dc] = [of(&self.fixed, u, j + 1), of(&self.fixed, u, j + 2)];
-        let [w, x] = [0, 1].map(|k| self.triangles.len() as u32 + k);
-        self.triangles[t as usize] = [vertex, a, b];
-        self.beside[t as usize] = [ab, u, w];
-        self.fixed[t as usize] = [fixed_ab, NONE, NONE];
-        self.triangles[u as usize] = [vertex, b, d];
-        self.beside[u as usize] = [bd, x, t];
-        self.fixed[u as usize] = [fixed_bd, NONE, NONE];
-        self.triangles.extend([[vertex, c, a], [vertex, d, c]]);
-        self.beside.extend([[ca, t, x], [dc, w, u]]);
-        self.fixed.extend([[fixed_ca, NONE, NONE], [fixed_dc, NONE, NONE]]);
-        self.relink(ca, t, w);
-        self.relink(dc, u, x);
-        fresh.extend([(t, 0), (u, 0), (w, 0), (x, 0)]);
+        let (parts, _) = self.split_edge(t, i, vertex);
+        fresh.extend(parts.map(|part| (part, 0)));
     }
 }

@@ -8,6 +8,7 @@ use super::plane::{Conflict, NONE, Plane, Point, Region};
 use super::points::Points;
 use crate::geometry::OcctEvaluator;
 use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale};
+use std::ops::{Deref, DerefMut};
 
 /// Cosines between a triangle and its surface: what new ones must have, if the old ones had it; below what one looks away.
 const UPRIGHT: f64 = 0.5;
@@ -34,15 +35,27 @@ pub struct Patch {
     is_pole: Vec<bool>,
     /// The direction of that pole's line.
     pole_lines: Vec<Option<Point>>,
-    /// Corners, counter-clockwise in the plane of the parameters.
-    pub triangles: Vec<[u32; 3]>,
-    beside: Vec<[u32; 3]>,
-    /// The segment on the edge opposite to each corner.
-    pub fixed: Vec<[u32; 3]>,
+    /// The triangles, counter-clockwise in the plane of the parameters.
+    region: Region,
     /// Whether chords of the border keep points away; else only those that would turn triangles over.
     pub is_strict: bool,
     /// Segments whose chords were in the way of a point.
     pub pressed: Vec<u32>,
+}
+
+/// A patch is its triangles, with places for their corners.
+impl Deref for Patch {
+    type Target = Region;
+
+    fn deref(&self) -> &Region {
+        &self.region
+    }
+}
+
+impl DerefMut for Patch {
+    fn deref_mut(&mut self) -> &mut Region {
+        &mut self.region
+    }
 }
 
 /// What is asked of the surface at a point.
@@ -108,9 +121,7 @@ impl Patch {
             at: outline.points.iter().map(|&p| points.at[p as usize]).collect(),
             sizes: vec![f64::INFINITY; outline.corners.len()],
             points: outline.points.clone(),
-            triangles: region.triangles,
-            beside: region.beside,
-            fixed: region.fixed,
+            region,
             ..Self::default()
         };
         patch.normals = (0..patch.plane.len()).map(|i| sample(on, face, patch.uv(i as u32)).normal).collect();
@@ -155,9 +166,11 @@ impl Patch {
             points,
             is_pole: vec![false; count],
             pole_lines: vec![None; count],
-            beside: vec![[NONE; 3]; triangles.len()],
-            fixed: vec![[NONE; 3]; triangles.len()],
-            triangles,
+            region: Region {
+                beside: vec![[NONE; 3]; triangles.len()],
+                fixed: vec![[NONE; 3]; triangles.len()],
+                triangles,
+            },
             is_strict: false,
             pressed: Vec::new(),
         }
@@ -185,14 +198,6 @@ impl Patch {
     /// Whether two corners are one point in space.
     fn is_one(&self, a: u32, b: u32) -> bool {
         self.points[a as usize] != NONE && self.points[a as usize] == self.points[b as usize]
-    }
-
-    fn relink(&mut self, triangle: u32, old: u32, new: u32) {
-        if triangle != NONE
-            && let Some(beside) = self.beside[triangle as usize].iter_mut().find(|beside| **beside == old)
-        {
-            *beside = new;
-        }
     }
 
     /// Triangles that look away from the surface, each with the segments on its edges.
@@ -224,9 +229,4 @@ fn look([p, q, r]: [Vec3; 3], normals: [Vec3; 3]) -> f64 {
     } else {
         dot(n, mean) / size
     }
-}
-
-/// Two numbers in order.
-pub fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

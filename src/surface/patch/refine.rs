@@ -2,8 +2,9 @@
 use super::super::edges::{STRETCH, angle};
 use super::super::plane::NONE;
 use super::super::{Options, Wish};
-use super::{Patch, sample, sorted};
+use super::{Patch, sample};
 use crate::geometry::OcctEvaluator;
+use crate::mesh::adjacency::sorted2;
 use crate::mesh::vector::{Vec3, distance, dot, lerp, norm, sub};
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -40,7 +41,7 @@ impl Patch {
                 let Some(i) = self.edge_in(t, a, b) else { continue };
                 // Edges of a fan at a pole are one in space.
                 let is_at_pole = self.is_pole[a as usize] || self.is_pole[b as usize];
-                if is_at_pole && !poles.insert(sorted([self.key(a), self.key(b)])) {
+                if is_at_pole && !poles.insert(sorted2([self.key(a), self.key(b)])) {
                     continue;
                 }
                 self.halve(on, face, t, i, options.growth, &mut fresh);
@@ -76,7 +77,7 @@ impl Patch {
                     continue;
                 }
                 let [a, b] = [1, 2].map(|k| self.triangles[t as usize][(i + k) % 3]);
-                let pair = sorted([self.key(a), self.key(b)]);
+                let pair = sorted2([self.key(a), self.key(b)]);
                 let is_barred = barred.contains(&pair) || twice.contains(&pair);
                 let ratio = if is_barred { f64::MAX } else { self.excess(on, face, [a, b], options, wishes) };
                 if ratio > 1.0 {
@@ -99,8 +100,8 @@ impl Patch {
         let mut all: Vec<([u32; 2], [u32; 2], bool)> = Vec::with_capacity(3 * self.triangles.len());
         for (t, corners) in self.triangles.iter().enumerate() {
             for i in 0..3 {
-                let ends = sorted([corners[(i + 1) % 3], corners[(i + 2) % 3]]);
-                all.push((sorted(ends.map(|c| self.key(c))), ends, self.fixed[t][i] != NONE));
+                let ends = sorted2([corners[(i + 1) % 3], corners[(i + 2) % 3]]);
+                all.push((sorted2(ends.map(|c| self.key(c))), ends, self.fixed[t][i] != NONE));
             }
         }
         all.sort_unstable();

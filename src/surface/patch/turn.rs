@@ -58,24 +58,4 @@ impl Patch {
         let before = look([p, q, r], [n_a, n_b, n_c]).min(look([q, s, r], [n_b, n_d, n_c]));
         look([p, q, s], [n_a, n_b, n_d]).min(look([p, s, r], [n_a, n_d, n_c])) >= before.min(UPRIGHT) - 1e-12
     }
-
-    pub(super) fn flip(&mut self, t: u32, i: usize) {
-        let u = self.beside[t as usize][i];
-        let j = self.beside[u as usize].iter().position(|&x| x == t).unwrap_or(0);
-        let [a, b, c] = [0, 1, 2].map(|k| self.triangles[t as usize][(i + k) % 3]);
-        let d = self.triangles[u as usize][j];
-        let of = |all: &[[u32; 3]], t: u32, k: usize| all[t as usize][k % 3];
-        let [ca, ab] = [of(&self.beside, t, i + 1), of(&self.beside, t, i + 2)];
-        let [bd, dc] = [of(&self.beside, u, j + 1), of(&self.beside, u, j + 2)];
-        let [fixed_ca, fixed_ab] = [of(&self.fixed, t, i + 1), of(&self.fixed, t, i + 2)];
-        let [fixed_bd, fixed_dc] = [of(&self.fixed, u, j + 1), of(&self.fixed, u, j + 2)];
-        self.triangles[t as usize] = [a, b, d];
-        self.beside[t as usize] = [bd, u, ab];
-        self.fixed[t as usize] = [fixed_bd, NONE, fixed_ab];
-        self.triangles[u as usize] = [a, d, c];
-        self.beside[u as usize] = [dc, ca, t];
-        self.fixed[u as usize] = [fixed_dc, fixed_ca, NONE];
-        self.relink(bd, u, t);
-        self.relink(ca, t, u);
-    }
 }

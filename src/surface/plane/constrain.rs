@@ -17,15 +17,15 @@ impl Plane {
             self.clear(a, b, crossed)?;
         }
         let (t, i) = self.edge(a, b).ok_or(Conflict::Lost)?;
-        let before = self.fixed[t as usize][i];
+        let before = self.region.fixed[t as usize][i];
         if before != NONE {
             return Ok(Some(before));
         }
-        self.fixed[t as usize][i] = segment;
-        let u = self.beside[t as usize][i];
+        self.region.fixed[t as usize][i] = segment;
+        let u = self.region.beside[t as usize][i];
         if u != NONE {
-            let j = self.place_beside(t, i);
-            self.fixed[u as usize][j] = segment;
+            let j = self.region.place_beside(t, i);
+            self.region.fixed[u as usize][j] = segment;
         }
         Ok(None)
     }
@@ -36,18 +36,18 @@ impl Plane {
         let (mut t, mut i) = self.towards(a, b, segment)?;
         let mut crossed = VecDeque::new();
         loop {
-            let here = self.fixed[t as usize][i];
+            let here = self.region.fixed[t as usize][i];
             if here != NONE {
                 return Err(Conflict::Cross(segment, here));
             }
-            let [right, left] = [1, 2].map(|k| self.triangles[t as usize][(i + k) % 3]);
+            let [right, left] = [1, 2].map(|k| self.region.triangles[t as usize][(i + k) % 3]);
             crossed.push_back([right, left]);
-            let u = self.beside[t as usize][i];
-            if u == NONE || crossed.len() > self.triangles.len() {
+            let u = self.region.beside[t as usize][i];
+            if u == NONE || crossed.len() > self.region.triangles.len() {
                 return Err(Conflict::Lost);
             }
-            let j = self.place_beside(t, i);
-            let ahead = self.triangles[u as usize][j];
+            let j = self.region.place_beside(t, i);
+            let ahead = self.region.triangles[u as usize][j];
             if ahead == b {
                 return Ok(crossed);
             }
@@ -67,7 +67,7 @@ impl Plane {
         let mut t = start;
         loop {
             let i = self.place(t, a);
-            let [right, left] = [1, 2].map(|k| self.triangles[t as usize][(i + k) % 3]);
+            let [right, left] = [1, 2].map(|k| self.region.triangles[t as usize][(i + k) % 3]);
             let [of_right, of_left] = [right, left].map(|v| turn(at_a, at_b, self.point(v)));
             for (v, side) in [(right, of_right), (left, of_left)] {
                 let to = self.point(v);
@@ -79,7 +79,7 @@ impl Plane {
             if of_right < 0.0 && of_left > 0.0 {
                 return Ok((t, i));
             }
-            t = self.beside[t as usize][(i + 1) % 3];
+            t = self.region.beside[t as usize][(i + 1) % 3];
             if t == NONE || t == start {
                 return Err(Conflict::Lost);
             }
@@ -94,8 +94,11 @@ impl Plane {
         while let Some([p, q]) = crossed.pop_front() {
             left = left.checked_sub(1).ok_or(Conflict::Lost)?;
             let (t, i) = self.edge(p, q).ok_or(Conflict::Lost)?;
-            let u = self.beside[t as usize][i];
-            let [c, d] = [self.triangles[t as usize][i], self.triangles[u as usize][self.place_beside(t, i)]];
+            let u = self.region.beside[t as usize][i];
+            let [c, d] = [
+                self.region.triangles[t as usize][i],
+                self.region.triangles[u as usize][self.region.place_beside(t, i)],
+            ];
             let [at_p, at_q, at_c, at_d] = [p, q, c, d].map(|v| self.point(v));
             if turn(at_c, at_d, at_p) * turn(at_c, at_d, at_q) >= 0.0 || turn(at_c, at_d, at_p) == 0.0 {
                 crossed.push_back([p, q]);
@@ -112,16 +115,16 @@ impl Plane {
         }
         // The segment itself stays.
         let (t, i) = self.edge(a, b).ok_or(Conflict::Lost)?;
-        let (u, j) = (self.beside[t as usize][i], self.place_beside(t, i));
-        (self.fixed[t as usize][i], self.fixed[u as usize][j]) = (0, 0);
+        let (u, j) = (self.region.beside[t as usize][i], self.region.place_beside(t, i));
+        (self.region.fixed[t as usize][i], self.region.fixed[u as usize][j]) = (0, 0);
         for [p, q] in fresh {
             if let Some(edge) = self.edge(p, q) {
                 self.legalise(&mut vec![edge]);
             }
         }
         let (t, i) = self.edge(a, b).ok_or(Conflict::Lost)?;
-        let (u, j) = (self.beside[t as usize][i], self.place_beside(t, i));
-        (self.fixed[t as usize][i], self.fixed[u as usize][j]) = (NONE, NONE);
+        let (u, j) = (self.region.beside[t as usize][i], self.region.place_beside(t, i));
+        (self.region.fixed[t as usize][i], self.region.fixed[u as usize][j]) = (NONE, NONE);
         Ok(())
     }
 }

@@ -39,11 +39,8 @@ pub enum Conflict {
 #[derive(Clone, Debug)]
 pub struct Plane {
     points: Vec<Point>,
-    triangles: Vec<[u32; 3]>,
-    /// The triangle across the edge opposite to each corner.
-    beside: Vec<[u32; 3]>,
-    /// The segment on that edge.
-    fixed: Vec<[u32; 3]>,
+    /// The whole square.
+    region: Region,
     /// A triangle at each point.
     at: Vec<u32>,
     /// Where the last search ended.
@@ -100,9 +97,11 @@ impl Plane {
         all.extend([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]);
         Ok(Self {
             points: all,
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-            beside: vec![[NONE, 1, NONE], [NONE, NONE, 0]],
-            fixed: vec![[NONE; 3]; 2],
+            region: Region {
+                triangles: vec![[0, 1, 2], [0, 2, 3]],
+                beside: vec![[NONE, 1, NONE], [NONE, NONE, 0]],
+                fixed: vec![[NONE; 3]; 2],
+            },
             at: vec![0, 0, 0, 1],
             last: 0,
         })
@@ -114,50 +113,18 @@ impl Plane {
 
     /// The place of a vertex in a triangle.
     fn place(&self, triangle: u32, vertex: u32) -> usize {
-        self.triangles[triangle as usize].iter().position(|&v| v == vertex).unwrap_or(0)
+        self.region.triangles[triangle as usize].iter().position(|&v| v == vertex).unwrap_or(0)
     }
 
-    /// The place, in the triangle beside, of the edge opposite to corner i.
-    fn place_beside(&self, triangle: u32, i: usize) -> usize {
-        let other = self.beside[triangle as usize][i];
-        self.beside[other as usize].iter().position(|&t| t == triangle).unwrap_or(0)
-    }
-
-    /// Puts `new` in the place of `old` beside a triangle.
-    fn relink(&mut self, triangle: u32, old: u32, new: u32) {
-        if triangle != NONE {
-            for beside in &mut self.beside[triangle as usize] {
-                if *beside == old {
-                    *beside = new;
-                    return;
-                }
-            }
-        }
-    }
-
-    /// Turns the edge opposite to corner i of a triangle into the other diagonal of the two triangles at it, t and u:
-    /// t = (a, b, c), u = (d, c, b) become t = (a, b, d), u = (a, d, c).
+    /// Turns the edge opposite to corner i of a triangle into the other diagonal ([`Region::flip`]).
     fn flip(&mut self, t: u32, i: usize) {
-        let u = self.beside[t as usize][i];
-        let j = self.place_beside(t, i);
-        let [a, b, c] = [0, 1, 2].map(|k| self.triangles[t as usize][(i + k) % 3]);
-        let d = self.triangles[u as usize][j];
-        let of = |all: &[[u32; 3]], t: u32, k: usize| all[t as usize][k % 3];
-        let beside = &self.beside;
-        let [ca, ab] = [of(beside, t, i + 1), of(beside, t, i + 2)];
-        let [bd, dc] = [of(beside, u, j + 1), of(beside, u, j + 2)];
-        let fixed = &self.fixed;
-        let [fixed_ca, fixed_ab] = [of(fixed, t, i + 1), of(fixed, t, i + 2)];
-        let [fixed_bd, fixed_dc] = [of(fixed, u, j + 1), of(fixed, u, j + 2)];
-        self.triangles[t as usize] = [a, b, d];
-        self.beside[t as usize] = [bd, u, ab];
-        self.fixed[t as usize] = [fixed_bd, NONE, fixed_ab];
-        self.triangles[u as usize] = [a, d, c];
-        self.beside[u as usize] = [dc, ca, t];
-        self.fixed[u as usize] = [fixed_dc, fixed_ca, NONE];
-        self.relink(bd, u, t);
-        self.relink(ca, t, u);
-        for (vertex, triangle) in [(a, t), (b, t), (d, t), (c, u)] {
+        let (u, [a, b, c, d]) = self.region.flip(t, i);
+        self.now_at([(a, t), (b, t), (d, t), (c, u)]);
+    }
+
+    /// Notes a triangle at each of some vertices.
+    fn now_at<const N: usize>(&mut self, places: [(u32, u32); N]) {
+        for (vertex, triangle) in places {
             self.at[vertex as usize] = triangle;
         }
     }
@@ -170,10 +137,10 @@ impl Plane {
         for step in [1, 2] {
             loop {
                 let i = self.place(t, a);
-                if self.triangles[t as usize][(i + 1) % 3] == b {
+                if self.region.triangles[t as usize][(i + 1) % 3] == b {
                     return Some((t, (i + 2) % 3));
                 }
-                t = self.beside[t as usize][(i + step) % 3];
+                t = self.region.beside[t as usize][(i + step) % 3];
                 if t == NONE || t == start {
                     break;
                 }

@@ -13,7 +13,7 @@ mod near;
 mod tests;
 mod triangles;
 
-use crate::mesh::box_tree::{Bounds, BoxTree};
+use crate::mesh::box_tree::{Bounds, BoxTree, overlap};
 use crate::mesh::triangle_pair::Corners;
 use std::sync::{PoisonError, RwLock, RwLockReadGuard};
 use triangles::Triangles;
@@ -65,8 +65,4 @@ impl Narrow {
 /// The box of a triangle, so much larger on all sides.
 fn bounds([p, q, r]: &Corners, margin: f64) -> Bounds {
     [[0, 1, 2].map(|k| p[k].min(q[k]).min(r[k]) - margin), [0, 1, 2].map(|k| p[k].max(q[k]).max(r[k]) + margin)]
-}
-
-fn overlap(a: &Bounds, b: &Bounds) -> bool {
-    (0..3).all(|k| a[0][k] <= b[1][k] && b[0][k] <= a[1][k])
 }

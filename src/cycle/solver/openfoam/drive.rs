@@ -224,7 +224,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// FirstOrderCells where the block that blew up has failed, as its last fields show it; how many cells, which had no mark before.
+    /// Marks cells where the block that blew up has failed, as its last fields show it; how many cells, which had no mark before.
     fn mark(&mut self) -> usize {
         let Ok(last) = last_time(self.case) else { return 0 };
         let (cells, before) = (self.volumes.len(), &self.state);

@@ -2,7 +2,7 @@
 //!
 //! `flow` says what holds where, `method` which program solves it (rhoCentralFoam with local time steps, or rhoSimpleFoam where the flow is
 //! slow and viscous), `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
-//! `programs`, as fast as `step_control` lets it, to first order where `first_order` are, until it stands still or else to its `mean`, and `forces` sums up what
+//! `programs`, as fast as `step_control` lets it, to first order in the cells of `first_order`, until it stands still or else to its `mean`, and `forces` sums up what
 //! acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
 mod dictionaries;
 pub mod drive;
