@@ -56,6 +56,23 @@ impl Placement for Flat {
     }
 }
 
+/// The same, as long as this says to go on.
+pub struct FlatWhile<'a>(pub &'a dyn Fn() -> bool);
+
+impl Placement for FlatWhile<'_> {
+    fn on_edge(&mut self, vertex: u32, ends: [u32; 2], at: f64, straight: Vec3) -> Vec3 {
+        Flat.on_edge(vertex, ends, at, straight)
+    }
+
+    fn in_triangle(&mut self, vertex: u32, corners: [u32; 3], at: [f64; 3], straight: Vec3) -> Vec3 {
+        Flat.in_triangle(vertex, corners, at, straight)
+    }
+
+    fn go_on(&mut self) -> bool {
+        self.0()
+    }
+}
+
 /// Where an added point comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Origin {

@@ -1,8 +1,8 @@
-//! Where threads sleep: a seat a thread, woken one at a time.
+//! Where threads are parked: each in a slot of its own, unparked one at a time.
 //!
-//! A thread that goes to sleep first says so, then looks once more for what it waits for. A thread that brings work first leaves it, then
-//! looks whether someone sleeps. Each has a sequentially consistent fence between its two steps, so at least one sees the other, and no
-//! call is lost. tests/sleep_protocol.rs runs this file on loom's atomics, through all orders.
+//! A thread that parks first says so, then looks once more for what it waits for. A thread that brings work first leaves it, then
+//! looks whether someone is parked. Each has a sequentially consistent fence between its two steps, so at least one sees the other, and no
+//! call is lost. tests/parking_protocol.rs runs this file on loom's atomics, through all orders.
 use super::sync::atomic::{
     AtomicBool, AtomicUsize,
     Ordering::{Relaxed, SeqCst},
@@ -10,89 +10,89 @@ use super::sync::atomic::{
 };
 use super::sync::{Condvar, Mutex, MutexGuard};
 
-/// What a sleeper waits for.
+/// What a parked thread waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum For {
-    /// Any task: [`Seats::wake_one`] may choose it.
+    /// Any task: [`Parking::unpark_one`] may choose it.
     Work,
-    /// Something of its own: only [`Seats::wake`] reaches it.
+    /// Something of its own: only [`Parking::unpark`] reaches it.
     Call,
 }
 
-/// Seats, counted from 0.
-pub struct Seats {
-    /// The threads that sleep for work, the last to fall asleep on top, since its caches are the warmest.
+/// The slots, counted from 0.
+pub struct Parking {
+    /// The threads that are parked for work, the last on top, since its caches are the warmest.
     idle: Mutex<Vec<usize>>,
     /// Length of `idle`, to be looked at without the lock.
-    sleepers: AtomicUsize,
-    seats: Vec<Seat>,
+    parked: AtomicUsize,
+    slots: Vec<Slot>,
 }
 
-struct Seat {
-    /// Written under the lock. Read without it, so that threads that are awake are left alone.
-    asleep: AtomicBool,
-    bell: Condvar,
+struct Slot {
+    /// Written under the lock. Read without it, so that threads that run are left alone.
+    is_parked: AtomicBool,
+    signal: Condvar,
 }
 
-impl Seats {
-    /// So many seats, all empty.
-    pub fn new(seats: usize) -> Self {
-        let seats = (0..seats).map(|_| Seat { asleep: AtomicBool::new(false), bell: Condvar::new() }).collect();
-        Self { idle: Mutex::new(Vec::new()), sleepers: AtomicUsize::new(0), seats }
+impl Parking {
+    /// So many slots, all empty.
+    pub fn new(count: usize) -> Self {
+        let slots = (0..count).map(|_| Slot { is_parked: AtomicBool::new(false), signal: Condvar::new() }).collect();
+        Self { idle: Mutex::new(Vec::new()), parked: AtomicUsize::new(0), slots }
     }
 
-    /// Sleeps until woken; not at all if `ready` now. After this the thread looks for everything that it could have been woken for.
-    pub fn sleep(&self, seat: usize, reason: For, ready: impl Fn() -> bool) {
-        let chair = &self.seats[seat];
+    /// Parks the thread until it is unparked; not at all if `ready` now. After this the thread looks for everything that it could have been unparked for.
+    pub fn park(&self, slot: usize, reason: For, ready: impl Fn() -> bool) {
+        let here = &self.slots[slot];
         let mut idle = self.lock();
-        chair.asleep.store(true, Relaxed);
+        here.is_parked.store(true, Relaxed);
         if reason == For::Work {
-            idle.push(seat);
-            self.sleepers.store(idle.len(), Relaxed);
+            idle.push(slot);
+            self.parked.store(idle.len(), Relaxed);
         }
         drop(idle);
         fence(SeqCst);
         if ready() {
             let mut idle = self.lock();
-            self.rouse(&mut idle, seat);
+            self.clear(&mut idle, slot);
             return;
         }
         let mut idle = self.lock();
-        while chair.asleep.load(Relaxed) {
-            idle = chair.bell.wait(idle).expect("nothing panics under this lock");
+        while here.is_parked.load(Relaxed) {
+            idle = here.signal.wait(idle).expect("nothing panics under this lock");
         }
     }
 
-    /// Wakes a thread that sleeps for work, if there is one. The work must be there already.
-    pub fn wake_one(&self) {
+    /// Unparks a thread that is parked for work, if there is one. The work must be there already.
+    pub fn unpark_one(&self) {
         fence(SeqCst);
-        if self.sleepers.load(Relaxed) > 0 {
+        if self.parked.load(Relaxed) > 0 {
             let mut idle = self.lock();
-            if let Some(&seat) = idle.last() {
-                self.rouse(&mut idle, seat);
+            if let Some(&slot) = idle.last() {
+                self.clear(&mut idle, slot);
                 drop(idle);
-                self.seats[seat].bell.notify_one();
+                self.slots[slot].signal.notify_one();
             }
         }
     }
 
-    /// Wakes the thread on this seat, if it sleeps. What it waits for must be there already.
-    pub fn wake(&self, seat: usize) {
+    /// Unparks the thread in this slot, if it is parked. What it waits for must be there already.
+    pub fn unpark(&self, slot: usize) {
         fence(SeqCst);
-        if self.seats[seat].asleep.load(Relaxed) {
+        if self.slots[slot].is_parked.load(Relaxed) {
             let mut idle = self.lock();
-            self.rouse(&mut idle, seat);
+            self.clear(&mut idle, slot);
             drop(idle);
-            self.seats[seat].bell.notify_one();
+            self.slots[slot].signal.notify_one();
         }
     }
 
-    fn rouse(&self, idle: &mut Vec<usize>, seat: usize) {
-        if let Some(at) = idle.iter().rposition(|&one| one == seat) {
+    fn clear(&self, idle: &mut Vec<usize>, slot: usize) {
+        if let Some(at) = idle.iter().rposition(|&one| one == slot) {
             idle.remove(at);
-            self.sleepers.store(idle.len(), Relaxed);
+            self.parked.store(idle.len(), Relaxed);
         }
-        self.seats[seat].asleep.store(false, Relaxed);
+        self.slots[slot].is_parked.store(false, Relaxed);
     }
 
     fn lock(&self) -> MutexGuard<'_, Vec<usize>> {

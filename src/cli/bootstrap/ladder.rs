@@ -258,7 +258,7 @@ fn command(
 
 /// A mesh is good when it is one, fills every solid, and covers every face, edge and vertex of the model. Where its vertices are not on the
 /// model yet, `on_model` says where they belong.
-fn judge(
+pub fn judge(
     team: Team<'_>,
     mut mesh: TetMesh,
     model: &Model,
