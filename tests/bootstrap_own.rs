@@ -61,7 +61,7 @@ fn edges_beside_a_short_one_have_pieces_that_grow() {
 }
 
 /// Balls touch the groove of a shaft along half circles that are no edges there: chords of the two cross, however fine they are. Each body
-/// is filled by itself, and nothing but such crossings may be wrong with the mesh.
+/// is filled by itself, and nothing but such crossings may be wrong with that mesh; the kernel takes the bodies apart.
 #[test]
 fn bodies_that_touch_along_no_edge_are_filled_one_by_one() {
     let mesh = meshed(&here("geometry/zoo/rolling.step"), &["--no-adapt"]);
