@@ -19,6 +19,7 @@ mod suppress;
 mod tests;
 mod triangles;
 mod twofold;
+mod unused;
 
 use crate::mesh::vector::Vec3;
 pub use complex::Triangulation;
@@ -237,5 +238,6 @@ pub fn tetrahedralise(
         suppress::suppress(&mut result, points.len(), scale);
         result.points[..points.len()].copy_from_slice(points);
     }
+    unused::drop_unused(&mut result, points.len());
     Ok(result)
 }
