@@ -45,11 +45,10 @@ pub struct Arguments {
     /// Leave the mesh as the mesher made it; our own makes few vertices, whatever the sizes
     #[arg(long)]
     pub no_adapt: bool,
-    /// Who makes the mesh that is adapted; by default gmsh, and netgen where gmsh fails
+    /// Who makes the mesh that is adapted
     #[arg(long, value_enum, default_value_t = Choice::default())]
     pub mesher: Choice,
-    /// Seconds that one run of the mesher may take, without waiting for a busy machine; a third of them at first, all where nothing else
-    /// made a mesh
+    /// Seconds that all attempts at a mesh may take together, without waiting for a busy machine; each a third of them at first
     #[arg(long, value_name = "S", value_parser = crate::cli::positive, default_value = "120", allow_negative_numbers = true)]
     pub time_limit: f64,
     /// Of a surface of triangles: angle in degrees between them beyond which their edge is a ridge; or `none` [default: 45]

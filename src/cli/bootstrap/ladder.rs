@@ -18,7 +18,7 @@ use crate::process::{Log, Outcome, Runner, Tie, errors_or_last_lines, is_exhaust
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A mesh on its model.
 pub struct Meshed {
@@ -68,23 +68,18 @@ pub struct Ladder<'a> {
 }
 
 impl<'a> Ladder<'a> {
-    /// Before the first rung; the model is written for the meshers, the log begun.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
+    /// Before the first rung.
     pub fn new(
         team: Team<'a>,
         model: &'a Model,
         wish: &'a Wish,
         choice: Choice,
         (place, log): (&'a Workplace, &'a Path),
-    ) -> Result<Self, String> {
-        Log::create(log).map_err(|error| format!("{}: {error}", log.display()))?;
+    ) -> Self {
         let brep = place.file("model.brep");
-        model.write_brep(&brep).map_err(|error| error.to_string())?;
         let queue = Queue::new(Rung::of(choice), wish.limit);
         let (missing, failed) = Default::default();
-        Ok(Self { team, model, wish, log, place, brep, queue, missing, failed })
+        Self { team, model, wish, log, place, brep, queue, missing, failed }
     }
 
     /// The mesh of the next rung that gives a good one.
@@ -94,7 +89,11 @@ impl<'a> Ladder<'a> {
     pub fn climb(&mut self) -> Result<Meshed, Stopped> {
         while let Some((rung, limit)) = self.queue.next() {
             let program = rung.program();
-            match self.attempt(rung, limit) {
+            let began = Instant::now();
+            let given = self.attempt(rung, limit);
+            // What waits for a busy machine has more time by the clock.
+            self.queue.spend(began.elapsed().min(limit));
+            match given {
                 Ok((mesh, place)) => {
                     let told = self.failed.iter();
                     let notices = told.map(|(rung, why)| format!("{rung} gave no good mesh: {why}")).collect();
@@ -106,13 +105,13 @@ impl<'a> Ladder<'a> {
                 }
                 Err(Miss::Interrupted) => return Err(Stopped::Interrupted(program)),
                 Err(Miss::TooLong(why)) => {
-                    self.queue.took_too_long(rung, limit);
+                    self.queue.took_too_long(rung);
                     self.failed.push((rung, why));
                 }
                 Err(Miss::Failed(why)) => self.failed.push((rung, why)),
             }
         }
-        Err(Stopped::Failed(describe(&self.missing, &self.failed, self.log, self.model)))
+        Err(Stopped::Failed(describe((&self.missing, &self.failed), self.queue.is_over(), self.log, self.model)))
     }
 
     /// One rung: the mesh, valid and on the model.
@@ -123,6 +122,7 @@ impl<'a> Ladder<'a> {
             };
             return judge(self.team, mesh, self.model, Some(on_model)).map_err(Miss::Failed);
         }
+        self.begin().map_err(Miss::Failed)?;
         let out = self.place.file("out.msh");
         let _ = std::fs::remove_file(&out);
         if matches!(rung, Rung::Triangles) {
@@ -138,6 +138,15 @@ impl<'a> Ladder<'a> {
         }
         let mesh = formats::read_msh(&out).map_err(|error| failed(error.to_string()))?;
         judge(self.team, mesh, self.model, None).map_err(failed)
+    }
+
+    /// Writes the model for other programs and begins their log, unless that was done.
+    fn begin(&self) -> Result<(), String> {
+        if self.brep.is_file() {
+            return Ok(());
+        }
+        Log::create(self.log).map_err(|error| format!("{}: {error}", self.log.display()))?;
+        self.model.write_brep(&self.brep).map_err(|error| error.to_string())
     }
 
     /// Remembers why the mesh of a rung would not do.
@@ -158,11 +167,12 @@ fn own(_: &Model, _: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, String> {
 }
 
 /// The error of a ladder without a good rung.
-fn describe(missing: &[String], failed: &[(Rung, String)], log: &Path, model: &Model) -> String {
+fn describe((missing, failed): (&[String], &[(Rung, String)]), is_over: bool, log: &Path, model: &Model) -> String {
     let missing = missing.join("; ");
     let Some((rung, why)) = failed.last() else {
         return format!("there is no mesher to begin with: {missing}; or give --mesher own, which needs none");
     };
+    let time = if is_over { "; the time was over (--time-limit)" } else { "" };
     let also = if missing.is_empty() { String::new() } else { format!("; not tried: {missing}") };
     let remedy = match flaws(model) {
         Some(flaws) => format!("The model itself is faulty: {flaws}. Repair it in the CAD program"),
@@ -177,7 +187,7 @@ fn describe(missing: &[String], failed: &[(Rung, String)], log: &Path, model: &M
     } else {
         format!(" (all that was said is in {})", log.display())
     };
-    format!("{told}{also}{said}. {remedy}")
+    format!("{told}{also}{time}{said}. {remedy}")
 }
 
 /// How many flaws of a model are told.

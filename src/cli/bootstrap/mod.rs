@@ -1,7 +1,8 @@
 //! `geo-adapt bootstrap`: the first mesh of a model.
 //!
-//! A mesher that is started as a program makes some valid mesh of the model (`ladder`), and our own kernel adapts it to the metric of the
-//! geometry (`refine`). The model goes to the mesher as we have it in memory, so that its numbers of faces, edges and solids are ours.
+//! Our own mesher makes some valid mesh of the model (`own`; `triangles` of a surface of triangles), and where it fails another one that is
+//! started as a program (`ladder`); our own kernel adapts it to the metric of the geometry (`refine`). The model goes to other programs as we
+//! have it in memory, so that its numbers of faces, edges and solids are ours.
 mod arguments;
 pub mod domain;
 mod gmsh;
@@ -64,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         limit: Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX),
     };
     let named = |error: String| format!("{}: {error}", arguments.model.display());
-    let mut ladder = Ladder::new(team, &model, &wish, arguments.mesher, (&place, log.path())).map_err(named)?;
+    let mut ladder = Ladder::new(team, &model, &wish, arguments.mesher, (&place, log.path()));
     let stopped = |why: Stopped| -> Outcome {
         Err(match why {
             Stopped::Failed(error) => named(error).into(),

@@ -3,36 +3,52 @@ use super::rung::Rung;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// A rung gets a third of the time at first: a mesher that does not end on a model (gmsh's volumes between walls that are much thinner
+/// A rung gets a third of the time at first, unless it is the last: a mesher that does not end on a model (gmsh's volumes between walls that are much thinner
 /// than wide, its surfaces at an apex) would keep the user waiting, and mostly another rung is done at once.
 const FIRST: u32 = 3;
 
-/// The rungs that are left. What took too long comes once more behind all others, with the whole time.
+/// The rungs that are left. What took too long comes once more behind all others, with all the time that is left.
 pub struct Queue {
-    waiting: VecDeque<(Rung, Duration)>,
+    waiting: VecDeque<Rung>,
     limit: Duration,
-    /// Programs that are not there, and those that took too long.
+    /// What was used of the time.
+    spent: Duration,
+    /// Programs that are not there.
     gone: Vec<&'static str>,
-    slow: Vec<&'static str>,
+    /// What took too long, and comes again.
+    slow: Vec<Rung>,
 }
 
 impl Queue {
-    /// All rungs in their order; none may take longer than `limit`.
+    /// All rungs in their order; together they may not take longer than `limit`.
     pub fn new(rungs: impl Iterator<Item = Rung>, limit: Duration) -> Self {
-        let waiting = rungs.map(|rung| (rung, limit / FIRST)).collect();
-        Self { waiting, limit, gone: Vec::new(), slow: Vec::new() }
+        Self { waiting: rungs.collect(), limit, spent: Duration::ZERO, gone: Vec::new(), slow: Vec::new() }
     }
 
     /// The next rung, and how long it may take. Where a program took too long only its light rungs are tried.
     pub fn next(&mut self) -> Option<(Rung, Duration)> {
-        while let Some((rung, limit)) = self.waiting.pop_front() {
-            let (program, is_again) = (rung.program(), limit == self.limit);
-            let is_hopeless = !is_again && !rung.is_light() && self.slow.contains(&program);
+        let left = self.limit.saturating_sub(self.spent);
+        while !left.is_zero() {
+            let rung = self.waiting.pop_front()?;
+            let (program, is_again) = (rung.program(), self.slow.contains(&rung));
+            let is_slow = self.slow.iter().any(|slow| slow.program() == program);
+            let is_hopeless = !is_again && !rung.is_light() && is_slow;
             if !is_hopeless && !self.gone.contains(&program) {
-                return Some((rung, limit));
+                let is_last = self.waiting.is_empty();
+                return Some((rung, if is_again || is_last { left } else { left.min(self.limit / FIRST) }));
             }
         }
         None
+    }
+
+    /// Whether the time ended before the rungs did.
+    pub fn is_over(&self) -> bool {
+        !self.waiting.is_empty() && self.spent >= self.limit
+    }
+
+    /// A rung has used so much of the time.
+    pub fn spend(&mut self, time: Duration) {
+        self.spent += time;
     }
 
     /// There is no such program.
@@ -40,11 +56,11 @@ impl Queue {
         self.gone.push(program);
     }
 
-    /// It was ended after this time.
-    pub fn took_too_long(&mut self, rung: Rung, limit: Duration) {
-        self.slow.push(rung.program());
-        if limit < self.limit {
-            self.waiting.push_back((rung, self.limit));
+    /// It was ended.
+    pub fn took_too_long(&mut self, rung: Rung) {
+        if !self.slow.contains(&rung) {
+            self.slow.push(rung);
+            self.waiting.push_back(rung);
         }
     }
 }
@@ -56,14 +72,17 @@ mod tests {
 
     const WHOLE: Duration = Duration::from_secs(100);
 
-    /// All rungs that come, of which some take too long at first.
+    /// All rungs that come, of which some use all of their time, and the others a hundredth of all.
     fn tried(is_slow: impl Fn(Rung) -> bool) -> Vec<(Rung, Duration)> {
         let mut queue = Queue::new(Rung::of(Choice::Auto), WHOLE);
         let mut tried = Vec::new();
         while let Some((rung, limit)) = queue.next() {
             tried.push((rung, limit));
-            if limit < WHOLE && is_slow(rung) {
-                queue.took_too_long(rung, limit);
+            if is_slow(rung) {
+                queue.spend(limit);
+                queue.took_too_long(rung);
+            } else {
+                queue.spend(WHOLE / 100);
             }
         }
         tried
@@ -71,19 +90,42 @@ mod tests {
 
     #[test]
     fn all_come_in_their_order_with_a_part_of_the_time() {
-        let all: Vec<_> = Rung::of(Choice::Auto).map(|rung| (rung, WHOLE / FIRST)).collect();
-        assert_eq!(tried(|_| false), all);
+        let all: Vec<_> = Rung::of(Choice::Auto).collect();
+        let tried = tried(|_| false);
+        assert_eq!(tried.iter().map(|(rung, _)| *rung).collect::<Vec<_>>(), all);
+        let (last, others) = tried.split_last().unwrap();
+        assert!(others.iter().all(|(_, limit)| *limit == WHOLE / FIRST));
+        // The last one has all that is left.
+        assert_eq!(last.1, WHOLE - WHOLE / 100 * others.len() as u32);
     }
 
     #[test]
     fn what_took_too_long_comes_again_at_the_end_and_only_light_rungs_of_its_program_before() {
-        let first = Rung::of(Choice::Auto).next().unwrap();
-        let tried = tried(|rung| rung == first);
-        assert_eq!(tried.first(), Some(&(first, WHOLE / FIRST)));
-        assert_eq!(tried.last(), Some(&(first, WHOLE)));
-        let between = &tried[1..tried.len() - 1];
+        let slow = Rung::of(Choice::Gmsh).next().unwrap();
+        let tried = tried(|rung| rung == slow);
+        let at = tried.iter().position(|(rung, _)| *rung == slow).unwrap();
+        assert_eq!(tried[at].1, WHOLE / FIRST);
+        let (last, left) = *tried.last().unwrap();
+        assert!(last == slow && tried.len() > at + 1);
+        let between = &tried[at + 1..tried.len() - 1];
+        assert_eq!(left, WHOLE - WHOLE / FIRST - WHOLE / 100 * (at + between.len()) as u32);
         assert!(between.iter().any(|(rung, _)| *rung == Rung::Triangles));
-        assert!(between.iter().all(|(rung, limit)| *limit < WHOLE && (rung.is_light() || rung.program() == "netgen")));
+        assert!(between.iter().all(|(rung, _)| rung.is_light() || rung.program() == "netgen"));
+    }
+
+    #[test]
+    fn all_together_take_no_longer_than_the_limit() {
+        let all = tried(|_| true);
+        assert!(all.iter().map(|(_, limit)| *limit).sum::<Duration>() <= WHOLE);
+        let mut queue = Queue::new(Rung::of(Choice::Auto), WHOLE);
+        assert!(!queue.is_over());
+        queue.spend(WHOLE);
+        assert!(queue.is_over() && queue.next().is_none());
+    }
+
+    #[test]
+    fn one_alone_has_all_the_time() {
+        assert_eq!(Queue::new(Rung::of(Choice::Own), WHOLE).next(), Some((Rung::Own, WHOLE)));
     }
 
     #[test]
@@ -91,7 +133,7 @@ mod tests {
         let mut queue = Queue::new(Rung::of(Choice::Auto), WHOLE);
         queue.is_gone("gmsh");
         while let Some((rung, _)) = queue.next() {
-            assert_eq!(rung.program(), "netgen");
+            assert_ne!(rung.program(), "gmsh");
         }
     }
 }

@@ -12,7 +12,7 @@ pub const OWN: &str = "geo-adapt";
 /// Which meshers may be used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Choice {
-    /// gmsh, then netgen
+    /// geo-adapt itself; gmsh, then netgen, where it fails and they are installed
     #[default]
     Auto,
     /// geo-adapt itself: no other program is needed
@@ -66,7 +66,7 @@ impl Rung {
     /// What may be tried.
     pub fn of(choice: Choice) -> impl Iterator<Item = Self> {
         RUNGS.into_iter().filter(move |rung| match rung {
-            Self::Own => choice == Choice::Own,
+            Self::Own => matches!(choice, Choice::Auto | Choice::Own),
             Self::Gmsh { .. } | Self::Triangles => matches!(choice, Choice::Auto | Choice::Gmsh),
             Self::Netgen { .. } => matches!(choice, Choice::Auto | Choice::Netgen),
         })
