@@ -3,17 +3,21 @@
 #include "geo-adapt/cpp/names.hpp"
 #include "geo-adapt/cpp/occt.hpp"
 
+#include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeSolid.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepLib.hxx>
 #include <BRepTools.hxx>
+#include <BRepTools_ReShape.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <Geom_Surface.hxx>
 #include <IGESControl_Reader.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
+#include <Precision.hxx>
 #include <STEPConstruct_UnitContext.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepData_GlobalFactors.hxx>
@@ -21,18 +25,26 @@
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace geo_adapt {
 namespace {
@@ -195,6 +207,45 @@ TopoDS_Shape read_brep(const std::string& path)
   return shape;
 }
 
+/// Faces without wires, which are all of their surface, with the seams and poles that a whole surface has.
+TopoDS_Shape bounded(const TopoDS_Shape& shape, Labels& labels)
+{
+  BRepTools_ReShape change;
+  std::vector<std::pair<TopoDS_Shape, TopoDS_Shape>> changed;
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(shape, TopAbs_FACE, faces);
+  for (int i = 1; i <= faces.Extent(); ++i) {
+    const TopoDS_Face face = TopoDS::Face(faces(i).Oriented(TopAbs_FORWARD));
+    if (TopExp_Explorer(face, TopAbs_WIRE).More()) {
+      continue;
+    }
+    TopLoc_Location at;
+    const Handle(Geom_Surface) surface = BRep_Tool::Surface(face, at);
+    if (surface.IsNull()) {
+      continue;
+    }
+    std::array<double, 4> ends{};
+    surface->Bounds(ends[0], ends[1], ends[2], ends[3]);
+    if (std::any_of(ends.begin(), ends.end(), [](double end) { return Precision::IsInfinite(end); })) {
+      continue;
+    }
+    BRepBuilderAPI_MakeFace whole(surface, Precision::Confusion());
+    if (whole.IsDone()) {
+      const TopoDS_Shape made = whole.Face().Located(at);
+      change.Replace(face, made);
+      changed.emplace_back(faces(i), made);
+    }
+  }
+  if (changed.empty()) {
+    return shape;
+  }
+  const TopoDS_Shape found = change.Apply(shape);
+  for (const auto& [from, to] : changed) {
+    hand_on(labels, from, to);
+  }
+  return found;
+}
+
 } // namespace
 
 std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
@@ -215,7 +266,7 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
   if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) {
     throw std::runtime_error("the model has no faces; export the solid's surfaces, not only curves or a mesh");
   }
-  shape = without_hollow(shape);
+  shape = bounded(without_hollow(shape), labels);
   BRepLib::BuildCurves3d(shape);
   const TopoDS_Shape solids = connected(closed(shape, labels, format == 1), labels);
   const TopoDS_Shape apart = separated(solids, labels);

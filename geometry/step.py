@@ -9,6 +9,8 @@ from pathlib import Path
 # OCCT writes the time of day into the header; a fixed one makes a rewritten file compare equal.
 FIXED_TIME = "2000-01-01T00:00:00"
 HEADER_TIME = re.compile(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")
+# Half of a large file would be the edges' curves in the parameters of their faces, which a reader computes from those in space.
+WITHOUT_PCURVES = {"transport", "transport-half"}
 
 
 def write(model, name, folder):
@@ -28,7 +30,7 @@ def write(model, name, folder):
     # The static settings come into being with the first writer.
     STEPControl_Writer()
     Interface_Static.SetCVal_s("write.step.product.name", name)
-    cadquery.exporters.export(cadquery.Workplane(shape), str(path))
+    cadquery.exporters.export(cadquery.Workplane(shape), str(path), opt={"write_pcurves": name not in WITHOUT_PCURVES})
     if isinstance(model, list):
         shape.exportBrep(str(path.with_suffix(".brep")))
     fix_chance(path, name)

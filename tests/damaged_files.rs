@@ -184,6 +184,10 @@ fn a_file_of_another_kind_is_refused() {
     let mut flat = binary(2, false, &sections());
     flat[16] = 2;
     assert!(error(flat).contains("dimension 2 is not supported; give a mesh in 3D"));
+    // As programs write it: with two coordinates a vertex.
+    let mut flat = binary(2, false, &[section(4, "Vertices", 0..2, &[&[0.0, 0.0, 1.0], &[1.0, 0.0, 1.0]])]);
+    flat[16] = 2;
+    assert!(error(flat).contains("dimension 2 is not supported; give a mesh in 3D"));
     assert!(error(ascii(&sections()).replacen("Dimension\n3", "", 1)).contains("'Dimension 3' is expected"));
     for bytes in [ascii(&sections()[1..1]).into_bytes(), binary(2, false, &[]), binary(2, false, &solution(2.0))] {
         assert!(error(bytes).contains("no Vertices: a mesh is expected"));

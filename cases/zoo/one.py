@@ -31,12 +31,12 @@ class Tools:
     threads: int = 0
     log: list = field(default_factory=list)
 
-    def run(self, *words):
+    def run(self, *words, codes=(0,)):
         """Runs the program; returns what it printed and its CPU seconds."""
-        return self.command(self.program, *words)
+        return self.command(self.program, *words, codes=codes)
 
-    def command(self, *words):
-        """Runs a command; raises Failed with what it said."""
+    def command(self, *words, codes=(0,)):
+        """Runs a command; raises Failed with what it said where its exit code is none of `codes`."""
         text = [str(word) for word in words]
         self.log.append(" ".join(text))
         before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
@@ -49,7 +49,7 @@ class Tools:
                 raise Failed(f"{' '.join(text)}\n    did not end within {self.limit:g} s") from None
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.log.append(f"# {time.monotonic() - began:.1f} s\n{out}{err}")
-        if child.returncode != 0:
+        if child.returncode not in codes:
             said = "\n    ".join((err or out).strip().splitlines()[-4:])
             raise Failed(f"{' '.join(text)}\n    ended with {child.returncode}: {said}")
         return out, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -109,9 +109,10 @@ def adapted(tools, path, model, start, folder, name):
     mesh = meshfile.read_mesh(current)
     values = wanted(tools, model, before, sizes, current, folder / f"{name}-wanted.solb", mesh, name)
     figures = {key: value for key, value in report.figures(mesh, values).items() if not key.endswith(("_histogram", "_references"))}
-    inspected = json.loads(tools.run("inspect", current, "--cad", path, "--json")[0])
+    # 1: the mesh has flaws.
+    inspected = json.loads(tools.run("inspect", current, "--cad", path, "--json", codes=(0, 1))[0])
     figures["off_model"], far = represent.off_model(inspected, model)
-    problems = figures.pop("findings") + represent.missing(mesh, model) + far
+    problems = figures.pop("findings") + represent.missing(mesh, model) + far + represent.flaws(inspected, path.name)
     lost = represent.names(start) - represent.names(current)
     if lost:
         problems.append(f"names lost: {sorted(lost)}")

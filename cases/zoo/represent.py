@@ -7,6 +7,16 @@ import numpy as np
 # Over the diagonal of the model's box; or the model's own tolerance where that is more.
 ON_MODEL = 1e-7
 
+# Balls touch a groove along curves that are no edges of the model: finer or coarser, triangles of the two cross there, which is told.
+# So many pairs of them may.
+CROSSINGS = {"rolling.step": 20}
+
+
+def flaws(inspected, name):
+    """A line for each kind of flaw of a mesh that is not valid; `name` is its model's file."""
+    allowed = {"crossing-triangles": CROSSINGS.get(name, 0)}
+    return [f"not valid: {flaw['count']} {flaw['kind']}" for flaw in inspected["flaws"] if flaw["count"] > allowed.get(flaw["kind"], 0)]
+
 
 def wanted(model):
     """Numbers (from 1) of the faces, edges and vertices that a mesh must have; `model` as `geo-adapt model --json` lists it.

@@ -26,7 +26,7 @@ pub struct SurfaceArguments {
 }
 
 /// An angle, or none: nothing turns by more than 180°.
-fn ridge_angle(text: &str) -> Result<f64, String> {
+pub fn ridge_angle(text: &str) -> Result<f64, String> {
     if text == "none" {
         return Ok(180.0);
     }

@@ -19,6 +19,7 @@ mod suppress;
 mod tests;
 mod triangles;
 mod twofold;
+mod unused;
 
 use crate::mesh::vector::Vec3;
 pub use complex::Triangulation;
@@ -53,6 +54,23 @@ impl Placement for Flat {
 
     fn in_triangle(&mut self, _: u32, _: [u32; 3], _: [f64; 3], straight: Vec3) -> Vec3 {
         straight
+    }
+}
+
+/// The same, as long as this says to go on.
+pub struct FlatWhile<'a>(pub &'a dyn Fn() -> bool);
+
+impl Placement for FlatWhile<'_> {
+    fn on_edge(&mut self, vertex: u32, ends: [u32; 2], at: f64, straight: Vec3) -> Vec3 {
+        Flat.on_edge(vertex, ends, at, straight)
+    }
+
+    fn in_triangle(&mut self, vertex: u32, corners: [u32; 3], at: [f64; 3], straight: Vec3) -> Vec3 {
+        Flat.in_triangle(vertex, corners, at, straight)
+    }
+
+    fn go_on(&mut self) -> bool {
+        self.0()
     }
 }
 
@@ -220,5 +238,6 @@ pub fn tetrahedralise(
         suppress::suppress(&mut result, points.len(), scale);
         result.points[..points.len()].copy_from_slice(points);
     }
+    unused::drop_unused(&mut result, points.len());
     Ok(result)
 }

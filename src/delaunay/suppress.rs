@@ -133,8 +133,10 @@ impl Mesh<'_> {
             sectors.push(sector);
         }
         for t in star {
-            for list in &mut self.tets {
-                list.retain(|&x| x != t);
+            for v in self.r.tets[t as usize] {
+                if let Some(list) = (v as usize).checked_sub(self.input).and_then(|k| self.tets.get_mut(k)) {
+                    list.retain(|&x| x != t);
+                }
             }
             self.r.tets[t as usize] = [DEAD; 4];
         }
@@ -146,10 +148,12 @@ impl Mesh<'_> {
             }
         }
         let old = std::mem::take(&mut self.triangles[k]);
-        for list in &mut self.triangles {
-            list.retain(|x| !old.contains(x));
-        }
         for &t in &old {
+            for v in self.r.triangles[t as usize] {
+                if let Some(list) = (v as usize).checked_sub(self.input).and_then(|k| self.triangles.get_mut(k)) {
+                    list.retain(|&x| x != t);
+                }
+            }
             self.r.triangles[t as usize] = [DEAD; 3];
         }
         for (f, t) in restored {

@@ -11,6 +11,9 @@ pub const STRETCH: f64 = 4.0;
 const PLACES: [usize; 2] = [32, 4096];
 /// Pieces of an edge at most for the curvature of the faces beside it.
 const ALONG: f64 = 16.0;
+/// Its own curvature makes no size below this many of the least ones, unless the edge is short: curves of intersection may end in a hook,
+/// which bends without bound and is no longer than that.
+const HOOK: f64 = 8.0;
 /// Sweeps over all edges that hand sizes on, at most.
 const SWEEPS: usize = 64;
 /// Pieces of an edge at most.
@@ -73,7 +76,12 @@ fn profile(on: &mut OcctEvaluator, topology: &Topology, edge: u32, options: &Opt
         if is_fine || count >= PLACES[1] {
             // The whole edge may be one piece; the curvature of faces beside it, which has no bound at an apex, may divide it into so many.
             let length = way[count];
-            let size = frames.iter().map(|&(_, own, beside)| own.min(beside.max(length / ALONG)).min(length)).collect();
+            let shortest = length / ALONG;
+            let straight = shortest.min(HOOK * options.least);
+            let size = frames
+                .iter()
+                .map(|&(_, own, beside)| own.max(straight).min(beside.max(shortest)).min(length))
+                .collect();
             return (length.is_finite() && length > 0.0).then_some(Profile { t, way, size });
         }
         count *= 4;
@@ -166,13 +174,14 @@ impl Profile {
         }
     }
 
-    /// Divides it so that each piece has as much of the integral of 1/size.
+    /// Divides it so that each piece has as much of the integral of 1/size, the size being linear from place to place: sizes may differ by
+    /// orders of magnitude from one to the next.
     fn divide(&self, least: usize) -> Vec<f64> {
         let last = self.t.len() - 1;
         let mut sum = vec![0.0; last + 1];
         for i in 1..=last {
             let step = self.way[i] - self.way[i - 1];
-            sum[i] = sum[i - 1] + 0.5 * step * (1.0 / self.size[i] + 1.0 / self.size[i - 1]);
+            sum[i] = sum[i - 1] + step * mean_inverse(self.size[i - 1], self.size[i]);
         }
         let count = ((sum[last] - 0.1).ceil().clamp(1.0, PIECES) as usize).max(least);
         let mut t = vec![self.t[0]];
@@ -183,14 +192,52 @@ impl Profile {
                 i += 1;
             }
             let share = ((aim - sum[i]) / (sum[i + 1] - sum[i])).clamp(0.0, 1.0);
-            t.push(self.t[i] + (self.t[i + 1] - self.t[i]) * if share.is_finite() { share } else { 0.5 });
+            let way = way_of(share, self.size[i + 1] / self.size[i]);
+            t.push(self.t[i] + (self.t[i + 1] - self.t[i]) * if way.is_finite() { way } else { 0.5 });
         }
         t.push(self.t[last]);
         t
     }
 }
 
+/// The mean of 1/size between two places, the size being linear between them.
+fn mean_inverse(from: f64, to: f64) -> f64 {
+    let ratio = to / from;
+    if (ratio - 1.0).abs() < LEVEL { 0.5 / from + 0.5 / to } else { ratio.ln() / (to - from) }
+}
+
+/// The share of the way between two places at which so large a share of the integral of 1/size is reached; `ratio` is that of the sizes
+/// there.
+fn way_of(share: f64, ratio: f64) -> f64 {
+    if (ratio - 1.0).abs() < LEVEL { share } else { (ratio.powf(share) - 1.0) / (ratio - 1.0) }
+}
+
+/// Sizes that differ by less than this share are taken for equal.
+const LEVEL: f64 = 1e-4;
+
 /// The angle between two unit normals, in radians.
 pub fn angle(a: Vec3, b: Vec3) -> f64 {
     norm(cross(a, b)).atan2(dot(a, b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_size_at_one_end_makes_few_pieces() {
+        // Sizes of 1e-5 at the start that grow by 0.5 for a unit of length, asked at two places only: each piece is longer by a constant
+        // factor, not hundreds of equal ones.
+        let profile = Profile { t: vec![0.0, 1.0], way: vec![0.0, 1.0], size: vec![1e-5, 0.50001] };
+        let t = profile.divide(1);
+        let wanted = (0.50001_f64 / 1e-5).ln() / 0.5;
+        assert_eq!(t.len() - 1, (wanted - 0.1).ceil() as usize);
+        let pieces: Vec<f64> = t.windows(2).map(|w| w[1] - w[0]).collect();
+        let factor = pieces[1] / pieces[0];
+        assert!(factor > 1.5 && pieces[0] < 2e-5, "{pieces:?}");
+        assert!(pieces.windows(2).all(|w| (w[1] / w[0] / factor - 1.0).abs() < 1e-6), "{pieces:?}");
+        // Equal sizes make equal pieces.
+        let level = Profile { t: vec![0.0, 0.5, 1.0], way: vec![0.0, 0.5, 1.0], size: vec![0.25; 3] };
+        assert_eq!(level.divide(1), [0.0, 0.25, 0.5, 0.75, 1.0]);
+    }
 }

@@ -1,6 +1,6 @@
 //! A group of tasks to be waited for, with the first panic among them.
 use super::core::Core;
-use super::seats::For;
+use super::parking::For;
 use std::any::Any;
 use std::panic::resume_unwind;
 use std::sync::Mutex;
@@ -14,13 +14,13 @@ type Panic = Box<dyn Any + Send>;
 /// Tasks that are waited for together.
 pub struct Group {
     pending: AtomicUsize,
-    /// Seat of who waits.
+    /// Slot of who waits.
     waiter: usize,
     panic: Mutex<Option<Panic>>,
 }
 
 impl Group {
-    /// A group of so many tasks, waited for on this seat.
+    /// A group of so many tasks, waited for in this slot.
     pub fn new(pending: usize, waiter: usize) -> Self {
         Self { pending: AtomicUsize::new(pending), waiter, panic: Mutex::new(None) }
     }
@@ -48,14 +48,14 @@ impl Group {
         }
     }
 
-    /// Sleeps on the waiter's seat until all is done.
+    /// Parks in the waiter's slot until all is done.
     pub fn sleep(&self, core: &Core) {
         while !self.is_done() {
-            core.seats.sleep(self.waiter, For::Call, || self.is_done());
+            core.parking.park(self.waiter, For::Call, || self.is_done());
         }
     }
 
-    /// Seat of who waits.
+    /// Slot of who waits.
     pub fn waiter(&self) -> usize {
         self.waiter
     }
@@ -72,7 +72,7 @@ impl Group {
             ((*group).pending.fetch_sub(1, AcqRel) == 1).then_some(waiter)
         };
         if let Some(waiter) = last {
-            core.seats.wake(waiter);
+            core.parking.unpark(waiter);
         }
     }
 }

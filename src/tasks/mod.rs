@@ -28,12 +28,12 @@ mod in_place;
 mod job;
 pub mod lock;
 mod nested;
+mod parking;
 mod place;
 mod plan;
 mod pool;
 mod rows;
 mod scope;
-mod seats;
 mod sort;
 mod stage;
 mod strategy;
@@ -46,5 +46,5 @@ pub use scope::{Scope, Task};
 pub use stage::stage;
 pub use team::{GRAIN, Team};
 
-// The locks of the seats; tests/sleep_protocol.rs has loom's in their place.
+// The locks of the slots; tests/parking_protocol.rs has loom's in their place.
 use std::sync;

@@ -3,15 +3,15 @@
 use super::core::Core;
 use super::group::Group;
 use super::job::{Job, Lane, Queue, Submit};
+use super::parking::For;
 use super::place::Place;
-use super::seats::For;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// The queue of a nested group.
 pub struct Nested {
     state: Mutex<State>,
-    /// Seat of who waits.
+    /// Slot of who waits.
     waiter: usize,
 }
 
@@ -67,7 +67,7 @@ impl Queue for Side<'_> {
         let call = state.calls < self.core.threads;
         state.calls += usize::from(call);
         drop(state);
-        self.core.seats.wake(self.nested.waiter);
+        self.core.parking.unpark(self.nested.waiter);
         if call {
             self.base.submit(Job::help(Arc::clone(self.nested)));
         }
@@ -82,7 +82,7 @@ impl Queue for Side<'_> {
                 Some(job) => job.run(&lane),
                 None => {
                     let ready = || group.is_done() || !self.nested.lock().jobs.is_empty();
-                    self.core.seats.sleep(self.nested.waiter, For::Call, ready);
+                    self.core.parking.park(self.nested.waiter, For::Call, ready);
                 }
             }
         }

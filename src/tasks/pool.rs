@@ -172,7 +172,7 @@ impl Pool {
         engine.region(group, body);
     }
 
-    /// Seat on which this thread waits for what it opens.
+    /// Slot in which this thread waits for what it opens.
     fn waiter(&self) -> usize {
         place::find(self.core.id).and_then(|place| place.thread).unwrap_or(self.core.opener())
     }

@@ -26,7 +26,7 @@ pub fn chunk(index: usize, grain: usize, items: usize) -> Range<usize> {
 }
 
 impl<'f, F: Fn(usize, Range<usize>) + Sync> Loop<'f, F> {
-    /// A loop by the plan, waited for on this seat.
+    /// A loop by the plan, waited for in this slot.
     pub fn new(plan: Plan, items: usize, f: &'f F, waiter: usize) -> Self {
         let grain = plan.grain.max(1);
         Self { f, items, grain, strategy: plan.strategy, group: Group::new(items.div_ceil(grain), waiter) }

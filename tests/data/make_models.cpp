@@ -16,12 +16,16 @@
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <Geom_BezierCurve.hxx>
+#include <Geom_SphericalSurface.hxx>
+#include <Geom_ToroidalSurface.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TColgp_Array1OfPnt.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
 #include <TopoDS_Wire.hxx>
 #include <gp_Elips.hxx>
@@ -79,6 +83,23 @@ int main()
   builder.Add(compound, hollow);
   builder.Add(compound, BRepPrimAPI_MakeBox(1.0, 1.0, 1.0).Solid());
   BRepTools::Write(compound, "hollow-solid.brep");
+
+  // A whole sphere and a whole torus: a face without wires each, as some programs write them. Beside the faulty ones, since there the
+  // file's own numbers of edges are not those of the model that is read.
+  const auto whole = [&](const Handle(Geom_Surface)& surface, const char* name) {
+    TopoDS_Face face;
+    TopoDS_Shell shell;
+    TopoDS_Solid solid;
+    builder.MakeFace(face, surface, 1e-7);
+    builder.MakeShell(shell);
+    builder.Add(shell, face);
+    shell.Closed(Standard_True);
+    builder.MakeSolid(solid);
+    builder.Add(solid, shell);
+    BRepTools::Write(solid, name);
+  };
+  whole(new Geom_SphericalSurface(axes, 0.5), "faulty/whole-sphere.brep");
+  whole(new Geom_ToroidalSurface(axes, 1.0, 0.3), "faulty/whole-torus.brep");
 
   // A block in inches, as loose faces: what IGES is mostly.
   IGESControl_Writer iges("INCH", 0);

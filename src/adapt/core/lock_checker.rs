@@ -5,7 +5,7 @@
 //!
 //! By this rule a lock word orders whatever two threads do to one record. A race would break the rule, and a broken rule
 //! is found on every run, not only when two threads meet. Outside the tests nothing of this is compiled.
-//! The exception is [`Store::peek`].
+//! The exception is [`Store::unlocked_vertices`].
 use super::ids::{TetId, VertexId};
 use super::store::Store;
 
@@ -33,14 +33,14 @@ impl Store {
     /// A tetrahedron is read.
     #[track_caller]
     pub(super) fn must_hold_one_of(&self, t: TetId) {
-        let alive = self.peek(t).into_iter().filter(|v| v.is_some());
+        let alive = self.unlocked_vertices(t).into_iter().filter(|v| v.is_some());
         assert!(!watch::is_on() || alive.into_iter().any(|v| watch::holds(self, v)), "{t:?} is read without a lock");
     }
 
     /// A face's tag or neighbour is written.
     #[track_caller]
     pub(super) fn must_own_face(&self, t: TetId, i: usize) {
-        let face = super::ids::FACE[i].map(|k| self.peek(t)[k]);
+        let face = super::ids::FACE[i].map(|k| self.unlocked_vertices(t)[k]);
         assert!(
             !watch::is_on() || face.iter().all(|&v| watch::holds(self, v)),
             "a face of {t:?} is written without locks"
@@ -50,7 +50,7 @@ impl Store {
     /// A tetrahedron is written; a dead one may be written by the thread that has its id.
     #[track_caller]
     pub(super) fn must_own_tet(&self, t: TetId) {
-        let alive = self.peek(t).into_iter().filter(|v| v.is_some());
+        let alive = self.unlocked_vertices(t).into_iter().filter(|v| v.is_some());
         assert!(
             !watch::is_on() || alive.into_iter().all(|v| watch::holds(self, v)),
             "{t:?} is written without all locks"

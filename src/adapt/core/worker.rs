@@ -100,14 +100,14 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
 
     /// Claims a tetrahedron that may be changing: its vertices are read, claimed, and read again.
     pub fn claim_current_tet(&mut self, t: TetId) -> Result<[VertexId; 4], Refusal> {
-        let vertices = self.store.peek(t);
+        let vertices = self.store.unlocked_vertices(t);
         for v in vertices {
             if !v.is_some() || v.index() >= self.store.vertex_bound() {
                 return Err(Refusal::Stale);
             }
             self.claim(v)?;
         }
-        if self.store.peek(t) == vertices { Ok(vertices) } else { Err(Refusal::Stale) }
+        if self.store.unlocked_vertices(t) == vertices { Ok(vertices) } else { Err(Refusal::Stale) }
     }
 
     /// Claims a vertex and makes sure that it is alive.
@@ -121,7 +121,7 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
     pub fn tet_with_edge(&mut self, a: VertexId, b: VertexId, guess: TetId) -> Result<TetId, Refusal> {
         let holds = |t: TetId| {
             // The guess may be dead or reused by now. Since a and b are held, it is right if both are in it.
-            let vertices = self.store.peek(t);
+            let vertices = self.store.unlocked_vertices(t);
             vertices.contains(&a) && vertices.contains(&b)
         };
         if holds(guess) {

@@ -79,7 +79,7 @@ impl Item for EdgeItem {
 
 impl Item for TetId {
     fn vertices(self, store: &Store) -> [VertexId; 4] {
-        store.peek(self)
+        store.unlocked_vertices(self)
     }
 }
 

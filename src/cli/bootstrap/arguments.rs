@@ -1,10 +1,13 @@
 //! What can be asked of `geo-adapt bootstrap`.
 use super::domain;
 use super::rung::Choice;
+use super::triangles::is_surface;
 use crate::cli::adapt::files::Targets;
 use crate::cli::files::{Files, JSON, Target};
 use crate::cli::metric::geometry::GeometryArguments;
+use crate::cli::surface::ridge_angle;
 use crate::cli::workplace::Workplace;
+use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, DiscreteOptions};
 use std::path::PathBuf;
 
 /// Help on --far-field.
@@ -19,7 +22,8 @@ pub const DOMAIN: &str = "domain.brep";
 /// Arguments of `geo-adapt bootstrap`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The model, of one or several solids: .step, .stp, .iges, .igs, .brep or .egads
+    /// The model, of one or several solids: .step, .stp, .iges, .igs, .brep or .egads; or a closed surface of triangles: .stl, .obj, .ply, or
+    /// the boundary of a mesh, .mesh, .meshb, .vtu, .msh
     pub model: PathBuf,
     /// Where the mesh goes: .mesh or .meshb; its metric is written beside it as .solb, what the mesher said as .log
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
@@ -48,6 +52,12 @@ pub struct Arguments {
     /// made a mesh
     #[arg(long, value_name = "S", value_parser = crate::cli::positive, default_value = "120", allow_negative_numbers = true)]
     pub time_limit: f64,
+    /// Of a surface of triangles: angle in degrees between them beyond which their edge is a ridge; or `none` [default: 45]
+    #[arg(long, value_name = "DEG", value_parser = ridge_angle, allow_negative_numbers = true)]
+    ridge_angle: Option<f64>,
+    /// Of a surface of triangles: these are taken as they are, flat; else smooth patches go through their vertices
+    #[arg(long)]
+    flat_surface: bool,
     /// Threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
@@ -62,7 +72,11 @@ pub struct Arguments {
 impl Arguments {
     /// The files that are written, refused before the work where that would fail after it: those of the mesh, and the mesher's log.
     pub fn targets(&self, place: &Workplace) -> Result<(Targets, Target), String> {
-        let mut files = Files::new().reads_models([&self.model]);
+        let mut files = if is_surface(&self.model) {
+            Files::new().reads_any([&self.model])
+        } else {
+            Files::new().reads_models([&self.model])
+        };
         let mut targets = Targets::of(&mut files, &self.output, self.report.as_ref(), JSON)?;
         let log = files.writes(&self.output.with_extension("log"), "the log beside -o", &[])?;
         if self.far_field.is_some() {
@@ -70,6 +84,11 @@ impl Arguments {
             targets.with_model(place.file(DOMAIN), domain);
         }
         Ok((targets, log))
+    }
+
+    /// How triangles become a model.
+    pub fn patches(&self) -> DiscreteOptions {
+        DiscreteOptions { ridge_angle_deg: self.ridge_angle.unwrap_or(DEFAULT_RIDGE_ANGLE), smooth: !self.flat_surface }
     }
 
     pub fn limits(&self) -> crate::metric::Limits {

@@ -118,7 +118,9 @@ impl<'a> Ladder<'a> {
     /// One rung: the mesh, valid and on the model.
     fn attempt(&self, rung: Rung, limit: Duration) -> Result<(TetMesh, Classification), Miss> {
         if rung == Rung::Own {
-            let (mesh, on_model) = own(self.model, limit).map_err(Miss::Failed)?;
+            let Some((mesh, on_model)) = own(self.model, limit).map_err(Miss::Failed)? else {
+                return Err(Miss::TooLong("it was ended (--time-limit)".into()));
+            };
             return judge(self.team, mesh, self.model, Some(on_model)).map_err(Miss::Failed);
         }
         let out = self.place.file("out.msh");
@@ -144,14 +146,14 @@ impl<'a> Ladder<'a> {
     }
 }
 
-/// Our own mesh, and where its vertices belong on the model.
+/// Our own mesh, and where its vertices belong on the model; none where the time was over.
 #[cfg(feature = "occt")]
-fn own(model: &Model, limit: Duration) -> Result<(TetMesh, Vec<Vec3>), String> {
-    super::own::run(model, limit).map(|own| (own.mesh, own.on_model))
+fn own(model: &Model, limit: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, String> {
+    super::own::run(model, limit).map(|own| own.map(|own| (own.mesh, own.on_model)))
 }
 
 #[cfg(not(feature = "occt"))]
-fn own(_: &Model, _: Duration) -> Result<(TetMesh, Vec<Vec3>), String> {
+fn own(_: &Model, _: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, String> {
     Err("this program was built without OpenCASCADE".into())
 }
 
@@ -258,7 +260,7 @@ fn command(
 
 /// A mesh is good when it is one, fills every solid, and covers every face, edge and vertex of the model. Where its vertices are not on the
 /// model yet, `on_model` says where they belong.
-fn judge(
+pub fn judge(
     team: Team<'_>,
     mut mesh: TetMesh,
     model: &Model,

@@ -14,6 +14,7 @@ mod queue;
 mod refine;
 mod rung;
 mod solids;
+mod triangles;
 mod wish;
 
 pub use arguments::Arguments;
@@ -29,6 +30,7 @@ use crate::tasks::{Plan, Pool, Team, stage};
 use arguments::DOMAIN;
 use ladder::{Ladder, Meshed, Stopped};
 use refine::Refined;
+use rung::Choice;
 use solids::{check_solids, small_face};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -42,6 +44,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let threads = arguments.threads.map_or_else(super::cores, usize::from);
     let pool = Pool::new(threads)?;
     let team = Team::new(&pool, Plan::default());
+    if triangles::is_surface(&arguments.model) {
+        return of_triangles(arguments, &pool, (&targets, threads), start);
+    }
     let domain = arguments.far_field.as_ref();
     let domain = domain.map(|spec| domain::build(&arguments.model, spec, arguments.symmetry, &place.file(DOMAIN)));
     let domain = domain.transpose()?;
@@ -100,6 +105,32 @@ pub fn run(arguments: &Arguments) -> Outcome {
     best.write(arguments, team, (&asked, &targets), model, start)
 }
 
+/// The same of a surface of triangles.
+fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Targets, usize), start: Instant) -> Outcome {
+    let unsupported = if arguments.far_field.is_some() {
+        Some("--far-field takes a CAD model")
+    } else if !matches!(arguments.mesher, Choice::Auto | Choice::Own) {
+        Some("a surface of triangles is meshed by geo-adapt itself: leave --mesher out")
+    } else {
+        None
+    };
+    if let Some(why) = unsupported {
+        return Err(format!("{}: {why}", arguments.model.display()).into());
+    }
+    let team = Team::new(pool, Plan::default());
+    let limit = Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX);
+    let (model, meshed) = triangles::run(team, arguments, limit)?;
+    stage("meshed");
+    if arguments.no_adapt {
+        return write_as_it_is(arguments, &meshed, &model, targets);
+    }
+    let asked =
+        Asked { input: arguments.model.clone(), output: arguments.output.clone(), threads, complexity_wanted: None };
+    let refined = refine::run(arguments, pool, meshed, &model, start)?;
+    interrupt::end_at_once();
+    refined.write(arguments, team, (&asked, targets), model, start)
+}
+
 /// Meshes of the mesher that are adapted where there is a flaw in what comes of the first; the best is taken.
 const TRIALS: usize = 3;
 
@@ -110,7 +141,13 @@ const LEAST: f64 = 1e-3;
 /// Writes the mesher's own mesh, on the model.
 fn write_as_it_is(arguments: &Arguments, meshed: &Meshed, model: &Model, targets: &Targets) -> Outcome {
     let mut mesh = meshed.mesh.clone();
-    associate(&mut mesh, &meshed.place);
+    match model {
+        Model::Discrete(surface) => surface.restore(&mut mesh, &meshed.place),
+        #[cfg(feature = "occt")]
+        Model::Occt(_) => {
+            associate(&mut mesh, &meshed.place);
+        }
+    }
     targets.write_mesh(&mesh, model.names())?;
     if !arguments.quiet {
         let solids = model.topology().solids;

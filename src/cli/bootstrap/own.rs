@@ -1,4 +1,6 @@
 //! Our own first mesh: a triangulation of the model's surface, and the constrained Delaunay tetrahedra of that.
+mod bodies;
+
 use crate::cli::table::place;
 use crate::delaunay::{self, Origin, Placement, PointError, Tetrahedra, tetrahedralise};
 use crate::geometry::{Evaluate, Geometry, Model};
@@ -17,22 +19,69 @@ pub struct Own {
     pub on_model: Vec<Vec3>,
 }
 
-/// Makes it.
+/// Makes it; none where the time was over.
 ///
 /// # Errors
 /// What part of the surface could not be triangulated or filled, and where.
-pub fn run(model: &Model, limit: Duration) -> Result<Own, String> {
+pub fn run(model: &Model, limit: Duration) -> Result<Option<Own>, String> {
     let Model::Occt(cad) = model else { return Err("it is no CAD model".into()) };
     let options = Options::new(model.topology().diagonal());
     let end = Instant::now() + limit.min(DAY);
-    let mut surface = triangulate(cad, &options, &|| Instant::now() < end).ok_or(ENDED)?;
-    merge(&mut surface);
+    let Some(surface) = triangulate(cad, &options, &|| Instant::now() < end) else { return Ok(None) };
     crate::tasks::stage("surface");
     if let Some(face) = surface.missing.first() {
         let count = surface.missing.len();
         return Err(format!("{count} faces have no triangles, the first is face {}", face + 1));
     }
-    if let Some(pair) = surface.crossings.first() {
+    let mut own: Option<Own> = None;
+    for mut surface in parts(surface)? {
+        merge(&mut surface);
+        let mut within = Within(end);
+        let filled = tetrahedralise(&surface.points, &surface.triangles, &mut within, delaunay::Options::default());
+        let filled = match filled {
+            Err(delaunay::Error::Stopped) => return Ok(None),
+            filled => filled.map_err(|error| describe(&error, &surface))?,
+        };
+        let part = meshed(model, &surface, &filled);
+        own = Some(match own {
+            Some(own) => own.beside(&part),
+            None => part,
+        });
+    }
+    crate::tasks::stage("tetrahedra");
+    own.map(Some).ok_or_else(|| "its surface has no triangles".into())
+}
+
+impl Own {
+    /// The meshes of two bodies as one.
+    fn beside(mut self, other: &Self) -> Self {
+        let offset = self.mesh.vertices.len() as u32;
+        let (mesh, more) = (&mut self.mesh, &other.mesh);
+        mesh.vertices.extend(&more.vertices);
+        mesh.vertex_refs.extend(&more.vertex_refs);
+        more.tets.iter().for_each(|(nodes, solid)| mesh.tets.push(nodes.map(|v| v + offset), solid));
+        more.triangles.iter().for_each(|(nodes, face)| mesh.triangles.push(nodes.map(|v| v + offset), face));
+        more.edges.iter().for_each(|(nodes, edge)| mesh.edges.push(nodes.map(|v| v + offset), edge));
+        let (on, of) = (&mut mesh.association, &more.association);
+        on.vertices.extend(of.vertices.iter().map(|on| OnVertex { vertex: on.vertex + offset, ..*on }));
+        on.edges.extend(of.edges.iter().map(|on| OnEdge { vertex: on.vertex + offset, ..*on }));
+        on.faces.extend(of.faces.iter().map(|on| OnFace { vertex: on.vertex + offset, ..*on }));
+        self.on_model.extend(&other.on_model);
+        self
+    }
+}
+
+/// What is to be filled together: all, unless bodies that share no face cross, as balls do where they touch their seat along no edge of
+/// the model: those are filled one by one, and what of their surfaces still crosses when they are fine is told in the end.
+///
+/// # Errors
+/// Which triangles of one body cross.
+fn parts(surface: Surface) -> Result<Vec<Surface>, String> {
+    if surface.crossings.is_empty() {
+        return Ok(vec![surface]);
+    }
+    let bodies = bodies::Bodies::of(&surface);
+    if let Some(pair) = surface.crossings.iter().find(|pair| !bodies.are_apart(&surface, **pair)) {
         let [a, b] = pair.map(|t| surface.faces[t as usize] + 1);
         let at = surface.points[surface.triangles[pair[0] as usize][0] as usize];
         let count = surface.crossings.len();
@@ -41,11 +90,7 @@ pub fn run(model: &Model, limit: Duration) -> Result<Own, String> {
             place(at)
         ));
     }
-    let mut within = Within(end);
-    let filled = tetrahedralise(&surface.points, &surface.triangles, &mut within, delaunay::Options::default())
-        .map_err(|error| describe(&error, &surface))?;
-    crate::tasks::stage("tetrahedra");
-    Ok(meshed(model, &surface, &filled))
+    Ok(bodies.divide(&surface))
 }
 
 /// Makes one of points at the same place: edges of bodies that touch there. (Our kernel takes the bodies apart again.)
@@ -67,9 +112,6 @@ fn merge(surface: &mut Surface) {
     surface.chains.iter_mut().flatten().for_each(renumber);
     (surface.points, surface.places) = (points, places);
 }
-
-/// What is told when the time is over.
-const ENDED: &str = "it was ended (--time-limit)";
 
 /// A limit that is none.
 const DAY: Duration = Duration::from_secs(86_400);
@@ -117,7 +159,7 @@ fn describe(error: &delaunay::Error, surface: &Surface) -> String {
         delaunay::Error::Unrecovered { triangle, at } => {
             format!("a triangle of face {} was not recovered near {}", face(*triangle), place(*at))
         }
-        delaunay::Error::Stopped => ENDED.into(),
+        delaunay::Error::Stopped => "it was ended".into(),
     }
 }
 

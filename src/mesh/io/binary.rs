@@ -70,17 +70,18 @@ pub(super) fn contents<'a>(path: &'a Path, bytes: &'a [u8], big: bool) -> Result
         words.real = real;
     }
     source.encoding = Encoding::Binary(words);
+    // Before the sections, whose rows are shorter in two dimensions. The last one counts.
+    let dimension = chain.iter().rfind(|link| link.code == DIMENSION);
+    let dimension = dimension.and_then(|link| words.int_at(&bytes[link.body.clone()], 0, WORD));
+    super::source::check_dimension(&source, dimension)?;
     let mut contents = Contents { source, sections: Vec::new(), notices: Vec::new() };
-    let mut dimension = None;
     for link in &chain {
         match Keyword::from_code(link.code) {
             Some(keyword) => contents.add(section(&source, words, link, keyword)?, link.at)?,
-            None if link.code == DIMENSION => dimension = words.int_at(&bytes[link.body.clone()], 0, WORD),
-            None if link.code == PRECISION => {}
+            None if [DIMENSION, PRECISION].contains(&link.code) => {}
             None => contents.notices.push(source.notice(link.at, &link.name())),
         }
     }
-    super::source::check_dimension(&source, dimension)?;
     Ok(contents)
 }
 

@@ -4,9 +4,9 @@ use super::Engine;
 use crate::tasks::core::Core;
 use crate::tasks::group::Group;
 use crate::tasks::job::{Job, Lane, Queue, Submit};
+use crate::tasks::parking::For;
 use crate::tasks::place::{self, Place};
 use crate::tasks::plan::Backend;
-use crate::tasks::seats::For;
 use crossbeam_deque::{Injector, Steal, Stealer, Worker};
 use crossbeam_utils::{Backoff, CachePadded};
 use std::cell::Cell;
@@ -92,7 +92,7 @@ impl Stealing {
                     let letter = &self.shared.letters[thread];
                     *letter.job.lock().expect("nothing panics under this lock") = Some(job);
                     letter.here.store(true, Release);
-                    self.shared.core.seats.wake(self.shared.core.idler(thread));
+                    self.shared.core.parking.unpark(self.shared.core.idler(thread));
                 }
             }
             own.into_iter().for_each(|job| first.run(job));
@@ -126,7 +126,7 @@ impl Submit for Stealing {
 impl Submit for Shared {
     fn submit(&self, job: Job) {
         self.calls.push(job);
-        self.core.seats.wake_one();
+        self.core.parking.unpark_one();
     }
 }
 
@@ -134,7 +134,7 @@ impl Drop for Stealing {
     fn drop(&mut self) {
         self.shared.over.store(true, Release);
         for thread in 1..self.shared.core.threads {
-            self.shared.core.seats.wake(self.shared.core.idler(thread));
+            self.shared.core.parking.unpark(self.shared.core.idler(thread));
         }
         for handle in self.handles.drain(..) {
             // A thread runs tasks only, whose panics are caught.
@@ -161,7 +161,7 @@ impl Local {
             if let Some(job) = self.find() {
                 // A call may have found this thread just when it saw another task: pass it on.
                 if slept && self.shared.has_work(self.thread) {
-                    self.shared.core.seats.wake_one();
+                    self.shared.core.parking.unpark_one();
                 }
                 self.run(job);
                 backoff.reset();
@@ -170,7 +170,7 @@ impl Local {
                 backoff.snooze();
             } else {
                 let core = &self.shared.core;
-                core.seats.sleep(core.idler(self.thread), For::Work, || over() || self.shared.has_work(self.thread));
+                core.parking.park(core.idler(self.thread), For::Work, || over() || self.shared.has_work(self.thread));
                 backoff.reset();
                 slept = true;
             }
@@ -221,7 +221,7 @@ impl Shared {
 impl Queue for Local {
     fn push(&self, job: Job) {
         self.queue.push(job);
-        self.shared.core.seats.wake_one();
+        self.shared.core.parking.unpark_one();
     }
 
     fn wait(&self, group: &Group) {

@@ -61,7 +61,7 @@ impl Store {
     fn tets_by_first(&self, team: Team<'_>, number: &[VertexId], vertices: usize) -> Result<Vec<u32>, Torn> {
         let torn = AtomicBool::new(false);
         let tets = by_first(team, self.tet_bound(), vertices, |t| {
-            let of = self.peek(TetId(t as u32));
+            let of = self.unlocked_vertices(TetId(t as u32));
             if !of[0].is_some() {
                 return Rows::NOWHERE;
             }

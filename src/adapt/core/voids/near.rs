@@ -14,6 +14,9 @@ use crate::tasks::{GRAIN, Team};
 /// Until voids are looked for again, edges get longer by at most this factor.
 const GROWTH: f64 = 2.5;
 
+/// At the end of a run hardly an edge is longer in the metric than this.
+const LONGEST: f64 = 2.0 * LONG;
+
 /// Chords rise at most so many times as high as the bend of the surface at their ends tells.
 const SAFETY: f64 = 1.5;
 
@@ -36,22 +39,15 @@ struct Wall {
 }
 
 impl Voids {
-    /// The narrow voids of a mesh. Between sweeps only.
+    /// The narrow voids of a mesh, for edges that get longer by no more than [`GROWTH`]. Between sweeps only.
     pub fn of(team: Team<'_>, context: &Context<'_>) -> Self {
-        let walls = walls(team, &context.store);
-        let normals = normals(team, context, &walls);
-        let reaches = reaches(team, context, &walls, &normals);
-        if reaches.iter().all(|reach| *reach == 0.0) {
+        let walls = Walls::of(team, context);
+        let (boxes, near) = walls.near(team, context, Until::Growth);
+        if near.is_empty() {
             return Self::default();
         }
-        let boxes: Vec<Bounds> =
-            walls.iter().zip(&reaches).map(|(wall, reach)| bounds(&wall.corners, *reach)).collect();
-        let zone: Vec<Bounds> =
-            near_others(team, &walls, &normals, &reaches, &boxes).into_iter().map(|i| boxes[i]).collect();
-        if zone.is_empty() {
-            return Self::default();
-        }
-        let mut narrow = Narrow::new(zone);
+        let mut narrow = Narrow::new(near.into_iter().map(|i| boxes[i]).collect());
+        let walls = walls.all;
         let inside = team.collect(GRAIN, walls.len(), |range, inside| {
             inside.extend(range.filter(|&i| narrow.meets(&walls[i].corners)));
         });
@@ -62,6 +58,56 @@ impl Voids {
             triangles.insert(Triangle { key, corners });
         }
         Self { narrow: Some(narrow) }
+    }
+
+    /// Whether there are none even when all edges are as long as the metric allows. Between sweeps only.
+    pub fn are_none_to_come(team: Team<'_>, context: &Context<'_>) -> bool {
+        Walls::of(team, context).near(team, context, Until::End).1.is_empty()
+    }
+}
+
+/// How long edges may get.
+#[derive(Clone, Copy, PartialEq)]
+enum Until {
+    /// By [`GROWTH`], but no longer than the metric allows.
+    Growth,
+    /// As long as they are at the end of a run ([`LONGEST`]), and by [`GROWTH`] where that is more.
+    End,
+}
+
+impl Until {
+    /// By how much an edge of this length in the metric may grow.
+    fn growth(self, length: f64) -> f64 {
+        match self {
+            Self::Growth => (LONG / length).clamp(1.0, GROWTH),
+            Self::End => (LONGEST / length).max(GROWTH),
+        }
+    }
+}
+
+/// The triangles of the boundary, each with the mean normals of its face at its corners.
+struct Walls {
+    all: Vec<Wall>,
+    normals: Vec<[Vec3; 3]>,
+}
+
+impl Walls {
+    fn of(team: Team<'_>, context: &Context<'_>) -> Self {
+        let all = walls(team, &context.store);
+        let normals = normals(team, context, &all);
+        Self { all, normals }
+    }
+
+    /// Boxes about all triangles with all that they may come to fill, and those that are near others.
+    fn near(&self, team: Team<'_>, context: &Context<'_>, until: Until) -> (Vec<Bounds>, Vec<usize>) {
+        let reaches = reaches(team, context, self, until);
+        if reaches.iter().all(|reach| *reach == 0.0) {
+            return (Vec::new(), Vec::new());
+        }
+        let with_reach = self.all.iter().zip(&reaches);
+        let boxes: Vec<Bounds> = with_reach.map(|(wall, reach)| bounds(&wall.corners, *reach)).collect();
+        let near = near_others(team, self, &reaches, &boxes);
+        (boxes, near)
     }
 }
 
@@ -84,8 +130,8 @@ fn walls(team: Team<'_>, store: &Store) -> Vec<Wall> {
 }
 
 /// How far the surface may move at each triangle: as the chords rise at its vertices.
-fn reaches(team: Team<'_>, context: &Context<'_>, walls: &[Wall], normals: &[[Vec3; 3]]) -> Vec<f64> {
-    let rises = team.map(GRAIN, walls.len(), |i| rise(context, &walls[i], &normals[i]));
+fn reaches(team: Team<'_>, context: &Context<'_>, Walls { all: walls, normals }: &Walls, until: Until) -> Vec<f64> {
+    let rises = team.map(GRAIN, walls.len(), |i| rise(context, &walls[i], &normals[i], until));
     let mut at = vec![0.0f64; context.store.vertex_bound()];
     for (wall, rise) in walls.iter().zip(rises) {
         wall.vertices.iter().for_each(|v| at[v.index()] = at[v.index()].max(rise));
@@ -122,7 +168,7 @@ fn normals(team: Team<'_>, context: &Context<'_>, walls: &[Wall]) -> Vec<[Vec3; 
 }
 
 /// How high the chords at a triangle may rise.
-fn rise(context: &Context<'_>, wall: &Wall, normals: &[Vec3; 3]) -> f64 {
+fn rise(context: &Context<'_>, wall: &Wall, normals: &[Vec3; 3], until: Until) -> f64 {
     let store = &context.store;
     let mut most = 0.0f64;
     for k in 0..3 {
@@ -137,7 +183,7 @@ fn rise(context: &Context<'_>, wall: &Wall, normals: &[Vec3; 3]) -> f64 {
         if bend <= STRAIGHT * norm(edge) {
             continue;
         }
-        let growth = (LONG / edge_length(edge, &store.metric(a), &store.metric(b))).clamp(1.0, GROWTH);
+        let growth = until.growth(edge_length(edge, &store.metric(a), &store.metric(b)));
         most = most.max((SAFETY * bend * growth * growth).min(norm(edge) * growth));
     }
     most
@@ -162,8 +208,7 @@ fn ridge_angle(store: &Store, a: VertexId, b: VertexId) -> f64 {
 /// The triangles that are nearer to another, across a void, than both may move.
 fn near_others(
     team: Team<'_>,
-    walls: &[Wall],
-    mean_normals: &[[Vec3; 3]],
+    Walls { all: walls, normals: mean_normals }: &Walls,
     reaches: &[f64],
     boxes: &[Bounds],
 ) -> Vec<usize> {

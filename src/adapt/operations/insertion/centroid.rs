@@ -133,7 +133,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let tags = self.store.tags(t);
         for i in (0..4).filter(|&i| tags[i] != 0) {
             // The insertion before may have replaced the tetrahedron, and this face with it.
-            if self.store.peek(t) != v {
+            if self.store.unlocked_vertices(t) != v {
                 break;
             }
             if encroaches_face(&metric, FACE[i].map(|k| points[k]), point) {

@@ -11,6 +11,12 @@ const MUCH: f64 = 0.3;
 /// The same in the first passes, and where there are narrow voids, which have to be known well.
 const SOME: f64 = 0.05;
 
+/// The same where there are none to come, as it seems.
+const ALL: f64 = 3.0;
+
+/// So many times it is looked for whether there are voids to come.
+const TRIES: usize = 2;
+
 /// What is known of the voids.
 #[derive(Default)]
 pub struct Known {
@@ -18,6 +24,9 @@ pub struct Known {
     when: Option<(usize, usize, u64)>,
     /// Whether they were narrow.
     narrow: bool,
+    /// Whether there were none to come, and how often there were some.
+    none_to_come: bool,
+    tries: usize,
 }
 
 impl Pipeline<'_, '_> {
@@ -27,13 +36,21 @@ impl Pipeline<'_, '_> {
         if let Some((pass, vertices, before)) = self.voids.when {
             let lost = self.voids.narrow && self.context.voids.is_empty();
             let is_early = self.pass != pass && self.pass <= FIRST_PASSES;
-            let much = if self.voids.narrow || is_early { SOME } else { MUCH };
+            let much = match self.voids {
+                Known { none_to_come: true, .. } => ALL,
+                Known { narrow: true, .. } => SOME,
+                _ if is_early => SOME,
+                _ => MUCH,
+            };
             if !lost && ((changes - before) as f64) < much * vertices as f64 {
                 return;
             }
         }
         let (team, vertices) = (self.team(), self.live());
-        self.context.voids = Voids::of(team, self.context);
-        self.voids = Known { when: Some((self.pass, vertices, changes)), narrow: !self.context.voids.is_empty() };
+        self.voids.when = Some((self.pass, vertices, changes));
+        self.voids.none_to_come = self.voids.tries < TRIES && Voids::are_none_to_come(team, self.context);
+        self.voids.tries += usize::from(!self.voids.none_to_come);
+        self.context.voids = if self.voids.none_to_come { Voids::default() } else { Voids::of(team, self.context) };
+        self.voids.narrow = !self.context.voids.is_empty();
     }
 }

@@ -1,0 +1,195 @@
+//! The first mesh of a surface that is given as triangles, as of a scan or an STL file: its constrained Delaunay tetrahedra.
+use super::arguments::Arguments;
+use super::ladder::{Meshed, judge};
+use super::rung::Rung;
+use crate::cli::table::place;
+use crate::delaunay::{self, FlatWhile, Origin, PointError, Tetrahedra, tetrahedralise};
+use crate::formats::read_surface;
+use crate::geometry::classify::Classification;
+use crate::geometry::{Discrete, Evaluate, Geometry, Model};
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::sorted2;
+use crate::mesh::vector::{Vec3, lerp};
+use crate::tasks::Team;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Files whose triangles are the model.
+const KINDS: [&str; 7] = ["stl", "obj", "ply", "mesh", "meshb", "vtu", "msh"];
+
+/// Whether a file is a surface of triangles, by its extension.
+pub fn is_surface(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    ending.is_some_and(|ending| KINDS.contains(&ending.as_str()))
+}
+
+/// The surface as a model, and its mesh.
+///
+/// # Errors
+/// When it is no surface, is not closed, or crosses itself: where, and what to do.
+pub fn run(team: Team<'_>, arguments: &Arguments, limit: Duration) -> Result<(Model, Meshed), String> {
+    let named = |error: String| format!("{}: {error}", arguments.model.display());
+    let read = read_surface(team, &arguments.model).map_err(|error| error.to_string())?;
+    let surface = alone(read.content);
+    check_closed(&surface).map_err(named)?;
+    let (discrete, on) =
+        Discrete::new(team, &surface, &arguments.patches()).map_err(|error| named(error.to_string()))?;
+    let end = Instant::now().checked_add(limit);
+    let go_on = || end.is_none_or(|end| Instant::now() < end);
+    let (points, triangles) = (&surface.vertices, &surface.triangles.nodes);
+    let filled = tetrahedralise(points, triangles, &mut FlatWhile(&go_on), delaunay::Options::default())
+        .map_err(|error| named(describe(&error, &surface)))?;
+    let model = Model::Discrete(discrete);
+    let (mesh, on_model) = meshed(&model, &surface, &on, &filled);
+    let (mesh, place) = judge(team, mesh, &model, Some(on_model)).map_err(named)?;
+    Ok((model, Meshed { mesh, place, by: Rung::Own, notices: read.notices }))
+}
+
+/// The triangles of a mesh with their vertices and what is listed on them.
+fn alone(mesh: TetMesh) -> TetMesh {
+    const NONE: u32 = u32::MAX;
+    let mut number = vec![NONE; mesh.vertices.len()];
+    mesh.triangles.nodes.iter().flatten().for_each(|&v| number[v as usize] = 0);
+    let mut surface = TetMesh::default();
+    for (v, new) in number.iter_mut().enumerate().filter(|(_, new)| **new != NONE) {
+        *new = surface.vertices.len() as u32;
+        surface.vertices.push(mesh.vertices[v]);
+        surface.vertex_refs.push(mesh.vertex_refs[v]);
+    }
+    let renumber = |v: u32| number[v as usize];
+    mesh.triangles.iter().for_each(|(nodes, reference)| surface.triangles.push(nodes.map(renumber), reference));
+    let edges = mesh.edges.iter().map(|(nodes, reference)| (nodes.map(renumber), reference));
+    edges.filter(|(nodes, _)| !nodes.contains(&NONE)).for_each(|(nodes, r)| surface.edges.push(nodes, r));
+    surface.corners = mesh.corners.iter().map(|&v| renumber(v)).filter(|&v| v != NONE).collect();
+    surface
+}
+
+/// Whether each edge has triangles on two sides.
+fn check_closed(surface: &TetMesh) -> Result<(), String> {
+    let sides = |nodes: &[u32; 3]| [0, 1, 2].map(|k| sorted2([nodes[k], nodes[(k + 1) % 3]]));
+    let mut all: Vec<[u32; 2]> = surface.triangles.nodes.iter().flat_map(sides).collect();
+    all.sort_unstable();
+    let mut open = all.chunk_by(|a, b| a == b).filter(|same| same.len() == 1).map(|same| same[0]);
+    let Some(first) = open.next() else { return Ok(()) };
+    let [a, b] = first.map(|v| surface.vertices[v as usize]);
+    Err(format!(
+        "the surface is not closed: {} edges have a triangle on one side alone, the first about {}; close its holes in the program that \
+         made it",
+        1 + open.count(),
+        place(lerp(a, b, 0.5))
+    ))
+}
+
+/// An error in the words of the file.
+fn describe(error: &delaunay::Error, surface: &TetMesh) -> String {
+    let at = |v: u32| place(surface.vertices[v as usize]);
+    let repair = "repair it in the program that made it";
+    match *error {
+        delaunay::Error::Points(PointError::NotFinite(v)) => format!("vertex {} is at {}", v + 1, at(v)),
+        delaunay::Error::Points(PointError::Duplicate([a, b])) => {
+            format!("vertices {} and {} are both at {}: join them", a + 1, b + 1, at(a))
+        }
+        delaunay::Error::Points(PointError::Flat) => "the surface lies in one plane and bounds nothing".into(),
+        delaunay::Error::Points(PointError::TooMany) => "it has more vertices than numbers of 32 bits allow".into(),
+        delaunay::Error::Corners { triangle } => format!("triangle {} has a corner twice; {repair}", triangle + 1),
+        delaunay::Error::Repeated { triangles: [a, b] } => {
+            format!("triangles {} and {} are the same; {repair}", a + 1, b + 1)
+        }
+        delaunay::Error::Crossing { triangles: [a, b], at } => {
+            format!("triangles {} and {} cross near {}; {repair}", a + 1, b + 1, place(at))
+        }
+        delaunay::Error::Touching { triangle, point, at } => {
+            format!("vertex {} lies on triangle {} near {}; {repair}", point + 1, triangle + 1, place(at))
+        }
+        delaunay::Error::Unrecovered { triangle, at } => {
+            format!("triangle {} could not be kept near {}; {repair}", triangle + 1, place(at))
+        }
+        delaunay::Error::Stopped => "its tetrahedra took too long; give a greater --time-limit".into(),
+    }
+}
+
+/// The mesh, and where its vertices belong on the model.
+fn meshed(model: &Model, surface: &TetMesh, on: &Classification, filled: &Tetrahedra) -> (TetMesh, Vec<Vec3>) {
+    let mut mesh = TetMesh { vertices: filled.points.clone(), ..TetMesh::default() };
+    mesh.vertex_refs = surface.vertex_refs.clone();
+    mesh.vertex_refs.resize(mesh.vertices.len(), 0);
+    for (nodes, source) in filled.triangles.iter().zip(&filled.source) {
+        mesh.triangles.push(*nodes, surface.triangles.refs[*source as usize]);
+    }
+    let solids = solids(filled);
+    for (nodes, region) in filled.tets.iter().zip(&filled.regions) {
+        if let Some(solid) = solids[*region as usize] {
+            mesh.tets.push(*nodes, solid);
+        }
+    }
+    // What lies between two regions without tetrahedra bounds nothing.
+    let bounds = |sides: &[u32; 2]| sides.iter().any(|&region| solids[region as usize].is_some());
+    let mut keep = filled.sides.iter().map(bounds);
+    let triangles = std::mem::take(&mut mesh.triangles);
+    triangles.iter().filter(|_| keep.next() == Some(true)).for_each(|(nodes, r)| mesh.triangles.push(nodes, r));
+    let on_model = on_model(model, on, filled);
+    (mesh, on_model)
+}
+
+/// The place of each vertex on the model: added ones lie on flat triangles.
+fn on_model(model: &Model, on: &Classification, filled: &Tetrahedra) -> Vec<Vec3> {
+    let (mut evaluator, mut on_model) = (model.evaluator(), filled.points.clone());
+    let mut curves: BTreeMap<[u32; 2], u32> = on.ridges.iter().map(|&(nodes, edge)| (sorted2(nodes), edge)).collect();
+    let mut face_of = vec![None; filled.points.len()];
+    for (nodes, source) in filled.triangles.iter().zip(&filled.source) {
+        nodes.iter().for_each(|&v| face_of[v as usize] = Some(on.faces[*source as usize]));
+    }
+    let first = filled.points.len() - filled.added.len();
+    for (added, vertex) in filled.added.iter().zip(first..) {
+        let curve = match added.origin {
+            Origin::Edge(ends) => curves.remove(&sorted2(ends)).map(|edge| (ends, edge)),
+            Origin::Triangle(_) | Origin::Inside => None,
+        };
+        on_model[vertex] = match (curve, face_of[vertex]) {
+            (Some((ends, edge)), _) => {
+                curves.extend(ends.map(|end| (sorted2([end, vertex as u32]), edge)));
+                evaluator.closest_on_edge(edge, added.point, None).point
+            }
+            (None, Some(face)) => evaluator.closest_on_face(face, added.point, None).point,
+            (None, None) => added.point,
+        };
+    }
+    on_model
+}
+
+/// The number of the solid that each region is; none for the outside and for voids. Where all edges have two triangles, each closed part
+/// of the surface has the solid on one side and a void on the other, beginning with the outside; else all regions are solids.
+fn solids(filled: &Tetrahedra) -> Vec<Option<i32>> {
+    let count = filled.region_count as usize;
+    let mut depth: Vec<Option<u32>> = vec![None; count];
+    depth[0] = Some(0);
+    let mut waiting = vec![0u32];
+    let mut beside: Vec<Vec<u32>> = vec![Vec::new(); count];
+    for &[a, b] in filled.sides.iter().filter(|[a, b]| a != b) {
+        beside[a as usize].push(b);
+        beside[b as usize].push(a);
+    }
+    let mut is_alternating = true;
+    while let Some(region) = waiting.pop() {
+        let here = depth[region as usize].unwrap_or(0);
+        for &other in &beside[region as usize] {
+            match depth[other as usize] {
+                Some(there) => is_alternating &= (here + there) % 2 == 1,
+                None => {
+                    depth[other as usize] = Some(here + 1);
+                    waiting.push(other);
+                }
+            }
+        }
+    }
+    let is_void = |region: usize| region == 0 || is_alternating && depth[region].is_some_and(|depth| depth % 2 == 0);
+    let mut last = 0;
+    let mut number = |region: usize| {
+        (!is_void(region)).then(|| {
+            last += 1;
+            last
+        })
+    };
+    (0..count).map(|region| number(region)).collect()
+}

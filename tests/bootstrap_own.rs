@@ -1,0 +1,85 @@
+//! `geo-adapt bootstrap --mesher own` on models at which our own mesher once failed.
+#![cfg(all(feature = "cli", feature = "occt", unix))]
+mod common;
+
+use common::adapting::stderr;
+use common::{program, shared_case};
+use geo_adapt::mesh::vector::volume6;
+use geo_adapt::mesh::{FlawKind, TetMesh, io, validity};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+fn here(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// The mesh of a run that must succeed without any other mesher.
+fn meshed(model: &Path, arguments: &[&str]) -> TetMesh {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out.meshb");
+    let mut command = program();
+    command.arg("bootstrap").arg(model).arg("-o").arg(&out).args(["--mesher", "own", "--threads", "1", "--quiet"]);
+    command.args(arguments).env("GEO_ADAPT_GMSH", "/nowhere").env("GEO_ADAPT_NETGEN_PYTHON", "/nowhere");
+    let run = command.output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}: {}", model.display(), stderr(&run));
+    io::read_mesh(&out).unwrap().content
+}
+
+fn volume(mesh: &TetMesh) -> f64 {
+    let six = |nodes: &[u32; 4]| {
+        let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
+        volume6(a, b, c, d)
+    };
+    mesh.tets.nodes.iter().map(six).sum::<f64>() / 6.0
+}
+
+fn faces(mesh: &TetMesh) -> usize {
+    mesh.triangles.refs.iter().collect::<BTreeSet<_>>().len()
+}
+
+fn check_valid(mesh: &TetMesh, name: &str) {
+    assert!(validity::check(mesh).is_valid(), "{name}: {:?}", validity::check(mesh));
+}
+
+/// Where two tori touch, one curve of intersection begins with a hook of 1e-5: it made 60 000 triangles.
+#[test]
+fn a_curve_that_begins_with_a_hook_makes_few_triangles() {
+    let mesh = meshed(&here("geometry/zoo/three-tori.step"), &["--no-adapt"]);
+    check_valid(&mesh, "three-tori");
+    assert_eq!(faces(&mesh), 11);
+    assert!(mesh.triangles.len() < 10_000, "{}", mesh.triangles.len());
+}
+
+/// Edges that were divided far finer than their faces bend, since sizes were summed up from few places.
+#[test]
+fn edges_beside_a_short_one_have_pieces_that_grow() {
+    let Some(model) = shared_case("cad-faults/n-offsetbox.egads") else { return };
+    let mesh = meshed(&model, &["--no-adapt"]);
+    check_valid(&mesh, "n-offsetbox");
+    assert_eq!(faces(&mesh), 12);
+    assert!(mesh.triangles.len() < 10_000, "{}", mesh.triangles.len());
+}
+
+/// Balls touch the groove of a shaft along half circles that are no edges there: chords of the two cross, however fine they are. Each body
+/// is filled by itself, and nothing but such crossings may be wrong with that mesh; the kernel takes the bodies apart.
+#[test]
+fn bodies_that_touch_along_no_edge_are_filled_one_by_one() {
+    let mesh = meshed(&here("geometry/zoo/rolling.step"), &["--no-adapt"]);
+    let flaws = validity::check(&mesh).flaws;
+    assert!(flaws.iter().all(|flaw| flaw.kind == FlawKind::CrossingTriangles), "{flaws:?}");
+    assert_eq!(faces(&mesh), 25);
+    assert_eq!(mesh.tets.refs.iter().collect::<BTreeSet<_>>().len(), 3);
+}
+
+/// Faces without wires get the seams and poles of a whole surface.
+#[test]
+fn faces_without_wires_are_whole() {
+    let pi = std::f64::consts::PI;
+    for (name, exact) in [("sphere", pi / 6.0), ("torus", 2.0 * pi * pi * 0.09)] {
+        let mesh = meshed(&here(&format!("tests/data/faulty/whole-{name}.brep")), &[]);
+        check_valid(&mesh, name);
+        assert_eq!(faces(&mesh), 1, "{name}");
+        let share = volume(&mesh) / exact;
+        assert!(share > 0.9 && share < 1.0, "{name}: {share}");
+    }
+}
