@@ -8,6 +8,7 @@ use super::{Options, Summary};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluator, Geometry, Model};
 use crate::mesh::TetMesh;
+use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::{Limits, Sym3, gradation};
 use crate::tasks::{GRAIN, Team};
 
@@ -83,7 +84,9 @@ pub fn geometry_metric(
     summary.at_least_size = team.chunks(GRAIN, metrics.len(), at_least).into_iter().sum();
     if let Some(ratio) = options.gradation {
         let mut logs = std::mem::take(&mut resolved.logs);
-        summary.graded = gradation::grade(team, resolved.mesh(mesh), &mut logs, ratio).changed;
+        let mesh = resolved.mesh(mesh);
+        let around = VertexNeighbours::of_mesh(team, mesh);
+        summary.graded = gradation::grade_turning(team, &mesh.vertices, &around, &mut logs, ratio).changed;
         // Grown metrics that meet at an angle can leave sizes a little below the least.
         limits.apply(team, &mut logs);
         resolved.logs = logs;

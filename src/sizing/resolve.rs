@@ -97,7 +97,7 @@ pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limit
         let mesh = found.mesh(sizing.mesh);
         let around = VertexNeighbours::of_mesh(team, mesh);
         let mut logs = found.logs.clone();
-        gradation::grade_with(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
+        gradation::grade_turning(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
         let edges = finer.unresolved(team, sizing, mesh, &around, &logs);
         if edges.is_empty() || found.added() + edges.len() > MOST[0] + MOST[1] * metrics.len() {
             break;

@@ -16,8 +16,9 @@ use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::vector::Vec3;
+use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::multiscale::{Bounds, Measure, bounded};
-use crate::metric::{Background, Limits, Source, Sym3, field, grade};
+use crate::metric::{Background, Limits, Source, Sym3, field, gradation};
 use crate::sizing::{self, Resolved};
 use crate::tasks::{Plan, Pool, Team, stage};
 use std::process::ExitCode;
@@ -177,7 +178,8 @@ fn sizes(
     let faces = MatchedFaces::of(team, &on.tets.nodes);
     let source = |logs| Source::Background(Background::on(team, Arc::clone(on), faces, logs));
     let mut logs = resolved.logs.clone();
-    grade(team, on, &mut logs, GRADATION);
+    let around = VertexNeighbours::of_mesh(team, on);
+    gradation::grade_turning(team, &on.vertices, &around, &mut logs, GRADATION);
     let complexity = field::complexity_between(team, on, &logs);
     let most = arguments.complexity;
     if complexity <= most {
