@@ -1,5 +1,6 @@
 //! Tetrahedral meshes as plain arrays: the input and the output of everything.
 pub mod adjacency;
+pub mod bisection;
 pub mod box_tree;
 pub mod crossing;
 pub mod disjoint_sets;

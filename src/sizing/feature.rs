@@ -43,6 +43,16 @@ pub struct Gap {
     pub to: Entity,
 }
 
+impl Gap {
+    /// The nearer of two.
+    pub(super) fn nearer(a: Option<Self>, b: Option<Self>) -> Option<Self> {
+        match (a, b) {
+            (Some(a), Some(b)) => Some(if b.distance < a.distance { b } else { a }),
+            (a, b) => a.or(b),
+        }
+    }
+}
+
 /// A point of the boundary.
 #[derive(Clone, Copy)]
 pub struct Place {

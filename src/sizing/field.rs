@@ -1,13 +1,14 @@
 //! The geometry metric at the vertices of a mesh.
-use super::coarse::add_between;
 use super::curvature::{Curvature, Local};
 use super::estimate::Estimate;
 use super::feature::{Gap, Near, Place, Scratch};
 use super::options::GRADATION;
+use super::resolve::{Resolved, resolve};
 use super::{Options, Summary};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluator, Geometry, Model};
 use crate::mesh::TetMesh;
+use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::{Limits, Sym3, gradation};
 use crate::tasks::{GRAIN, Team};
 
@@ -43,9 +44,9 @@ struct Found {
     is_limit: bool,
 }
 
-/// ln M at the vertices of a mesh, shape (n,), lengths in model units: sizes 1/(n |κ|) along the principal directions of the CAD faces and
-/// the tangents of the edges, limited across thin parts and gaps, between `least` and `greatest`; inside and on what is flat the greatest
-/// size. Then gradation, along the edges of the tetrahedra, or of the triangles where there are none.
+/// The metric that a geometry asks for, lengths in model units, on a mesh that resolves it: sizes 1/(n |κ|) along the principal directions
+/// of the CAD faces and the tangents of the edges, limited across thin parts and gaps, between `least` and `greatest`; inside and on what
+/// is flat the greatest size. Then gradation, along the edges of the tetrahedra, or of the triangles where there are none.
 ///
 /// `place` says where the mesh lies on the model. Coordinates are those of the model: vertices are taken where they were projected.
 pub fn geometry_metric(
@@ -54,7 +55,7 @@ pub fn geometry_metric(
     place: &Classification,
     model: &Model,
     options: &Options,
-) -> (Vec<Sym3>, Summary) {
+) -> (Resolved, Summary) {
     let topology = model.topology();
     let discrete = matches!(model, Model::Discrete(_));
     let sizing = Sizing {
@@ -71,22 +72,26 @@ pub fn geometry_metric(
         let (mut evaluator, mut asked) = (model.evaluator(), Asked::default());
         found.extend(range.map(|v| sizing.at_vertex(&mut evaluator, v, &mut asked)));
     });
-    let mut metrics = team.map(GRAIN, found.len(), |v| found[v].metric);
+    let metrics = team.map(GRAIN, found.len(), |v| found[v].metric);
     let mut summary = summarize(place, &found);
-    let (samples, gap) = add_between(team, &sizing, &mut metrics);
-    summary.between = samples;
-    summary.note(gap);
     let limits = Limits { hmin: Some(options.least), hmax: Some(options.greatest), aspect_ratio: options.aspect_ratio };
-    let mut logs = team.map(GRAIN, metrics.len(), |v| limits.apply_to_log(&metrics[v].ln()));
+    let mut resolved = resolve(team, &sizing, &metrics, &limits);
+    summary.between = resolved.added();
+    summary.note(resolved.gap);
+    let logs = &resolved.logs;
     let least = -2.0 * options.least.ln() - 1e-9;
     let at_least = |range: std::ops::Range<usize>| range.filter(|&v| logs[v].eigen().values[2] >= least).count();
-    summary.at_least_size = team.chunks(GRAIN, logs.len(), at_least).into_iter().sum();
+    summary.at_least_size = team.chunks(GRAIN, metrics.len(), at_least).into_iter().sum();
     if let Some(ratio) = options.gradation {
-        summary.graded = gradation::grade(team, mesh, &mut logs, ratio).changed;
+        let mut logs = std::mem::take(&mut resolved.logs);
+        let mesh = resolved.mesh(mesh);
+        let around = VertexNeighbours::of_mesh(team, mesh);
+        summary.graded = gradation::grade_turning(team, &mesh.vertices, &around, &mut logs, ratio).changed;
         // Grown metrics that meet at an angle can leave sizes a little below the least.
         limits.apply(team, &mut logs);
+        resolved.logs = logs;
     }
-    (logs, summary)
+    (resolved, summary)
 }
 
 fn summarize(place: &Classification, found: &[Found]) -> Summary {

@@ -21,7 +21,7 @@ pub struct Summary {
     pub at_gaps: usize,
     /// The nearest gap that limits sizes, at a vertex or between.
     pub nearest_gap: Option<Gap>,
-    /// Places between the vertices of coarse triangles and edges that were looked at.
+    /// Places between the vertices that were looked at, where edges are long for the metric.
     pub between: usize,
     /// Vertices whose sizes gradation has made smaller.
     pub graded: usize,
@@ -30,10 +30,6 @@ pub struct Summary {
 impl Summary {
     /// Takes the nearer of the gaps.
     pub(super) fn note(&mut self, gap: Option<Gap>) {
-        if let Some(gap) = gap
-            && self.nearest_gap.is_none_or(|known| gap.distance < known.distance)
-        {
-            self.nearest_gap = Some(gap);
-        }
+        self.nearest_gap = Gap::nearer(self.nearest_gap, gap);
     }
 }

@@ -15,20 +15,24 @@ use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::vector::{Vec3, distance};
+use crate::mesh::vector::Vec3;
+use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::multiscale::{Bounds, Measure, bounded};
-use crate::metric::{Background, Limits, Source, Sym3, field, grade};
-use crate::sizing;
+use crate::metric::{Background, Limits, Source, Sym3, field, gradation};
+use crate::sizing::{self, Resolved};
 use crate::tasks::{Plan, Pool, Team, stage};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The mesher's mesh is coarse: what the geometry asks for between its vertices shows on the mesh that comes of it.
+/// Cycles at least: what comes of a poor mesh at once can still be made better.
 const CYCLES: usize = 2;
 
-/// Most cycles, where a mesh was too coarse for what is asked of it.
+/// Most cycles.
 const MOST_CYCLES: usize = 6;
+
+/// A mesh is good enough when the complexity that the geometry asks for on it differs by less than this share.
+const SETTLED: f64 = 0.05;
 
 /// The mesher's mesh and what came of it.
 pub struct Refined {
@@ -57,27 +61,34 @@ pub fn run(
     let Meshed { mesh: first, place, by, mut notices } = meshed;
     let first = Arc::new(first);
     let (mut mesh, mut place) = (Arc::clone(&first), place);
+    let mut sizes = self::sizes(arguments, team, &mesh, &place, model).map_err(named)?;
     for cycle in 1..=MOST_CYCLES {
-        let (mut logs, notice) = sizes(arguments, team, &mesh, &place, model).map_err(named)?;
-        let is_last = limit(&mesh, &mut logs) == 0 && cycle >= CYCLES || cycle == MOST_CYCLES;
-        notices.extend(notice.filter(|_| is_last));
-        let faces = MatchedFaces::of(team, &mesh.tets.nodes);
-        let source = Source::Background(Background::on(team, Arc::clone(&mesh), faces, logs));
         stage("geometry");
         let progress = Progress::new(!arguments.quiet, stop);
-        let adapted = adapt::adapt(&mesh, &place, model, &source, &Options::default(), pool, &progress)
+        let adapted = adapt::adapt(&mesh, &place, model, &sizes.source, &Options::default(), pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
         let interrupted = progress.interrupted();
-        if !is_last && !interrupted {
-            (mesh, place) = (Arc::new(adapted.extracted.mesh), adapted.extracted.classification);
-            continue;
+        if cycle < MOST_CYCLES && !interrupted {
+            let result = (Arc::new(adapted.extracted.mesh.clone()), adapted.extracted.classification.clone());
+            let next = self::sizes(arguments, team, &result.0, &result.1, model).map_err(named)?;
+            if cycle < CYCLES || !is_settled(sizes.complexity, next.complexity) {
+                ((mesh, place), sizes) = (result, next);
+                continue;
+            }
         }
+        notices.extend(sizes.notice);
+        let source = sizes.source;
         let times = [prepared, start.elapsed()];
         let fidelity = fidelity::measure(team, &adapted.extracted.mesh, model, &adapted.extracted.classification);
         return Ok(Refined { by, notices, start: first, source, adapted, fidelity, interrupted, times });
     }
     unreachable!("the last cycle returns")
+}
+
+/// Whether the geometry asks for the same on the mesh that was made for it.
+fn is_settled(before: f64, after: f64) -> bool {
+    (after - before).abs() < SETTLED * before
 }
 
 impl Refined {
@@ -140,76 +151,66 @@ impl Refined {
 /// 1 − n·n_CAD of a triangle that is turned over.
 const FOLDED: f64 = 1.0;
 
-/// ln M at the vertices: what the geometry asks for, no more than the complexity allows; and a notice where that is less.
+/// What the geometry asks for.
+struct Sizes {
+    /// On a mesh that resolves it, no more than the complexity allows.
+    source: Source,
+    /// Its own complexity.
+    complexity: f64,
+    /// What the user should know.
+    notice: Option<String>,
+}
+
+/// What the geometry asks for on a mesh.
 fn sizes(
     arguments: &Arguments,
     team: Team<'_>,
-    mesh: &TetMesh,
+    mesh: &Arc<TetMesh>,
     place: &Classification,
     model: &Model,
-) -> Result<(Vec<Sym3>, Option<String>), String> {
+) -> Result<Sizes, String> {
     let options = arguments.sizes.options(model, arguments.limits(), None);
-    let (mut raw, _) = sizing::geometry_metric(team, mesh, place, model, &options);
+    let (mut resolved, _) = sizing::geometry_metric(team, mesh, place, model, &options);
     if arguments.far_field.is_some() {
-        resolve_body(mesh, place, model, &mut raw);
+        resolve_body(mesh, place, model, &mut resolved);
     }
-    let mut logs = raw.clone();
-    grade(team, mesh, &mut logs, GRADATION);
-    let own = field::complexity_between(team, mesh, &logs);
+    let on = resolved.halved.as_ref().map_or(mesh, |halved| &halved.mesh);
+    let faces = MatchedFaces::of(team, &on.tets.nodes);
+    let source = |logs| Source::Background(Background::on(team, Arc::clone(on), faces, logs));
+    let mut logs = resolved.logs.clone();
+    let around = VertexNeighbours::of_mesh(team, on);
+    gradation::grade_turning(team, &on.vertices, &around, &mut logs, GRADATION);
+    let complexity = field::complexity_between(team, on, &logs);
     let most = arguments.complexity;
-    if own <= most {
-        return Ok((logs, None));
+    if complexity <= most {
+        return Ok(Sizes { source: source(logs), complexity, notice: None });
     }
     let (gradation, limits) = (Some(GRADATION), Limits::default());
     let bounds = Bounds { complexity: most, measure: Measure::Between, gradation, limits, fixed: None };
-    let (logs, _) = bounded(team, mesh, &raw, &bounds).map_err(|error| format!("the geometry's metric: {error}"))?;
+    let enlarged = bounded(team, on, &resolved.logs, &bounds);
+    let (logs, _) = enlarged.map_err(|error| format!("the geometry's metric: {error}"))?;
     let notice = format!(
-        "the geometry asks for a complexity of {own:.0}: its sizes are enlarged to {most} (give a greater --complexity to keep them)"
+        "the geometry asks for a complexity of {complexity:.0}: its sizes are enlarged to {most} (give a greater --complexity to keep \
+         them)"
     );
-    Ok((logs, Some(notice)))
+    Ok(Sizes { source: source(logs), complexity, notice: Some(notice) })
 }
-
-/// No size below an eighth of the longest edge at a vertex: sizes are interpolated between the vertices of this mesh, and one much smaller
-/// than the edges would reach far along them. Returns how many were made larger.
-fn limit(mesh: &TetMesh, logs: &mut [Sym3]) -> usize {
-    let mut longest = vec![0.0f64; logs.len()];
-    for nodes in mesh.tets.nodes.iter().map(|nodes| nodes.map(|v| v as usize)) {
-        for (i, a) in nodes.into_iter().enumerate() {
-            for &b in &nodes[i + 1..] {
-                let length = distance(mesh.vertices[a], mesh.vertices[b]);
-                longest[a] = longest[a].max(length);
-                longest[b] = longest[b].max(length);
-            }
-        }
-    }
-    let mut limited = 0;
-    for (log, longest) in logs.iter_mut().zip(longest) {
-        let least = longest / STEP;
-        // λ ≤ 1/least²
-        if log.eigen().values[2] > -2.0 * least.ln() {
-            *log = Limits { hmin: Some(least), ..Limits::default() }.apply_to_log(log);
-            limited += 1;
-        }
-    }
-    limited
-}
-
-/// How many times smaller than an edge a size may be at its end.
-const STEP: f64 = 8.0;
 
 /// In a far field the default of the greatest size is none for the body: there it is that of the body alone.
-fn resolve_body(mesh: &TetMesh, place: &Classification, model: &Model, logs: &mut [Sym3]) {
+fn resolve_body(mesh: &TetMesh, place: &Classification, model: &Model, resolved: &mut Resolved) {
     let (faces, diagonal) = domain::body(model);
-    let mut is_body = vec![false; model.topology().faces.len()];
-    faces.iter().for_each(|&face| is_body[face as usize] = true);
+    let mut is_of_body = vec![false; model.topology().faces.len()];
+    faces.iter().for_each(|&face| is_of_body[face as usize] = true);
+    let mut is_on_body = vec![false; mesh.vertices.len()];
+    for (nodes, _) in mesh.triangles.nodes.iter().zip(&place.faces).filter(|(_, face)| is_of_body[**face as usize]) {
+        nodes.iter().for_each(|&v| is_on_body[v as usize] = true);
+    }
+    if let Some(halved) = &resolved.halved {
+        halved.extend(&mut is_on_body, |a, b| a && b);
+    }
     let size = Sym3::ZERO.plus_identity(-2.0 * (BODY * diagonal).ln());
-    let mut done = vec![false; logs.len()];
-    for (nodes, _) in mesh.triangles.nodes.iter().zip(&place.faces).filter(|(_, face)| is_body[**face as usize]) {
-        for v in nodes.map(|v| v as usize) {
-            if !std::mem::replace(&mut done[v], true) {
-                logs[v] = logs[v].intersect_logs(&size);
-            }
-        }
+    for (log, _) in resolved.logs.iter_mut().zip(is_on_body).filter(|(_, is_on_body)| *is_on_body) {
+        *log = log.intersect_logs(&size);
     }
 }
 
