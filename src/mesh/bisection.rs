@@ -2,6 +2,7 @@
 //!
 //! Each element is split by itself, at its marked edge that comes first in the list, and so are its halves. A face of two tetrahedra is
 //! split by the order of its own edges alone, so both make the same triangles of it.
+use super::adjacency::sorted2;
 use super::vector::{Vec3, lerp};
 use super::{Elements, TetMesh};
 use crate::tasks::{GRAIN, Team};
@@ -33,23 +34,18 @@ pub struct MarkedEdges {
     is_end: Vec<bool>,
 }
 
-/// The same edge whichever end comes first.
-fn key(a: u32, b: u32) -> [u32; 2] {
-    [a.min(b), a.max(b)]
-}
-
 impl MarkedEdges {
     /// These edges, of a mesh of so many vertices; edge i gets the vertex `vertices` + i.
     pub fn new(edges: &[[u32; 2]], vertices: usize) -> Self {
         let mut is_end = vec![false; vertices];
         edges.iter().flatten().for_each(|&v| is_end[v as usize] = true);
-        Self { numbers: edges.iter().map(|&[a, b]| key(a, b)).zip(0..).collect(), is_end }
+        Self { numbers: edges.iter().map(|&[a, b]| sorted2([a, b])).zip(0..).collect(), is_end }
     }
 
     /// The number of an edge, if it is marked.
     pub fn number(&self, a: u32, b: u32) -> Option<u32> {
         let is_end = |v: u32| self.is_end.get(v as usize).is_some_and(|&is_end| is_end);
-        if is_end(a) && is_end(b) { self.numbers.get(&key(a, b)).copied() } else { None }
+        if is_end(a) && is_end(b) { self.numbers.get(&sorted2([a, b])).copied() } else { None }
     }
 
     /// The elements after the bisection, each with the one that it is a part of. Parts keep their orientation.
@@ -131,7 +127,7 @@ mod tests {
                 .tets
                 .nodes
                 .iter()
-                .flat_map(|n| [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]].map(|[i, j]| key(n[i], n[j])))
+                .flat_map(|n| [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]].map(|[i, j]| sorted2([n[i], n[j]])))
                 .collect();
             edges.sort_unstable();
             edges.dedup();

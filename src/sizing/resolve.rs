@@ -8,6 +8,7 @@ use super::feature::{Gap, Place};
 use super::field::{Asked, Sizing};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry};
 use crate::mesh::TetMesh;
+use crate::mesh::adjacency::sorted2;
 use crate::mesh::bisection::{Halved, bisect};
 use crate::mesh::vector::{Vec3, area2, distance, lerp, norm, sub, volume6};
 use crate::mesh::vertex_neighbours::VertexNeighbours;
@@ -139,10 +140,6 @@ struct Finer {
     asked: Vec<f64>,
 }
 
-fn key(a: u32, b: u32) -> [u32; 2] {
-    [a.min(b), a.max(b)]
-}
-
 impl Finer {
     fn of(sizing: &Sizing) -> Self {
         let (mesh, place) = (sizing.mesh, sizing.place);
@@ -155,7 +152,7 @@ impl Finer {
         Self {
             is_on_boundary: place.entities.iter().map(|&entity| entity != Entity::Interior).collect(),
             triangles: (0..mesh.triangles.len() as u32).collect(),
-            ridges: place.ridges.iter().map(|&([a, b], edge)| (key(a, b), edge)).collect(),
+            ridges: place.ridges.iter().map(|&([a, b], edge)| (sorted2([a, b]), edge)).collect(),
             asked: asked.collect(),
         }
     }
@@ -194,7 +191,7 @@ impl Finer {
         });
         for (nodes, &triangle) in mesh.triangles.nodes.iter().zip(&self.triangles) {
             for i in 0..3 {
-                let [a, b] = key(nodes[i], nodes[(i + 1) % 3]);
+                let [a, b] = sorted2([nodes[i], nodes[(i + 1) % 3]]);
                 if distance(mesh.vertices[a as usize], mesh.vertices[b as usize]) > self.asked[triangle as usize] {
                     edges.push([a, b]);
                 }
@@ -215,7 +212,7 @@ impl Finer {
         if !marked.is_empty() {
             for (nodes, &triangle) in mesh.triangles.nodes.iter().zip(&self.triangles) {
                 for i in 0..3 {
-                    let side = key(nodes[i], nodes[(i + 1) % 3]);
+                    let side = sorted2([nodes[i], nodes[(i + 1) % 3]]);
                     if marked.contains(&side) {
                         on.entry(side).or_insert(triangle);
                     }
@@ -241,8 +238,8 @@ impl Finer {
         for ((&[a, b], place), middle) in edges.iter().zip(places).zip(first..) {
             self.is_on_boundary.push(place.entity != Entity::Interior);
             if let Some(ridge) = self.ridges.remove(&[a, b]) {
-                self.ridges.insert(key(a, middle), ridge);
-                self.ridges.insert(key(b, middle), ridge);
+                self.ridges.insert(sorted2([a, middle]), ridge);
+                self.ridges.insert(sorted2([b, middle]), ridge);
             }
         }
     }
