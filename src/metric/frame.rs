@@ -65,11 +65,6 @@ impl Frame {
         Some((Self { roots: both.values.map(f64::sqrt), vectors: both.vectors.map(in_space) }, least))
     }
 
-    /// With no root above a bound: no size below its inverse.
-    pub fn at_most(&self, bound: f64) -> Self {
-        Self { roots: self.roots.map(|root| root.min(bound)), vectors: self.vectors }
-    }
-
     /// The least size of G in the directions in which it is finer than self.
     pub fn least_excess(&self, relative: &Relative) -> f64 {
         let eigen = relative.eigen();

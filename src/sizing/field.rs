@@ -1,4 +1,5 @@
 //! The geometry metric at the vertices of a mesh.
+use super::coarse::add_between;
 use super::curvature::{Curvature, Local};
 use super::estimate::Estimate;
 use super::feature::{Gap, Near, Place, Scratch};
@@ -8,7 +9,6 @@ use super::{Options, Summary};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluator, Geometry, Model};
 use crate::mesh::TetMesh;
-use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::{Limits, Sym3, gradation};
 use crate::tasks::{GRAIN, Team};
 
@@ -44,9 +44,9 @@ struct Found {
     is_limit: bool,
 }
 
-/// The metric that a geometry asks for, lengths in model units, on a mesh that resolves it: sizes 1/(n |κ|) along the principal directions
-/// of the CAD faces and the tangents of the edges, limited across thin parts and gaps, between `least` and `greatest`; inside and on what
-/// is flat the greatest size. Then gradation, along the edges of the tetrahedra, or of the triangles where there are none.
+/// ln M at the vertices of a mesh, shape (n,), lengths in model units: sizes 1/(n |κ|) along the principal directions of the CAD faces and
+/// the tangents of the edges, limited across thin parts and gaps, between `least` and `greatest`; inside and on what is flat the greatest
+/// size. Then gradation, along the edges of the tetrahedra, or of the triangles where there are none.
 ///
 /// `place` says where the mesh lies on the model. Coordinates are those of the model: vertices are taken where they were projected.
 pub fn geometry_metric(
@@ -55,43 +55,43 @@ pub fn geometry_metric(
     place: &Classification,
     model: &Model,
     options: &Options,
-) -> (Resolved, Summary) {
-    let topology = model.topology();
-    let discrete = matches!(model, Model::Discrete(_));
-    let sizing = Sizing {
-        mesh,
-        place,
-        model,
-        options,
-        growth: options.gradation.unwrap_or(GRADATION).ln(),
-        curvature: Curvature::new(options, topology),
-        estimate: discrete.then(|| Estimate::new(team, mesh, place, model)),
-        near: options.cells.map(|cells| Near::new(team, mesh, place, model, cells, [options.least, options.greatest])),
-    };
-    let found = team.collect(VERTICES, mesh.vertices.len(), |range, found| {
-        let (mut evaluator, mut asked) = (model.evaluator(), Asked::default());
-        found.extend(range.map(|v| sizing.at_vertex(&mut evaluator, v, &mut asked)));
-    });
-    let metrics = team.map(GRAIN, found.len(), |v| found[v].metric);
+) -> (Vec<Sym3>, Summary) {
+    let sizing = Sizing::new(team, mesh, place, model, options);
+    let found = sizing.at_vertices(team);
+    let mut metrics = team.map(GRAIN, found.len(), |v| found[v].metric);
     let mut summary = summarize(place, &found);
-    let limits = Limits { hmin: Some(options.least), hmax: Some(options.greatest), aspect_ratio: options.aspect_ratio };
-    let mut resolved = resolve(team, &sizing, &metrics, &limits);
-    summary.between = resolved.added();
-    summary.note(resolved.gap);
-    let logs = &resolved.logs;
+    let (samples, gap) = add_between(team, &sizing, &mut metrics);
+    summary.between = samples;
+    summary.note(gap);
+    let limits = limits(options);
+    let mut logs = team.map(GRAIN, metrics.len(), |v| limits.apply_to_log(&metrics[v].ln()));
     let least = -2.0 * options.least.ln() - 1e-9;
     let at_least = |range: std::ops::Range<usize>| range.filter(|&v| logs[v].eigen().values[2] >= least).count();
-    summary.at_least_size = team.chunks(GRAIN, metrics.len(), at_least).into_iter().sum();
+    summary.at_least_size = team.chunks(GRAIN, logs.len(), at_least).into_iter().sum();
     if let Some(ratio) = options.gradation {
-        let mut logs = std::mem::take(&mut resolved.logs);
-        let mesh = resolved.mesh(mesh);
-        let around = VertexNeighbours::of_mesh(team, mesh);
-        summary.graded = gradation::grade_turning(team, &mesh.vertices, &around, &mut logs, ratio).changed;
+        summary.graded = gradation::grade(team, mesh, &mut logs, ratio).changed;
         // Grown metrics that meet at an angle can leave sizes a little below the least.
         limits.apply(team, &mut logs);
-        resolved.logs = logs;
     }
-    (resolved, summary)
+    (logs, summary)
+}
+
+/// The same without gradation, on a mesh that resolves it: the given one with vertices added.
+pub fn resolved_metric(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    place: &Classification,
+    model: &Model,
+    options: &Options,
+) -> Resolved {
+    let sizing = Sizing::new(team, mesh, place, model, options);
+    let found = sizing.at_vertices(team);
+    let metrics = team.map(GRAIN, found.len(), |v| found[v].metric);
+    resolve(team, &sizing, &metrics, &limits(options))
+}
+
+fn limits(options: &Options) -> Limits {
+    Limits { hmin: Some(options.least), hmax: Some(options.greatest), aspect_ratio: options.aspect_ratio }
 }
 
 fn summarize(place: &Classification, found: &[Found]) -> Summary {
@@ -111,7 +111,36 @@ fn summarize(place: &Classification, found: &[Found]) -> Summary {
     summary
 }
 
-impl Sizing<'_> {
+impl<'a> Sizing<'a> {
+    fn new(
+        team: Team<'_>,
+        mesh: &'a TetMesh,
+        place: &'a Classification,
+        model: &'a Model,
+        options: &'a Options,
+    ) -> Self {
+        let is_discrete = matches!(model, Model::Discrete(_));
+        Self {
+            mesh,
+            place,
+            model,
+            options,
+            growth: options.gradation.unwrap_or(GRADATION).ln(),
+            curvature: Curvature::new(options, model.topology()),
+            estimate: is_discrete.then(|| Estimate::new(team, mesh, place, model)),
+            near: options
+                .cells
+                .map(|cells| Near::new(team, mesh, place, model, cells, [options.least, options.greatest])),
+        }
+    }
+
+    fn at_vertices(&self, team: Team<'_>) -> Vec<Found> {
+        team.collect(VERTICES, self.mesh.vertices.len(), |range, found| {
+            let (mut evaluator, mut asked) = (self.model.evaluator(), Asked::default());
+            found.extend(range.map(|v| self.at_vertex(&mut evaluator, v, &mut asked)));
+        })
+    }
+
     /// The metric of a mesh vertex.
     fn at_vertex(&self, evaluator: &mut Evaluator, vertex: usize, asked: &mut Asked) -> Found {
         let entity = self.place.entities[vertex];

@@ -2,9 +2,11 @@
 //!
 //! `curvature` makes the tensor of an entity at a point, `estimate` does where the model is a mesh's own surface; `feature` finds the
 //! entities that come near without touching (`touch`), by boxes over samples of the model (`pieces`, `tree`), where nothing stands between
-//! (`sight`), of the same body (`bodies`). `resolve` adds vertices to a coarse mesh until it resolves the metric, and `field` puts it together.
+//! (`sight`), of the same body (`bodies`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together;
+//! `resolve` adds vertices to a coarse mesh until it resolves the metric.
 mod bodies;
 mod bound;
+mod coarse;
 mod curvature;
 mod estimate;
 mod feature;
@@ -20,7 +22,7 @@ mod tree;
 
 pub use curvature::{Curvature, Local};
 pub use feature::Gap;
-pub use field::geometry_metric;
+pub use field::{geometry_metric, resolved_metric};
 pub use options::Options;
 pub use resolve::Resolved;
 pub use summary::Summary;

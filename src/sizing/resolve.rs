@@ -4,7 +4,7 @@
 //! A metric is interpolated along the edges of the mesh that it lies on. On a coarse mesh that is wrong by orders: from an apex with a size
 //! of 1e-3, sizes grow along a unit edge as a geometric series and not, as gradation lets them, in proportion to the distance. So edges
 //! are halved, and the geometry is asked at their middles, until interpolation and growth agree or the edge is but a few sizes long.
-use super::feature::{Gap, Place};
+use super::feature::Place;
 use super::field::{Asked, Sizing};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry};
 use crate::mesh::TetMesh;
@@ -37,10 +37,8 @@ const TASK: usize = 1 << 6;
 pub struct Resolved {
     /// The mesh with the vertices that were added; none where it resolves the metric itself.
     pub halved: Option<Halved>,
-    /// ln M at all vertices.
+    /// ln M at all vertices, not graded.
     pub logs: Vec<Sym3>,
-    /// The nearest gap that limits the metric at a vertex that was added.
-    pub(super) gap: Option<Gap>,
 }
 
 impl Resolved {
@@ -53,38 +51,6 @@ impl Resolved {
     pub fn added(&self) -> usize {
         self.halved.as_ref().map_or(0, |halved| halved.parents.len())
     }
-
-    /// ln M at the vertices of the given mesh alone, for interpolation on it: where edges at a vertex were halved the mean about the
-    /// vertex, weighted by the function that is 1 there and falls to 0 at its neighbours; elsewhere M itself.
-    pub fn at_given(&self) -> Vec<Sym3> {
-        let Some(Halved { mesh, parents }) = &self.halved else { return self.logs.clone() };
-        let count = self.logs.len() - parents.len();
-        let mut volumes = vec![0.0; self.logs.len()];
-        let at = |v: u32| mesh.vertices[v as usize];
-        for nodes in &mesh.tets.nodes {
-            let [a, b, c, d] = nodes.map(at);
-            nodes.iter().for_each(|&v| volumes[v as usize] += volume6(a, b, c, d));
-        }
-        for nodes in mesh.triangles.nodes.iter().filter(|_| mesh.tets.is_empty()) {
-            let [a, b, c] = nodes.map(at);
-            nodes.iter().for_each(|&v| volumes[v as usize] += norm(area2(a, b, c)));
-        }
-        // What a vertex has goes to the ends of its edge in halves, from the last one on: each ends up with its weighted sums.
-        let mut sums: Vec<(f64, Sym3)> = volumes.iter().zip(&self.logs).map(|(&v, log)| (v, log.times(v))).collect();
-        let mut is_coarse = vec![false; self.logs.len()];
-        for (middle, ends) in (count..self.logs.len()).zip(parents).rev() {
-            let (volume, log) = sums[middle];
-            for end in ends.map(|end| end as usize) {
-                sums[end] = (sums[end].0 + 0.5 * volume, sums[end].1.plus(log.times(0.5)));
-                is_coarse[end] = true;
-            }
-        }
-        let mean = |v: usize| match is_coarse[v] && sums[v].0 > 0.0 {
-            true => sums[v].1.times(1.0 / sums[v].0),
-            false => self.logs[v],
-        };
-        (0..count).map(mean).collect()
-    }
 }
 
 /// Adds vertices until the metric, with its limits, is resolved. `metrics` are those at the vertices of the mesh. The metric that comes
@@ -92,22 +58,19 @@ impl Resolved {
 pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limits) -> Resolved {
     let limited = |metric: &Sym3| limits.apply_to_log(&metric.ln());
     let logs = team.map(GRAIN, metrics.len(), |v| limited(&metrics[v]));
-    let mut found = Resolved { halved: None, logs, gap: None };
+    let mut found = Resolved { halved: None, logs };
     let mut finer = Finer::of(sizing);
     for _ in 0..ROUNDS {
         let mesh = found.mesh(sizing.mesh);
         let around = VertexNeighbours::of_mesh(team, mesh);
         let mut logs = found.logs.clone();
-        gradation::grade_turning(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
+        gradation::grade_with(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
         let edges = finer.unresolved(team, sizing, mesh, &around, &logs);
         if edges.is_empty() || found.added() + edges.len() > MOST[0] + MOST[1] * metrics.len() {
             break;
         }
         let places = finer.middles(mesh, &edges);
-        for (metric, gap) in ask(team, sizing, mesh, &edges, &places) {
-            found.logs.push(limited(&metric));
-            found.gap = Gap::nearer(found.gap, gap);
-        }
+        found.logs.extend(ask(team, sizing, mesh, &edges, &places).iter().map(limited));
         let (mut mesh, mut parents) = match found.halved.take() {
             Some(Halved { mesh, parents }) => (mesh, parents),
             None => (Arc::new(sizing.mesh.clone()), Vec::new()),
@@ -245,14 +208,8 @@ impl Finer {
     }
 }
 
-/// The metrics that the geometry asks for in the middles of these edges, and the gaps that limit them.
-fn ask(
-    team: Team<'_>,
-    sizing: &Sizing,
-    mesh: &TetMesh,
-    edges: &[[u32; 2]],
-    places: &[Middle],
-) -> Vec<(Sym3, Option<Gap>)> {
+/// The metrics that the geometry asks for in the middles of these edges.
+fn ask(team: Team<'_>, sizing: &Sizing, mesh: &TetMesh, edges: &[[u32; 2]], places: &[Middle]) -> Vec<Sym3> {
     team.collect(TASK, edges.len(), |range, found| {
         let (mut evaluator, mut asked) = (sizing.model.evaluator(), Asked::default());
         for i in range {
@@ -262,15 +219,9 @@ fn ask(
     })
 }
 
-/// The metric at one of them; without a gap where the model has no place for it.
-fn at(
-    sizing: &Sizing,
-    evaluator: &mut Evaluator,
-    point: Vec3,
-    place: Middle,
-    asked: &mut Asked,
-) -> (Sym3, Option<Gap>) {
-    let free = (Sym3::IDENTITY.times(sizing.options.greatest.powi(-2)), None);
+/// The metric at one of them; the greatest size where the model has no place for it.
+fn at(sizing: &Sizing, evaluator: &mut Evaluator, point: Vec3, place: Middle, asked: &mut Asked) -> Sym3 {
+    let free = Sym3::IDENTITY.times(sizing.options.greatest.powi(-2));
     let (on, parameters, entity) = match (place.entity, place.triangle) {
         (Entity::Edge(edge), _) => {
             let on = evaluator.closest_on_edge(edge, point, None);
@@ -288,5 +239,5 @@ fn at(
     }
     let triangle = if entity.dimension() == 2 { place.triangle } else { None };
     let place = Place { point: on, entity, vertex: None, triangle };
-    sizing.metric_at(evaluator, &place, parameters, asked)
+    sizing.metric_at(evaluator, &place, parameters, asked).0
 }

@@ -13,7 +13,6 @@ use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::complete_matched;
 use crate::geometry::{Model, Names, names};
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::bisection::Halved;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::mesh::{TetMesh, crossing, io};
 use crate::metric::held::GREATEST_RATIO;
@@ -229,15 +228,10 @@ impl InputArguments {
             Some(logs) => (self.bounded(team, mesh, on.2, logs).map_err(named)?, None),
             None => {
                 let complexity = self.complexity.ok_or("--field needs a --complexity")?;
-                let (fixed, halved) = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
+                let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
                 let wanted = (complexity, Measure::Between);
-                let bounds = (fixed.as_deref(), halved.as_ref());
                 let (logs, made) =
-                    self.multiscale.make(team, (mesh, copies), &self.field.field, wanted, bounds, notices)?;
-                if let Some(Halved { mesh, .. }) = halved {
-                    let faces = MatchedFaces::of(team, &mesh.tets.nodes);
-                    return Ok((Source::Background(Background::on(team, mesh, faces, logs)), Some(made)));
-                }
+                    self.multiscale.make(team, (mesh, copies), &self.field.field, wanted, fixed.as_deref(), notices)?;
                 (logs, Some(made))
             }
         };
@@ -275,8 +269,7 @@ impl InputArguments {
         Ok(Some(logs))
     }
 
-    /// ln of the metric that holds whatever the field says: that of the geometry, on a CAD model, and of the local sizes; and a finer mesh
-    /// that it is on, where the mesh does not resolve it.
+    /// ln of the metric that holds whatever the field says: that of the geometry, on a CAD model, and of the local sizes.
     fn fixed(
         &self,
         team: Team<'_>,
@@ -284,15 +277,14 @@ impl InputArguments {
         (place, model, names): (&Classification, &Model, &Names),
         complexity: f64,
         notices: &mut Vec<String>,
-    ) -> Result<(Option<Vec<Sym3>>, Option<Halved>), String> {
+    ) -> Result<Option<Vec<Sym3>>, String> {
         if !self.has_model() || self.no_geometry {
-            return Ok((self.local_sizes(team, mesh, names)?, None));
+            return self.local_sizes(team, mesh, names);
         }
         let gradation = self.multiscale.growth();
         let options = self.geometry.options(model, self.multiscale.limits()?, None);
-        let (resolved, _) = sizing::geometry_metric(team, mesh, place, model, &options);
-        let mesh = resolved.mesh(mesh);
-        let mut logs = resolved.logs.clone();
+        let (raw, _) = sizing::geometry_metric(team, mesh, place, model, &options);
+        let mut logs = raw.clone();
         if let Some(ratio) = gradation {
             grade(team, mesh, &mut logs, ratio);
         }
@@ -301,8 +293,7 @@ impl InputArguments {
         if own > most {
             let limits = Limits::default();
             let bounds = Bounds { complexity: most, measure: Measure::Between, gradation, limits, fixed: None };
-            let enlarged = bounded(team, mesh, &resolved.logs, &bounds);
-            logs = enlarged.map_err(|error| format!("the geometry's metric: {error}"))?.0;
+            logs = bounded(team, mesh, &raw, &bounds).map_err(|error| format!("the geometry's metric: {error}"))?.0;
             notices.push(format!(
                 "the geometry alone asks for a complexity of {own:.0}: its sizes are enlarged, to leave half of {complexity} to \
                  the field (a greater --complexity keeps them, --no-geometry leaves them out)"
@@ -310,7 +301,7 @@ impl InputArguments {
         }
         parts::apply(&self.local, mesh, names, &mut logs)?;
         stage("geometry");
-        Ok((Some(logs), resolved.halved))
+        Ok(Some(logs))
     }
 
     /// Scales the source to the complexity asked for, unless it was made for that. Refuses a complexity that no mesh can have.

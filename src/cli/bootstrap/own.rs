@@ -5,7 +5,7 @@ use crate::cli::table::place;
 use crate::delaunay::{self, Origin, Placement, PointError, Tetrahedra, tetrahedralise};
 use crate::geometry::{Evaluate, Geometry, Model};
 use crate::mesh::adjacency::sorted2;
-use crate::mesh::vector::Vec3;
+use crate::mesh::vector::{Vec3, area2, dot, unit};
 use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
 use crate::surface::{Options, Place, Surface, triangulate};
 use std::collections::HashMap;
@@ -90,7 +90,25 @@ fn parts(surface: Surface) -> Result<Vec<Surface>, String> {
             place(at)
         ));
     }
+    if let Some(pair) = surface.crossings.iter().find(|pair| cosine(&surface, **pair) > TOUCHING) {
+        let solid = |t: u32| surface.sides[surface.faces[t as usize] as usize].iter().flatten().next().map(|s| s + 1);
+        let [a, b] = pair.map(|t| solid(t).unwrap_or_default());
+        let at = surface.points[surface.triangles[pair[0] as usize][0] as usize];
+        return Err(format!("solids {a} and {b} overlap near {}", place(at)));
+    }
     Ok(bodies.divide(&surface))
+}
+
+/// Surfaces that touch look at each other, and so do their chords there, with a smaller cosine between their normals.
+const TOUCHING: f64 = -0.5;
+
+/// The cosine between the normals of two triangles.
+fn cosine(surface: &Surface, pair: [u32; 2]) -> f64 {
+    let [a, b] = pair.map(|t| {
+        let [p, q, r] = surface.triangles[t as usize].map(|v| surface.points[v as usize]);
+        unit(area2(p, q, r))
+    });
+    dot(a, b)
 }
 
 /// Makes one of points at the same place: edges of bodies that touch there. (Our kernel takes the bodies apart again.)
@@ -229,4 +247,41 @@ fn solids(surface: &Surface, filled: &Tetrahedra) -> Vec<Option<u32>> {
     }
     let most = |votes: &HashMap<Option<u32>, usize>| votes.iter().map(|(solid, count)| (*count, *solid)).max();
     votes.iter().map(|votes| most(votes).and_then(|(_, solid)| solid)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two bodies with a triangle each: one lies flat, the other turned about the x axis, and they cross.
+    fn crossing(turned_deg: f64) -> Surface {
+        let (sine, cosine) = turned_deg.to_radians().sin_cos();
+        let turned = |[x, y]: [f64; 2]| [x, y * cosine, y * sine];
+        Surface {
+            points: vec![
+                [-1.0, -1.0, 0.0],
+                [1.0, -1.0, 0.0],
+                [0.0, 1.0, 0.0],
+                turned([-1.0, -1.0]),
+                turned([1.0, -1.0]),
+                turned([0.0, 1.0]),
+            ],
+            places: (0..6).map(Place::Vertex).collect(),
+            triangles: vec![[0, 1, 2], [3, 4, 5]],
+            faces: vec![0, 1],
+            sides: vec![[Some(0), None], [Some(1), None]],
+            chains: Vec::new(),
+            crossings: vec![[0, 1]],
+            ..Surface::default()
+        }
+    }
+
+    #[test]
+    fn bodies_that_touch_are_divided_and_those_that_overlap_told() {
+        assert_eq!(parts(crossing(170.0)).unwrap().len(), 2);
+        for turned in [90.0, 60.0, 10.0] {
+            let error = parts(crossing(turned)).unwrap_err();
+            assert!(error.contains("solids 1 and 2 overlap near (-1.000000, -1.000000, 0.000000)"), "{error}");
+        }
+    }
 }

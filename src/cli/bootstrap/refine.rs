@@ -16,9 +16,8 @@ use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::vector::Vec3;
-use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::multiscale::{Bounds, Measure, bounded};
-use crate::metric::{Background, Limits, Source, Sym3, field, gradation};
+use crate::metric::{Background, Limits, Source, Sym3, field, grade};
 use crate::sizing::{self, Resolved};
 use crate::tasks::{Plan, Pool, Team, stage};
 use std::process::ExitCode;
@@ -170,7 +169,7 @@ fn sizes(
     model: &Model,
 ) -> Result<Sizes, String> {
     let options = arguments.sizes.options(model, arguments.limits(), None);
-    let (mut resolved, _) = sizing::geometry_metric(team, mesh, place, model, &options);
+    let mut resolved = sizing::resolved_metric(team, mesh, place, model, &options);
     if arguments.far_field.is_some() {
         resolve_body(mesh, place, model, &mut resolved);
     }
@@ -178,8 +177,7 @@ fn sizes(
     let faces = MatchedFaces::of(team, &on.tets.nodes);
     let source = |logs| Source::Background(Background::on(team, Arc::clone(on), faces, logs));
     let mut logs = resolved.logs.clone();
-    let around = VertexNeighbours::of_mesh(team, on);
-    gradation::grade_turning(team, &on.vertices, &around, &mut logs, GRADATION);
+    grade(team, on, &mut logs, GRADATION);
     let complexity = field::complexity_between(team, on, &logs);
     let most = arguments.complexity;
     if complexity <= most {

@@ -1,7 +1,6 @@
 //! Reading the fields that a metric is made from, and the options of the multiscale metric; `adapt --field` has them too.
 use super::common::{Failure, GradationArgument, LimitArguments};
 use crate::mesh::TetMesh;
-use crate::mesh::bisection::Halved;
 use crate::mesh::io::{FieldKind, Read, Solution, SolutionField, read_solution_on};
 use crate::mesh::split_nonmanifold::copy_values;
 use crate::metric::multiscale::{self, Bounds, Measure, Norm, Options, Summary, multiscale};
@@ -87,14 +86,14 @@ impl MultiscaleArguments {
     }
 
     /// ln M at the vertices of the mesh, shape (n,), made from the fields of these files, and what was done; `fixed`, ln of
-    /// another metric, is intersected at any scale. If it is on a finer mesh, ln M is at the vertices of that. The last vertices are `copies`, on which the files have nothing. Notices are added.
+    /// another metric, is intersected at any scale. The last vertices are `copies`, on which the files have nothing. Notices are added.
     pub fn make(
         &self,
         team: Team<'_>,
         (mesh, copies): (&TetMesh, &[u32]),
         paths: &[PathBuf],
         (complexity, measure): (f64, Measure),
-        (fixed, halved): (Option<&[Sym3]>, Option<&Halved>),
+        fixed: Option<&[Sym3]>,
         notices: &mut Vec<String>,
     ) -> Result<(Vec<Sym3>, Made), Failure> {
         let limits = self.limits.limits()?;
@@ -109,7 +108,7 @@ impl MultiscaleArguments {
         let (sensors, names) = self.sensors(paths, &files)?;
         let (norm, recovery, gradation) = (self.norm, self.hessian, self.gradation.ratio());
         let bounds = Bounds { complexity, measure, gradation, limits, fixed };
-        let options = Options { recovery, norm, bounds, halved };
+        let options = Options { recovery, norm, bounds };
         let (logs, summary) = multiscale(team, mesh, &sensors, &options).map_err(|error| match error {
             multiscale::Error::Flat { sensor } | multiscale::Error::NotFinite { sensor, .. } => {
                 format!("{}: {error}", names[sensor])

@@ -116,10 +116,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let (model, lies) = lies(team, arguments, &mesh)?;
     let read_and_classify = start.elapsed().as_secs_f64();
     let options = arguments.sizes.options(&model, limits, arguments.gradation.ratio());
-    let (resolved, summary) = sizing::geometry_metric(team, &mesh, &lies, &model, &options);
+    let (logs, summary) = sizing::geometry_metric(team, &mesh, &lies, &model, &options);
     let metric = start.elapsed().as_secs_f64() - read_and_classify;
     let mut outputs = Outputs::new();
-    outputs.logs(team, &target, &resolved.at_given())?;
+    outputs.logs(team, &target, &logs)?;
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         input: &arguments.mesh,
@@ -127,7 +127,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         output: &arguments.output.output,
         options,
         summary,
-        metric: Figures::of(team, resolved.mesh(&mesh), &resolved.logs),
+        metric: Figures::of(team, &mesh, &logs),
         seconds: Seconds { read_and_classify, metric },
     };
     outputs.json(json.as_ref(), &report)?;

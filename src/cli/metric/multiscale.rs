@@ -56,8 +56,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
     stage("mesh read");
     let (mut notices, wanted) = (Vec::new(), (arguments.complexity, Measure::AtVertices));
-    let (logs, made) =
-        arguments.multiscale.make(team, (&mesh, &[]), &arguments.fields, wanted, (None, None), &mut notices)?;
+    let (logs, made) = arguments.multiscale.make(team, (&mesh, &[]), &arguments.fields, wanted, None, &mut notices)?;
     arguments.run.note(&notices);
     let mut outputs = Outputs::new();
     outputs.logs(team, &target, &logs)?;

@@ -56,24 +56,6 @@ pub fn grade(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3], ratio: f64) -> G
     grade_with(team, &mesh.vertices, &VertexNeighbours::of_mesh(team, mesh), logs, ratio)
 }
 
-/// As [`grade_with`], for metrics that turn from vertex to vertex, as those of a geometry do: no size becomes less than the least of those
-/// that grow into each other. The intersection of two metrics that are fine in different directions is finer than both, which adds up from
-/// vertex to vertex. Where that is taken back, a metric may come out coarser than an intersection in its finest direction, by a tenth of a
-/// size at most for metrics at 45 degrees; and what is graded already may change by as much.
-///
-/// # Panics
-/// As [`grade`].
-pub fn grade_turning(
-    team: Team<'_>,
-    vertices: &[Vec3],
-    around: &VertexNeighbours,
-    logs: &mut [Sym3],
-    ratio: f64,
-) -> Graded {
-    assert_eq!(vertices.len(), logs.len(), "one ln M a vertex");
-    Grading { is_bounded: true, ..Grading::new(team, vertices, around, logs, ratio.ln()) }.run()
-}
-
 /// As [`grade`], with the neighbours of the vertices along the edges.
 ///
 /// # Panics
@@ -113,8 +95,6 @@ struct Grading<'a> {
     frames: Vec<Frame>,
     /// ln r.
     growth: f64,
-    /// Whether no size becomes less than those it comes of.
-    is_bounded: bool,
     /// [`NOWHERE`], [`NEAR`] or [`FAR`].
     places: Vec<AtomicU8>,
     /// For each vertex that waits, its least changed size.
@@ -142,7 +122,6 @@ impl<'a> Grading<'a> {
             frames: team.map(GRAIN, count, |v| Frame::of_log(&logs[v])),
             logs,
             growth,
-            is_bounded: false,
             places: team.map_with(GRAIN, count, || (), |(), _| AtomicU8::new(NOWHERE)),
             least_changed: vec![0.0; count],
             is_source: team.map_with(GRAIN, count, || (), |(), _| AtomicBool::new(false)),
@@ -177,16 +156,16 @@ impl<'a> Grading<'a> {
             for p in range.start as u32..range.end as u32 {
                 let least = self.around.of_vertex(p).iter().filter(|&&q| is_open(p, q)).filter_map(|&q| {
                     let of_q = &self.frames[q as usize];
-                    self.excess(p, of_q, q).map(|(relative, _)| of_q.least_excess(&relative))
+                    self.excess(p, of_q, q).map(|relative| of_q.least_excess(&relative))
                 });
                 found.extend(least.reduce(f64::min).map(|least| (p, least)));
             }
         })
     }
 
-    /// The metric of p grown to q, relative to `of_q`, the metric of q, and its greatest root; none when it is nowhere finer.
+    /// The metric of p grown to q, relative to `of_q`, the metric of q; none when it is nowhere finer.
     #[inline]
-    fn excess(&self, p: u32, of_q: &Frame, q: u32) -> Option<(Relative, f64)> {
+    fn excess(&self, p: u32, of_q: &Frame, q: u32) -> Option<Relative> {
         let of_p = &self.frames[p as usize];
         // A metric that is nowhere finer changes nothing.
         if of_p.roots[2] <= of_q.roots[0] {
@@ -198,7 +177,7 @@ impl<'a> Grading<'a> {
             return None;
         }
         let relative = of_q.relative(of_p, grown);
-        (!relative.is_below(1.0 + TOLERANCE)).then_some((relative, grown[2]))
+        (!relative.is_below(1.0 + TOLERANCE)).then_some(relative)
     }
 
     /// Grows the metrics of these vertices to their neighbours, and on from there, until nothing changes. Returns the numbers of rounds and updates.
@@ -332,9 +311,8 @@ impl<'a> Grading<'a> {
         let before = self.frames[q as usize];
         let (mut now, mut least_changed) = (before, f64::INFINITY);
         for &p in self.around.of_vertex(q).iter().filter(|&&p| self.is_source[p as usize].load(Relaxed)) {
-            let Some((relative, finest)) = self.excess(p, &now, q) else { continue };
-            if let Some((both, least)) = now.intersection(&relative, 1.0 + TOLERANCE) {
-                let both = if self.is_bounded { both.at_most(finest.max(now.roots[2])) } else { both };
+            let excess = self.excess(p, &now, q);
+            if let Some((both, least)) = excess.and_then(|relative| now.intersection(&relative, 1.0 + TOLERANCE)) {
                 (now, least_changed) = (both, least_changed.min(least));
             }
         }

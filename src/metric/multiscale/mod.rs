@@ -22,7 +22,6 @@ pub use norm::Norm;
 use super::recovery::{Recovery, Rings};
 use super::{Limits, Sym3, field, intersect_all};
 use crate::mesh::TetMesh;
-use crate::mesh::bisection::Halved;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
 use optimal::Spectrum;
@@ -39,8 +38,6 @@ pub struct Options<'f> {
     pub norm: Norm,
     /// Complexity, growth and bounds of the sizes. No size is ever above the diameter of the mesh's box.
     pub bounds: Bounds<'f>,
-    /// A finer mesh for the metric, made from that of the fields, where what is fixed needs it.
-    pub halved: Option<&'f Halved>,
 }
 
 /// How the complexity is measured.
@@ -114,7 +111,7 @@ pub enum Error {
     },
 }
 
-/// ln M at the vertices (of the finer mesh, if there is one), shape (n,), of the multiscale metric of some sensors. Each sensor has a field, shape (n,), for each step in
+/// ln M at the vertices, shape (n,), of the multiscale metric of some sensors. Each sensor has a field, shape (n,), for each step in
 /// time; mostly there is one.
 ///
 /// # Panics
@@ -146,14 +143,7 @@ pub fn multiscale(
             intersect_all(team, &mut raw, &logs);
         }
     }
-    let (logs, summary) = match options.halved {
-        None => bounded_with(team, mesh, Some(rings.into_neighbours()), &raw, &bounds)?,
-        Some(halved) => {
-            drop(rings);
-            halved.extend(&mut raw, |a, b| a.plus(b).times(0.5));
-            bounded_with(team, &halved.mesh, None, &raw, &bounds)?
-        }
-    };
+    let (logs, summary) = bounded_with(team, mesh, Some(rings.into_neighbours()), &raw, &bounds)?;
     Ok((logs, Summary { unfitted, ..summary }))
 }
 

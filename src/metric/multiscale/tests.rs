@@ -5,7 +5,7 @@ use crate::metric::Eigen;
 use crate::tasks::{Plan, Pool};
 
 fn options(complexity: f64) -> Options<'static> {
-    Options { recovery: Recovery::Fit, norm: Norm::default(), bounds: bounds(complexity), halved: None }
+    Options { recovery: Recovery::Fit, norm: Norm::default(), bounds: bounds(complexity) }
 }
 
 fn bounds(complexity: f64) -> Bounds<'static> {
