@@ -10,7 +10,7 @@ use crate::geometry::{Entity, Evaluate, Evaluator, Geometry};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::sorted2;
 use crate::mesh::bisection::{Halved, bisect};
-use crate::mesh::vector::{Vec3, area2, distance, lerp, norm, sub, volume6};
+use crate::mesh::vector::{Vec3, distance, lerp, sub};
 use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::{Limits, Sym3, gradation};
 use crate::tasks::{GRAIN, Team, stage};
