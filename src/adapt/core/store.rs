@@ -325,7 +325,7 @@ fn take_at(
 #[cfg(test)]
 impl Store {
     /// Moves a vertex, whatever that inverts.
-    pub fn displace(&self, v: VertexId, to: Vec3) {
+    pub fn displace(&self, v: VertexId, to: crate::mesh::vector::Vec3) {
         self.set_position(v, to);
     }
 

@@ -184,12 +184,9 @@ fn solids(filled: &Tetrahedra) -> Vec<Option<i32>> {
         }
     }
     let is_void = |region: usize| region == 0 || is_alternating && depth[region].is_some_and(|depth| depth % 2 == 0);
-    let mut last = 0;
-    let mut number = |region: usize| {
-        (!is_void(region)).then(|| {
-            last += 1;
-            last
-        })
-    };
-    (0..count).map(|region| number(region)).collect()
+    let mut numbers = vec![None; count];
+    for (number, region) in (1..).zip((0..count).filter(|&region| !is_void(region))) {
+        numbers[region] = Some(number);
+    }
+    numbers
 }
