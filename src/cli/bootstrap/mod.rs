@@ -25,7 +25,6 @@ use super::adapt::report::Asked;
 use super::interrupt::{self, Interrupted};
 use super::workplace::Workplace;
 use super::{Outcome, load};
-use crate::geometry::classify::associate;
 use crate::geometry::{Geometry, Model};
 use crate::tasks::{Plan, Pool, Team, stage};
 use arguments::DOMAIN;
@@ -146,7 +145,7 @@ fn write_as_it_is(arguments: &Arguments, meshed: &Meshed, model: &Model, targets
         Model::Discrete(surface) => surface.restore(&mut mesh, &meshed.place),
         #[cfg(feature = "occt")]
         Model::Occt(_) => {
-            associate(&mut mesh, &meshed.place);
+            crate::geometry::classify::associate(&mut mesh, &meshed.place);
         }
     }
     targets.write_mesh(&mesh, model.names())?;
