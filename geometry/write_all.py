@@ -2,7 +2,7 @@
 
     write_all.py [-o FOLDER] [NAME ...]
 
-Those of the scripts in this folder come to FOLDER (default: here), those of zoo/ to FOLDER/zoo.
+Those of the scripts in this folder come to FOLDER (default: here), those of aircraft/ and zoo/ to FOLDER/aircraft and FOLDER/zoo.
 """
 
 import argparse
@@ -22,6 +22,8 @@ def models():
     for script in sorted(HERE.glob("*.py")):
         if script.stem not in NO_MODELS:
             found[script.stem.replace("_", "-")] = (importlib.import_module(script.stem).build, "")
+    for script in sorted((HERE / "aircraft").glob("[!_]*.py")):
+        found[script.stem.replace("_", "-")] = (importlib.import_module(f"aircraft.{script.stem}").build, "aircraft")
     for script in sorted((HERE / "zoo").glob("*.py")):
         for name, build in getattr(importlib.import_module(f"zoo.{script.stem}"), "MODELS", {}).items():
             if name in found:

@@ -68,7 +68,7 @@ fn bodies_that_touch_along_no_edge_are_filled_one_by_one() {
     let flaws = validity::check(&mesh).flaws;
     assert!(flaws.iter().all(|flaw| flaw.kind == FlawKind::CrossingTriangles), "{flaws:?}");
     assert_eq!(faces(&mesh), 25);
-    assert_eq!(mesh.tets.refs.iter().collect::<BTreeSet<_>>().len(), 3);
+    assert_eq!(mesh.tets.refs.iter().collect::<BTreeSet<_>>().len(), 4);
 }
 
 /// Faces without wires get the seams and poles of a whole surface.

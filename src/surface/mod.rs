@@ -113,7 +113,7 @@ const TURNED: usize = 3;
 const ATTEMPTS: [(f64, f64); 7] =
     [(1.2, 1.4), (1.5, 0.8), (0.85, 1.0), (1.0, 0.7), (0.85, 1.6), (0.7, 1.0), (2.0, 1.0)];
 /// No further attempt is made where the first has more triangles.
-const LARGE: usize = 100_000;
+const LARGE: usize = 20_000;
 /// So many pairs that cross are a fault of the model: no division helps.
 const MANY: usize = 3_000;
 /// Wishes of a face at most.

@@ -31,17 +31,19 @@ pub fn is_surface(path: &Path) -> bool {
 pub fn run(team: Team<'_>, arguments: &Arguments, limit: Duration) -> Result<(Model, Meshed), String> {
     let named = |error: String| format!("{}: {error}", arguments.model.display());
     let read = read_surface(team, &arguments.model).map_err(|error| error.to_string())?;
-    let surface = alone(read.content);
+    let mut surface = alone(read.content);
     check_closed(&surface).map_err(named)?;
-    let (discrete, on) =
-        Discrete::new(team, &surface, &arguments.patches()).map_err(|error| named(error.to_string()))?;
     let end = Instant::now().checked_add(limit);
     let go_on = || end.is_none_or(|end| Instant::now() < end);
     let (points, triangles) = (&surface.vertices, &surface.triangles.nodes);
-    let filled = tetrahedralise(points, triangles, &mut FlatWhile(&go_on), delaunay::Options::default())
+    let mut filled = tetrahedralise(points, triangles, &mut FlatWhile(&go_on), delaunay::Options::default())
         .map_err(|error| named(describe(&error, &surface)))?;
+    let solids = solids(&filled);
+    look_out(&mut surface, &mut filled, &solids);
+    let (discrete, on) =
+        Discrete::new(team, &surface, &arguments.patches()).map_err(|error| named(error.to_string()))?;
     let model = Model::Discrete(discrete);
-    let (mesh, on_model) = meshed(&model, &surface, &on, &filled);
+    let (mesh, on_model) = meshed(&model, &surface, &on, (&filled, &solids));
     let (mesh, place) = judge(team, mesh, &model, Some(on_model)).map_err(named)?;
     Ok((model, Meshed { mesh, place, by: Rung::Own, notices: read.notices }))
 }
@@ -110,14 +112,18 @@ fn describe(error: &delaunay::Error, surface: &TetMesh) -> String {
 }
 
 /// The mesh, and where its vertices belong on the model.
-fn meshed(model: &Model, surface: &TetMesh, on: &Classification, filled: &Tetrahedra) -> (TetMesh, Vec<Vec3>) {
+fn meshed(
+    model: &Model,
+    surface: &TetMesh,
+    on: &Classification,
+    (filled, solids): (&Tetrahedra, &[Option<i32>]),
+) -> (TetMesh, Vec<Vec3>) {
     let mut mesh = TetMesh { vertices: filled.points.clone(), ..TetMesh::default() };
     mesh.vertex_refs = surface.vertex_refs.clone();
     mesh.vertex_refs.resize(mesh.vertices.len(), 0);
     for (nodes, source) in filled.triangles.iter().zip(&filled.source) {
         mesh.triangles.push(*nodes, surface.triangles.refs[*source as usize]);
     }
-    let solids = solids(filled);
     for (nodes, region) in filled.tets.iter().zip(&filled.regions) {
         if let Some(solid) = solids[*region as usize] {
             mesh.tets.push(*nodes, solid);
@@ -156,6 +162,23 @@ fn on_model(model: &Model, on: &Classification, filled: &Tetrahedra) -> Vec<Vec3
         };
     }
     on_model
+}
+
+/// Turns triangles that look into a solid out of a void: programs write them in any orientation.
+fn look_out(surface: &mut TetMesh, filled: &mut Tetrahedra, solids: &[Option<i32>]) {
+    let mut is_turned = vec![false; surface.triangles.len()];
+    let parts = filled.triangles.iter_mut().zip(&mut filled.sides).zip(&filled.source);
+    for ((nodes, sides), &source) in parts {
+        let [before, behind] = sides.map(|region| solids[region as usize]);
+        if before.is_some() && behind.is_none() {
+            nodes.swap(1, 2);
+            sides.swap(0, 1);
+            is_turned[source as usize] = true;
+        }
+    }
+    for (nodes, _) in surface.triangles.nodes.iter_mut().zip(is_turned).filter(|(_, is_turned)| *is_turned) {
+        nodes.swap(1, 2);
+    }
 }
 
 /// The number of the solid that each region is; none for the outside and for voids. Where all edges have two triangles, each closed part

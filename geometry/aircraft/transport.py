@@ -6,8 +6,6 @@ Lengths are metres; x goes aft, y to the right wing's tip, z up. All is made for
 import functools
 import math
 
-import step
-
 # Bodies: control points (x, half-width, top, height of the greatest width, bottom) of Bézier curves, one list a segment.
 NOSE = [
     [(0, 0, -0.55, -0.55, -0.55), (0, 0.62, 0.1, -0.55, -1.15), (1.0, 1.1, 0.6, -0.45, -1.5), (2.0, 1.4, 1.1, -0.3, -1.7)],
@@ -245,7 +243,3 @@ def build():
 
     faces = skin()
     return cadquery.Workplane().add(solid(faces + [face.mirror("XZ") for face in faces]))
-
-
-if __name__ == "__main__":
-    step.main(build, "transport")

@@ -1,0 +1,1 @@
+"""Aircraft; write_all.py writes their files here."""
