@@ -119,7 +119,7 @@ fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Target
     }
     let team = Team::new(pool, Plan::default());
     let limit = Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX);
-    let (model, meshed) = triangles::run(team, arguments, limit)?;
+    let (model, meshed) = triangles::run(team, &arguments.model, &arguments.patches(), limit)?;
     stage("meshed");
     if arguments.no_adapt {
         return write_as_it_is(arguments, &meshed, &model, targets);

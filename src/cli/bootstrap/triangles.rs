@@ -1,11 +1,11 @@
 //! The first mesh of a surface that is given as triangles, as of a scan or an STL file: its constrained Delaunay tetrahedra.
-use super::arguments::Arguments;
 use super::ladder::{Meshed, judge};
 use super::rung::Rung;
 use crate::cli::table::place;
 use crate::delaunay::{self, FlatWhile, Origin, PointError, Tetrahedra, tetrahedralise};
 use crate::formats::read_surface;
 use crate::geometry::classify::Classification;
+use crate::geometry::discrete::DiscreteOptions;
 use crate::geometry::{Discrete, Evaluate, Geometry, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::sorted2;
@@ -28,9 +28,9 @@ pub fn is_surface(path: &Path) -> bool {
 ///
 /// # Errors
 /// When it is no surface, is not closed, or crosses itself: where, and what to do.
-pub fn run(team: Team<'_>, arguments: &Arguments, limit: Duration) -> Result<(Model, Meshed), String> {
-    let named = |error: String| format!("{}: {error}", arguments.model.display());
-    let read = read_surface(team, &arguments.model).map_err(|error| error.to_string())?;
+pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Duration) -> Result<(Model, Meshed), String> {
+    let named = |error: String| format!("{}: {error}", path.display());
+    let read = read_surface(team, path).map_err(|error| error.to_string())?;
     let mut surface = alone(read.content);
     check_closed(&surface).map_err(named)?;
     let end = Instant::now().checked_add(limit);
@@ -40,8 +40,7 @@ pub fn run(team: Team<'_>, arguments: &Arguments, limit: Duration) -> Result<(Mo
         .map_err(|error| named(describe(&error, &surface)))?;
     let solids = solids(&filled);
     look_out(&mut surface, &mut filled, &solids);
-    let (discrete, on) =
-        Discrete::new(team, &surface, &arguments.patches()).map_err(|error| named(error.to_string()))?;
+    let (discrete, on) = Discrete::new(team, &surface, options).map_err(|error| named(error.to_string()))?;
     let model = Model::Discrete(discrete);
     let (mesh, on_model) = meshed(&model, &surface, &on, (&filled, &solids));
     let (mesh, place) = judge(team, mesh, &model, Some(on_model)).map_err(named)?;
