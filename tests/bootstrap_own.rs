@@ -71,6 +71,14 @@ fn bodies_that_touch_along_no_edge_are_filled_one_by_one() {
     assert_eq!(mesh.tets.refs.iter().collect::<BTreeSet<_>>().len(), 4);
 }
 
+/// Points that were added in a void, as in the cone that is taken out of this box, belong to no tetrahedron of the mesh.
+#[test]
+fn points_that_were_added_in_a_void_are_left_out() {
+    let mesh = meshed(&here("geometry/zoo/cone-in-box.step"), &["--no-adapt"]);
+    check_valid(&mesh, "cone-in-box");
+    assert_eq!(faces(&mesh), 8);
+}
+
 /// Faces without wires get the seams and poles of a whole surface.
 #[test]
 fn faces_without_wires_are_whole() {

@@ -16,6 +16,7 @@ mod refine;
 mod rung;
 mod solids;
 mod triangles;
+mod unused;
 mod wish;
 
 pub use arguments::Arguments;

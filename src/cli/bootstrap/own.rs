@@ -1,6 +1,7 @@
 //! Our own first mesh: a triangulation of the model's surface, and the constrained Delaunay tetrahedra of that.
 mod bodies;
 
+use super::unused::drop_unused;
 use crate::cli::table::place;
 use crate::delaunay::{self, Origin, Placement, PointError, Tetrahedra, tetrahedralise};
 use crate::geometry::{Evaluate, Geometry, Model};
@@ -226,6 +227,7 @@ fn meshed(model: &Model, surface: &Surface, filled: &Tetrahedra) -> Own {
     let mut ridges: Vec<([u32; 2], u32)> = pieces.into_iter().collect();
     ridges.sort_unstable();
     ridges.into_iter().for_each(|(nodes, edge)| mesh.edges.push(nodes, edge as i32 + 1));
+    drop_unused(&mut mesh, &mut on_model);
     Own { mesh, on_model }
 }
 

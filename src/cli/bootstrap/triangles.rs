@@ -1,6 +1,7 @@
 //! The first mesh of a surface that is given as triangles, as of a scan or an STL file: its constrained Delaunay tetrahedra.
 use super::ladder::{Meshed, judge};
 use super::rung::Rung;
+use super::unused::drop_unused;
 use crate::cli::table::place;
 use crate::delaunay::{self, FlatWhile, Origin, PointError, Tetrahedra, tetrahedralise};
 use crate::formats::read_surface;
@@ -133,7 +134,8 @@ fn meshed(
     let mut keep = filled.sides.iter().map(bounds);
     let triangles = std::mem::take(&mut mesh.triangles);
     triangles.iter().filter(|_| keep.next() == Some(true)).for_each(|(nodes, r)| mesh.triangles.push(nodes, r));
-    let on_model = on_model(model, on, filled);
+    let mut on_model = on_model(model, on, filled);
+    drop_unused(&mut mesh, &mut on_model);
     (mesh, on_model)
 }
 
