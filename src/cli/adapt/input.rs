@@ -358,7 +358,8 @@ impl InputArguments {
         let (place, report) = classify::classify(team, mesh, &model, &options)
             .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
         model.adopt_references(mesh, &place);
-        notices.extend(report.notices);
+        // What a file says of numbers is said of a CAD model's: a surface has none that last.
+        notices.extend(report.notices.into_iter().filter(|_| self.cad.is_some()));
         Ok((model, place))
     }
 }

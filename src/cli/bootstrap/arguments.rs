@@ -85,6 +85,16 @@ impl Arguments {
         Ok((targets, log))
     }
 
+    /// Refuses what is said of triangles where the model is no surface of them.
+    pub fn check_cad(&self) -> Result<(), String> {
+        let option = match (self.ridge_angle, self.flat_surface) {
+            (Some(_), _) => "--ridge-angle",
+            (None, true) => "--flat-surface",
+            (None, false) => return Ok(()),
+        };
+        Err(format!("{}: {option} is for a surface of triangles; leave it out", self.model.display()))
+    }
+
     /// How triangles become a model.
     pub fn patches(&self) -> DiscreteOptions {
         DiscreteOptions { ridge_angle_deg: self.ridge_angle.unwrap_or(DEFAULT_RIDGE_ANGLE), smooth: !self.flat_surface }

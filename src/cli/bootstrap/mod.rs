@@ -3,6 +3,7 @@
 //! Our own mesher makes some valid mesh of the model (`own`; `triangles` of a surface of triangles), and where it fails another one that is
 //! started as a program (`ladder`); our own kernel adapts it to the metric of the geometry (`refine`). The model goes to other programs as we
 //! have it in memory, so that its numbers of faces, edges and solids are ours.
+mod added;
 mod arguments;
 pub mod domain;
 mod gmsh;
@@ -48,6 +49,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if triangles::is_surface(&arguments.model) {
         return of_triangles(arguments, &pool, (&targets, threads), start);
     }
+    arguments.check_cad()?;
     let domain = arguments.far_field.as_ref();
     let domain = domain.map(|spec| domain::build(&arguments.model, spec, arguments.symmetry, &place.file(DOMAIN)));
     let domain = domain.transpose()?;

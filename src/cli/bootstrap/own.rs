@@ -1,15 +1,16 @@
 //! Our own first mesh: a triangulation of the model's surface, and the constrained Delaunay tetrahedra of that.
 mod bodies;
 
+use super::added;
 use super::unused::drop_unused;
 use crate::cli::table::place;
-use crate::delaunay::{self, Origin, Placement, PointError, Tetrahedra, tetrahedralise};
-use crate::geometry::{Evaluate, Geometry, Model};
+use crate::delaunay::{self, FlatWhile, PointError, Tetrahedra, tetrahedralise};
+use crate::geometry::{Entity, Geometry, Model};
 use crate::mesh::adjacency::sorted2;
 use crate::mesh::vector::{Vec3, area2, dot, unit};
 use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
 use crate::surface::{Options, Place, Surface, triangulate};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
 /// A mesh whose surface is made of flat triangles between points of the model.
@@ -27,8 +28,9 @@ pub struct Own {
 pub fn run(model: &Model, limit: Duration) -> Result<Option<Own>, String> {
     let Model::Occt(cad) = model else { return Err("it is no CAD model".into()) };
     let options = Options::new(model.topology().diagonal());
-    let end = Instant::now() + limit.min(DAY);
-    let Some(surface) = triangulate(cad, &options, &|| Instant::now() < end) else { return Ok(None) };
+    let end = Instant::now().checked_add(limit);
+    let go_on = || end.is_none_or(|end| Instant::now() < end);
+    let Some(surface) = triangulate(cad, &options, &go_on) else { return Ok(None) };
     crate::tasks::stage("surface");
     if let Some(face) = surface.missing.first() {
         let count = surface.missing.len();
@@ -37,9 +39,8 @@ pub fn run(model: &Model, limit: Duration) -> Result<Option<Own>, String> {
     let mut own: Option<Own> = None;
     for mut surface in parts(surface)? {
         merge(&mut surface);
-        let mut within = Within(end);
-        let filled = tetrahedralise(&surface.points, &surface.triangles, &mut within, delaunay::Options::default());
-        let filled = match filled {
+        let (points, triangles) = (&surface.points, &surface.triangles);
+        let filled = match tetrahedralise(points, triangles, &mut FlatWhile(&go_on), delaunay::Options::default()) {
             Err(delaunay::Error::Stopped) => return Ok(None),
             filled => filled.map_err(|error| describe(&error, &surface))?,
         };
@@ -132,26 +133,6 @@ fn merge(surface: &mut Surface) {
     (surface.points, surface.places) = (points, places);
 }
 
-/// A limit that is none.
-const DAY: Duration = Duration::from_secs(86_400);
-
-/// Added points lie on the flat triangles, up to this time.
-struct Within(Instant);
-
-impl Placement for Within {
-    fn on_edge(&mut self, _: u32, _: [u32; 2], _: f64, straight: Vec3) -> Vec3 {
-        straight
-    }
-
-    fn in_triangle(&mut self, _: u32, _: [u32; 3], _: [f64; 3], straight: Vec3) -> Vec3 {
-        straight
-    }
-
-    fn go_on(&mut self) -> bool {
-        Instant::now() < self.0
-    }
-}
-
 /// An error in the words of the model.
 fn describe(error: &delaunay::Error, surface: &Surface) -> String {
     let face = |t: u32| surface.faces[t as usize] + 1;
@@ -198,35 +179,20 @@ fn meshed(model: &Model, surface: &Surface, filled: &Tetrahedra) -> Own {
     for (place, vertex) in surface.places.iter().zip(0..) {
         associate(&mut mesh, vertex, *place);
     }
-    let (mut evaluator, mut on_model) = (model.evaluator(), mesh.vertices.clone());
-    let mut pieces: HashMap<[u32; 2], u32> = HashMap::new();
+    let mut on_model = mesh.vertices.clone();
+    let mut curves: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     for (chain, edge) in surface.chains.iter().zip(0..) {
-        pieces.extend(chain.windows(2).map(|ends| (sorted2([ends[0], ends[1]]), edge)));
+        curves.extend(chain.windows(2).map(|ends| (sorted2([ends[0], ends[1]]), edge)));
     }
-    let mut face_of = vec![u32::MAX; mesh.vertices.len()];
-    for (nodes, source) in filled.triangles.iter().zip(&filled.source) {
-        nodes.iter().for_each(|&v| face_of[v as usize] = surface.faces[*source as usize]);
-    }
-    for (added, vertex) in filled.added.iter().zip(surface.points.len() as u32..) {
-        let edge = match added.origin {
-            Origin::Edge([a, b]) => pieces.remove(&sorted2([a, b])).map(|edge| ([a, b], edge)),
-            Origin::Triangle(_) | Origin::Inside => None,
-        };
-        if let Some((ends, edge)) = edge {
-            pieces.extend(ends.map(|end| (sorted2([end, vertex]), edge)));
-            let on = evaluator.closest_on_edge(edge, added.point, None);
-            on_model[vertex as usize] = on.point;
-            associate(&mut mesh, vertex, Place::Edge(edge, on.t));
-        } else if face_of[vertex as usize] != u32::MAX {
-            let face = face_of[vertex as usize];
-            let on = evaluator.closest_on_face(face, added.point, None);
-            on_model[vertex as usize] = on.point;
-            associate(&mut mesh, vertex, Place::Face(face, on.uv));
+    for added in added::places(model, filled, |triangle| surface.faces[triangle as usize], &mut curves) {
+        on_model[added.vertex as usize] = added.point;
+        match added.entity {
+            Entity::Edge(edge) => associate(&mut mesh, added.vertex, Place::Edge(edge, added.parameters[0])),
+            Entity::Face(face) => associate(&mut mesh, added.vertex, Place::Face(face, added.parameters)),
+            Entity::Vertex(_) | Entity::Interior => {}
         }
     }
-    let mut ridges: Vec<([u32; 2], u32)> = pieces.into_iter().collect();
-    ridges.sort_unstable();
-    ridges.into_iter().for_each(|(nodes, edge)| mesh.edges.push(nodes, edge as i32 + 1));
+    curves.into_iter().for_each(|(nodes, edge)| mesh.edges.push(nodes, edge as i32 + 1));
     drop_unused(&mut mesh, &mut on_model);
     Own { mesh, on_model }
 }

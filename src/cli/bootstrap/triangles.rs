@@ -1,18 +1,18 @@
 //! The first mesh of a surface that is given as triangles, as of a scan or an STL file: its constrained Delaunay tetrahedra.
+use super::added;
 use super::ladder::{Meshed, judge};
 use super::rung::Rung;
-use super::unused::drop_unused;
+use super::unused::{drop_unused, keep_used};
 use crate::cli::table::place;
-use crate::delaunay::{self, FlatWhile, Origin, PointError, Tetrahedra, tetrahedralise};
+use crate::delaunay::{self, FlatWhile, PointError, Tetrahedra, tetrahedralise};
 use crate::formats::read_surface;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::DiscreteOptions;
-use crate::geometry::{Discrete, Evaluate, Geometry, Model};
+use crate::geometry::{Discrete, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::sorted2;
 use crate::mesh::vector::{Vec3, lerp};
 use crate::tasks::Team;
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -50,20 +50,9 @@ pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Durati
 
 /// The triangles of a mesh with their vertices and what is listed on them.
 fn alone(mesh: TetMesh) -> TetMesh {
-    const NONE: u32 = u32::MAX;
-    let mut number = vec![NONE; mesh.vertices.len()];
-    mesh.triangles.nodes.iter().flatten().for_each(|&v| number[v as usize] = 0);
-    let mut surface = TetMesh::default();
-    for (v, new) in number.iter_mut().enumerate().filter(|(_, new)| **new != NONE) {
-        *new = surface.vertices.len() as u32;
-        surface.vertices.push(mesh.vertices[v]);
-        surface.vertex_refs.push(mesh.vertex_refs[v]);
-    }
-    let renumber = |v: u32| number[v as usize];
-    mesh.triangles.iter().for_each(|(nodes, reference)| surface.triangles.push(nodes.map(renumber), reference));
-    let edges = mesh.edges.iter().map(|(nodes, reference)| (nodes.map(renumber), reference));
-    edges.filter(|(nodes, _)| !nodes.contains(&NONE)).for_each(|(nodes, r)| surface.edges.push(nodes, r));
-    surface.corners = mesh.corners.iter().map(|&v| renumber(v)).filter(|&v| v != NONE).collect();
+    let TetMesh { vertices, vertex_refs, triangles, edges, corners, .. } = mesh;
+    let mut surface = TetMesh { vertices, vertex_refs, triangles, edges, corners, ..TetMesh::default() };
+    keep_used(&mut surface);
     surface
 }
 
@@ -121,48 +110,24 @@ fn meshed(
     let mut mesh = TetMesh { vertices: filled.points.clone(), ..TetMesh::default() };
     mesh.vertex_refs = surface.vertex_refs.clone();
     mesh.vertex_refs.resize(mesh.vertices.len(), 0);
-    for (nodes, source) in filled.triangles.iter().zip(&filled.source) {
-        mesh.triangles.push(*nodes, surface.triangles.refs[*source as usize]);
+    for ((nodes, source), sides) in filled.triangles.iter().zip(&filled.source).zip(&filled.sides) {
+        // What lies between two regions without tetrahedra bounds nothing.
+        if sides.iter().any(|&region| solids[region as usize].is_some()) {
+            mesh.triangles.push(*nodes, surface.triangles.refs[*source as usize]);
+        }
     }
     for (nodes, region) in filled.tets.iter().zip(&filled.regions) {
         if let Some(solid) = solids[*region as usize] {
             mesh.tets.push(*nodes, solid);
         }
     }
-    // What lies between two regions without tetrahedra bounds nothing.
-    let bounds = |sides: &[u32; 2]| sides.iter().any(|&region| solids[region as usize].is_some());
-    let mut keep = filled.sides.iter().map(bounds);
-    let triangles = std::mem::take(&mut mesh.triangles);
-    triangles.iter().filter(|_| keep.next() == Some(true)).for_each(|(nodes, r)| mesh.triangles.push(nodes, r));
-    let mut on_model = on_model(model, on, filled);
+    let mut on_model = filled.points.clone();
+    let mut curves = on.ridges.iter().map(|&(nodes, edge)| (sorted2(nodes), edge)).collect();
+    for added in added::places(model, filled, |triangle| on.faces[triangle as usize], &mut curves) {
+        on_model[added.vertex as usize] = added.point;
+    }
     drop_unused(&mut mesh, &mut on_model);
     (mesh, on_model)
-}
-
-/// The place of each vertex on the model: added ones lie on flat triangles.
-fn on_model(model: &Model, on: &Classification, filled: &Tetrahedra) -> Vec<Vec3> {
-    let (mut evaluator, mut on_model) = (model.evaluator(), filled.points.clone());
-    let mut curves: BTreeMap<[u32; 2], u32> = on.ridges.iter().map(|&(nodes, edge)| (sorted2(nodes), edge)).collect();
-    let mut face_of = vec![None; filled.points.len()];
-    for (nodes, source) in filled.triangles.iter().zip(&filled.source) {
-        nodes.iter().for_each(|&v| face_of[v as usize] = Some(on.faces[*source as usize]));
-    }
-    let first = filled.points.len() - filled.added.len();
-    for (added, vertex) in filled.added.iter().zip(first..) {
-        let curve = match added.origin {
-            Origin::Edge(ends) => curves.remove(&sorted2(ends)).map(|edge| (ends, edge)),
-            Origin::Triangle(_) | Origin::Inside => None,
-        };
-        on_model[vertex] = match (curve, face_of[vertex]) {
-            (Some((ends, edge)), _) => {
-                curves.extend(ends.map(|end| (sorted2([end, vertex as u32]), edge)));
-                evaluator.closest_on_edge(edge, added.point, None).point
-            }
-            (None, Some(face)) => evaluator.closest_on_face(face, added.point, None).point,
-            (None, None) => added.point,
-        };
-    }
-    on_model
 }
 
 /// Turns triangles that look into a solid out of a void: programs write them in any orientation.

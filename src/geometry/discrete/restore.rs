@@ -2,6 +2,7 @@
 use super::Discrete;
 use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
+use crate::mesh::adjacency::sorted2;
 use crate::mesh::{Association, TetMesh};
 
 impl Discrete {
@@ -25,12 +26,11 @@ impl Discrete {
         for (own, found) in self.face_refs.iter_mut().zip(found) {
             *own = found.flatten().unwrap_or(*own);
         }
-        let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-        let mut listed: Vec<([u32; 2], i32)> = mesh.edges.iter().map(|(nodes, r)| (sorted(nodes), r)).collect();
+        let mut listed: Vec<([u32; 2], i32)> = mesh.edges.iter().map(|(nodes, r)| (sorted2(nodes), r)).collect();
         listed.sort_unstable();
         let mut found = vec![None; self.edge_refs.len()];
         for &(nodes, edge) in &place.ridges {
-            if let Ok(at) = listed.binary_search_by_key(&sorted(nodes), |entry| entry.0) {
+            if let Ok(at) = listed.binary_search_by_key(&sorted2(nodes), |entry| entry.0) {
                 note(&mut found[edge as usize], listed[at].1);
             }
         }

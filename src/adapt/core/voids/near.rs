@@ -67,7 +67,7 @@ impl Voids {
 }
 
 /// How long edges may get.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 enum Until {
     /// By [`GROWTH`], but no longer than the metric allows.
     Growth,
