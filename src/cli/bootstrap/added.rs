@@ -6,6 +6,7 @@ use crate::mesh::vector::Vec3;
 use std::collections::BTreeMap;
 
 /// The place of an added point.
+#[cfg_attr(not(feature = "occt"), expect(dead_code, reason = "triangles take the point alone"))]
 pub struct OnModel {
     /// Its number.
     pub vertex: u32,
