@@ -27,11 +27,63 @@ impl Segment {
     }
 }
 
+/// How parameters become a plane in which lengths and angles are on the average those in space: x = a·u + s·v, y = b·v.
+#[derive(Clone, Copy, Debug)]
+pub struct Scale {
+    a: f64,
+    s: f64,
+    b: f64,
+}
+
+impl Default for Scale {
+    fn default() -> Self {
+        Self { a: 1.0, s: 0.0, b: 1.0 }
+    }
+}
+
+impl Scale {
+    /// Cosines of the angle between the lines of u and v below which they count as upright, and above which as this.
+    const SKEW: [f64; 2] = [0.3, 0.995];
+
+    fn of_face(on: &mut OcctEvaluator, range: [[f64; 2]; 2], face: u32) -> Self {
+        let (mut sums, mut skew) = ([0.0; 2], 0.0);
+        let mut count = 0.0;
+        for i in 0..5 {
+            for j in 0..5 {
+                let at = |k: usize, i: usize| range[k][0] + (range[k][1] - range[k][0]) * (0.1 + 0.2 * i as f64);
+                let jet = on.surface(face, [at(0, i), at(1, j)]);
+                let [u, v] = [norm(jet.du), norm(jet.dv)];
+                if u.is_finite() && v.is_finite() {
+                    sums = [sums[0] + u, sums[1] + v];
+                    skew += dot(jet.du, jet.dv);
+                    count += 1.0;
+                }
+            }
+        }
+        let [a, v] = sums.map(|sum| if sum > 0.0 { sum / count } else { 1.0 });
+        let cosine = skew / (count * a * v);
+        let [least, most] = Self::SKEW;
+        let cosine = if cosine.abs() > least { cosine.clamp(-most, most) } else { 0.0 };
+        Self { a, s: v * cosine, b: v * (1.0 - cosine * cosine).sqrt() }
+    }
+
+    /// The place of parameters in the plane.
+    pub fn place(&self, [u, v]: Point) -> Point {
+        [self.a * u + self.s * v, self.b * v]
+    }
+
+    /// The parameters of a place in the plane.
+    pub fn parameters(&self, [x, y]: Point) -> Point {
+        let v = y / self.b;
+        [(x - self.s * v) / self.a, v]
+    }
+}
+
 /// The border of a face.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
-    /// Lengths in space of u and v, by which the plane is scaled.
-    pub scale: Point,
+    /// How the plane is scaled.
+    pub scale: Scale,
     /// Corners in the scaled plane.
     pub corners: Vec<Point>,
     /// The point of each corner among all points; several corners may have one.
@@ -71,7 +123,7 @@ pub fn outline(
 ) -> Option<Outline> {
     let topology = model.topology();
     let uses = model.edge_uses(face);
-    let mut border = Outline { scale: scale_of(on, topology.faces[face as usize].range, face), ..Outline::default() };
+    let mut border = Outline { scale: Scale::of_face(on, topology.faces[face as usize].range, face), ..Outline::default() };
     let mut lines = Vec::new();
     for of in uses.into_iter().filter(|of| of.way != Use::External) {
         let entity = &topology.edges[of.edge as usize];
@@ -89,7 +141,8 @@ pub fn outline(
         }
         let uv = parameters(model, on, face, of, &t)?;
         let first = border.corners.len() as u32;
-        border.corners.extend(uv.iter().map(|uv| [0, 1].map(|k: usize| uv[k] * border.scale[k])));
+        let scale = border.scale;
+        border.corners.extend(uv.into_iter().map(|uv| scale.place(uv)));
         border.points.extend(ids);
         lines.push(Line {
             of,
@@ -99,29 +152,11 @@ pub fn outline(
     }
     for vertex in model.loose_vertices(face) {
         let at = on.closest_on_face(face, topology.vertices.get(vertex as usize)?.point, None);
-        border.corners.push([0, 1].map(|k: usize| at.uv[k] * border.scale[k]));
+        border.corners.push(border.scale.place(at.uv));
         border.points.push(points.of_vertex(vertex));
     }
     join(&mut border, &lines);
     Some(border)
-}
-
-/// Lengths of u and v in space, on the average.
-fn scale_of(on: &mut OcctEvaluator, range: [[f64; 2]; 2], face: u32) -> Point {
-    let mut sums = [0.0; 2];
-    let mut count = 0.0;
-    for i in 0..5 {
-        for j in 0..5 {
-            let at = |k: usize, i: usize| range[k][0] + (range[k][1] - range[k][0]) * (0.1 + 0.2 * i as f64);
-            let jet = on.surface(face, [at(0, i), at(1, j)]);
-            let [u, v] = [norm(jet.du), norm(jet.dv)];
-            if u.is_finite() && v.is_finite() {
-                sums = [sums[0] + u, sums[1] + v];
-                count += 1.0;
-            }
-        }
-    }
-    sums.map(|sum| if sum > 0.0 { sum / count } else { 1.0 })
 }
 
 /// Parameters on the face of points of an edge.

@@ -1,5 +1,5 @@
 //! Triangles between the corners of a border that bounds nothing in the plane of the parameters: the surface is closed all the same.
-use super::outline::Outline;
+use super::outline::{Outline, Scale};
 use super::patch::Patch;
 use super::points::Points;
 use crate::geometry::OcctEvaluator;
@@ -31,7 +31,7 @@ fn in_its_plane(on: &mut OcctEvaluator, face: u32, outline: &Outline, points: &P
     let x = unit(cross(axis, normal));
     let y = cross(normal, x);
     let mut flat = outline.clone();
-    flat.scale = [1.0; 2];
+    flat.scale = Scale::default();
     flat.corners =
         (0..outline.corners.len() as u32).map(|c| [dot(sub(at(c), first), x), dot(sub(at(c), first), y)]).collect();
     let mut patch = Patch::new(on, face, &flat, points).ok()?;

@@ -93,6 +93,12 @@ fn splines_threads_of_edges_and_tiny_faces() {
     }
 }
 
+/// The side of its pylon is a strip whose lines of u and v meet at 13 degrees: in an upright plane its triangles folded in space.
+#[test]
+fn parameters_that_are_skew_do_not_fold() {
+    check("aircraft/transport-half.step", 0.1);
+}
+
 #[test]
 fn bodies_that_touch_in_an_edge_are_divided_alike() {
     let surface = check("zoo/knife-edge.brep", 1e-9);

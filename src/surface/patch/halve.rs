@@ -24,7 +24,7 @@ impl Patch {
     }
 
     pub(super) fn unscaled(&self, at: Point) -> Point {
-        [at[0] / self.scale[0], at[1] / self.scale[1]]
+        self.scale.parameters(at)
     }
 
     /// Halves the edge opposite to corner i; not where rounding would turn a triangle over.

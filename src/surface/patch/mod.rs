@@ -3,7 +3,7 @@ mod halve;
 mod refine;
 mod turn;
 
-use super::outline::Outline;
+use super::outline::{Outline, Scale};
 use super::plane::{Conflict, NONE, Plane, Point, Region};
 use super::points::Points;
 use crate::geometry::OcctEvaluator;
@@ -21,7 +21,7 @@ const SMALL: f64 = 2e-3;
 pub struct Patch {
     /// Places in the scaled plane.
     plane: Vec<Point>,
-    scale: Point,
+    scale: Scale,
     /// Coordinates.
     pub at: Vec<Vec3>,
     /// Unit normals Su × Sv; zero where there is none.
@@ -158,7 +158,7 @@ impl Patch {
         let count = at.len();
         Self {
             plane: vec![[0.0; 2]; count],
-            scale: [1.0; 2],
+            scale: Scale::default(),
             at,
             normals: vec![[0.0; 3]; count],
             sizes: vec![f64::INFINITY; count],
@@ -183,8 +183,7 @@ impl Patch {
 
     /// Parameters of a corner.
     pub fn uv(&self, corner: u32) -> Point {
-        let at = self.plane[corner as usize];
-        [at[0] / self.scale[0], at[1] / self.scale[1]]
+        self.scale.parameters(self.plane[corner as usize])
     }
 
     fn spot(&self, corner: u32) -> Vec3 {
