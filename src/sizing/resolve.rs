@@ -25,6 +25,8 @@ const FINEST: f64 = 1.0 / 32.0;
 const SHORT: f64 = 4.0;
 /// How much finer interpolation may be than growth from the ends, in the middle of an edge.
 const WRONG: f64 = 1.5;
+/// A side of a triangle that is so many times as long as one that is halved is halved too.
+const LONGER: f64 = 1.25;
 /// Most rounds: each halves edges. A size is no less than 1e-16 of the mesh.
 const ROUNDS: usize = 64;
 /// Most vertices that are added, and so many times those of the mesh: where more are asked for, the metric is too fine for a first mesh, and
@@ -81,6 +83,27 @@ pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limit
         stage("geometry resolved");
     }
     found
+}
+
+/// Adds the longest side of each triangle that has one of these edges, where that is far longer: else halving gets no nearer to an end, as on a
+/// side whose thirds see one end each (longest-edge propagation, Rivara 1997).
+fn add_longer(mesh: &TetMesh, around: &VertexNeighbours, edges: &mut Vec<[u32; 2]>) {
+    let length = |a: u32, b: u32| distance(mesh.vertices[a as usize], mesh.vertices[b as usize]);
+    let mut marked: HashSet<[u32; 2]> = edges.iter().copied().collect();
+    let mut next = 0;
+    while next < edges.len() {
+        let [a, b] = edges[next];
+        next += 1;
+        let least = LONGER * length(a, b);
+        let beside_b = around.of_vertex(b);
+        for &c in around.of_vertex(a).iter().filter(|c| beside_b.contains(c)) {
+            let (to_a, to_b) = (length(a, c), length(b, c));
+            let (longest, side) = if to_a > to_b { (to_a, sorted2([a, c])) } else { (to_b, sorted2([b, c])) };
+            if longest > least && marked.insert(side) {
+                edges.push(side);
+            }
+        }
+    }
 }
 
 /// Where the middle of an edge lies.
@@ -162,6 +185,7 @@ impl Finer {
         }
         team.sort(&mut edges);
         edges.dedup();
+        add_longer(mesh, around, &mut edges);
         let length = |&[a, b]: &[u32; 2]| distance(mesh.vertices[a as usize], mesh.vertices[b as usize]);
         edges.sort_by(|a, b| length(b).total_cmp(&length(a)));
         edges

@@ -79,12 +79,14 @@ pub struct Surface {
     pub crossings: Vec<[u32; 2]>,
     /// How many triangles are flat to rounding.
     pub flat: usize,
+    /// How many triangles look away from their face.
+    pub turned: usize,
 }
 
 impl Surface {
     /// What is wrong with it: fewer is better.
     fn faults(&self) -> (usize, usize) {
-        (self.missing.len(), self.crossings.len() + self.flat)
+        (self.missing.len(), self.crossings.len() + self.flat + self.turned)
     }
 }
 

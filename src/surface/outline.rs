@@ -123,7 +123,8 @@ pub fn outline(
 ) -> Option<Outline> {
     let topology = model.topology();
     let uses = model.edge_uses(face);
-    let mut border = Outline { scale: Scale::of_face(on, topology.faces[face as usize].range, face), ..Outline::default() };
+    let mut border =
+        Outline { scale: Scale::of_face(on, topology.faces[face as usize].range, face), ..Outline::default() };
     let mut lines = Vec::new();
     for of in uses.into_iter().filter(|of| of.way != Use::External) {
         let entity = &topology.edges[of.edge as usize];

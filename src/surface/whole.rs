@@ -48,6 +48,7 @@ pub fn assemble(model: &OcctModel, points: &Points, faces: &[Face]) -> Surface {
         if face.is_rough {
             surface.rough.push(number);
         }
+        surface.turned += patch.turned_away().len();
         let mut ids = patch.points.clone();
         for (corner, id) in ids.iter_mut().enumerate().filter(|(_, id)| **id == NONE) {
             *id = surface.points.len() as u32;

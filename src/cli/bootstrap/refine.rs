@@ -61,6 +61,7 @@ pub fn run(
     let first = Arc::new(first);
     let (mut mesh, mut place) = (Arc::clone(&first), place);
     let mut sizes = self::sizes(arguments, team, &mesh, &place, model).map_err(named)?;
+    let mut settled = false;
     for cycle in 1..=MOST_CYCLES {
         stage("geometry");
         let progress = Progress::new(!arguments.quiet, stop);
@@ -68,10 +69,12 @@ pub fn run(
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
         let interrupted = progress.interrupted();
-        if cycle < MOST_CYCLES && !interrupted {
+        // Where the geometry asked for the same on two meshes it is not asked again.
+        if cycle < MOST_CYCLES && !interrupted && !settled {
             let result = (Arc::new(adapted.extracted.mesh.clone()), adapted.extracted.classification.clone());
             let next = self::sizes(arguments, team, &result.0, &result.1, model).map_err(named)?;
-            if cycle < CYCLES || !is_settled(sizes.complexity, next.complexity) {
+            settled = is_settled(sizes.complexity, next.complexity);
+            if cycle < CYCLES || !settled {
                 ((mesh, place), sizes) = (result, next);
                 continue;
             }

@@ -14,6 +14,7 @@ mod pieces;
 mod project;
 mod project_edges;
 mod range;
+mod side;
 mod spline;
 mod surface;
 mod swept;

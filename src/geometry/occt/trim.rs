@@ -1,14 +1,15 @@
-//! Which parameters lie in a trimmed face: told at once by a grid over its range, except in the cells that an edge
-//! crosses, where OCCT's classifier is asked.
+//! Which parameters lie in a trimmed face: told at once by a grid over its range, and in the cells that an edge crosses by what a line to another
+//! cell crosses. Where that does not tell, OCCT's classifier is asked.
 use super::curve::Curve;
 use super::evaluator::OcctEvaluator;
 use super::hull::{self, as_jet};
 use super::pieces::cuts;
-use crate::geometry::{FaceEntity, Topology};
+use super::side::{Piece, Sides};
+use crate::geometry::{EdgeUse, FaceEntity, Topology, Use};
 use crate::mesh::vector::Vec3;
 
 /// Cells of the grid in each direction.
-const CELLS: usize = 64;
+pub const CELLS: usize = 64;
 /// Pieces that an edge is cut into at least.
 const PIECES: usize = 64;
 /// How near to the border of the range, as a share of it, a p-curve must lie to be that border.
@@ -21,8 +22,8 @@ const GROWTH: f64 = 0.1;
 pub enum Trim {
     /// All of its range is inside.
     Whole,
-    /// By cells, those of v side by side.
-    Grid(Box<[[Place; CELLS]; CELLS]>),
+    /// By cells, those of v side by side, and by sides of the edges, where those tell something.
+    Grid(Box<[[Place; CELLS]; CELLS]>, Option<Sides>),
     /// Nothing: an edge has no copy of its p-curve.
     Unknown,
 }
@@ -42,9 +43,9 @@ impl Trim {
     /// Whether the parameters lie in the face, if that is known without asking OCCT. They lie in the face's range.
     #[inline]
     pub fn known(&self, face: &FaceEntity, uv: [f64; 2]) -> Option<bool> {
-        let grid = match self {
+        let (grid, sides) = match self {
             Self::Whole => return uv.iter().all(|x| x.is_finite()).then_some(true),
-            Self::Grid(grid) => grid,
+            Self::Grid(grid, sides) => (grid, sides),
             Self::Unknown => return None,
         };
         let share = |k: usize| (uv[k] - face.range[k][0]) / (face.range[k][1] - face.range[k][0]);
@@ -53,10 +54,23 @@ impl Trim {
             return None;
         }
         let cell = |s: f64| ((s * CELLS as f64) as usize).min(CELLS - 1);
-        match grid[cell(s)][cell(r)] {
+        let (i, j) = (cell(s), cell(r));
+        match grid[i][j] {
             Place::Inside => Some(true),
             Place::Outside => Some(false),
-            Place::Free | Place::Crossed => None,
+            Place::Free | Place::Crossed => {
+                let sides = sides.as_ref()?;
+                [0, 1].into_iter().find_map(|along| {
+                    // The nearest cell of the row or column that is known.
+                    let place = |k: usize| if along == 0 { grid[k][j] } else { grid[i][k] };
+                    let [own, cell] = [[i, j], [j, i]][along];
+                    let beside = |k: usize| [own.checked_sub(k), (own + k < CELLS).then_some(own + k)];
+                    let known = (1..CELLS).flat_map(beside).flatten().find(|&k| place(k) != Place::Crossed)?;
+                    let middle = (known as f64 + 0.5) / CELLS as f64;
+                    let is_inside = place(known) == Place::Inside;
+                    sides.is_same(along, cell, [s, r], middle).map(|is_same| is_same == is_inside)
+                })
+            }
         }
     }
 }
@@ -64,7 +78,7 @@ impl Trim {
 impl Trim {
     /// Whether no point of these parameters lies in the face, as far as that is known without asking OCCT.
     pub fn leaves_out(&self, face: &FaceEntity, bounds: [[f64; 2]; 2]) -> bool {
-        let Self::Grid(grid) = self else { return false };
+        let Self::Grid(grid, _) = self else { return false };
         let cells = |k: usize| {
             let [low, high] = face.range[k];
             let share = bounds[k].map(|x| (x - low) / (high - low) * CELLS as f64);
@@ -86,6 +100,7 @@ pub fn build(on: &mut OcctEvaluator, index: u32) -> Trim {
     let face = &topology.faces[index as usize];
     let mut boxes = Vec::new();
     let mut bordered = true;
+    let (mut all, mut ends) = (Sides::default(), Vec::new());
     for &edge in &face.edges {
         let Some(pcurve) = on.model.pcurves[edge as usize].iter().find(|pcurve| pcurve.face == index) else {
             return Trim::Unknown;
@@ -98,8 +113,16 @@ pub fn build(on: &mut OcctEvaluator, index: u32) -> Trim {
             if matches!(curve, Curve::General) {
                 return Trim::Unknown;
             }
-            let first = boxes.len();
-            pieces(topology, edge, curve, &mut boxes);
+            let (first, mut last) = (boxes.len(), [f64::NAN; 2]);
+            pieces(topology, edge, curve, |piece| {
+                boxes.push(piece.bounds());
+                all.add(piece, face.range, face.period);
+                if boxes.len() == first + 1 {
+                    ends.push(piece.ends[0]);
+                }
+                last = piece.ends[1];
+            });
+            ends.push(last);
             bordered &= is_border(face, &boxes[first..]);
         }
     }
@@ -110,14 +133,19 @@ pub fn build(on: &mut OcctEvaluator, index: u32) -> Trim {
     let topology = &on.model.topology;
     boxes.iter().for_each(|piece| cross(&mut grid, &topology.faces[index as usize], piece));
     fill(on, index, &mut grid);
-    Trim::Grid(grid)
+    let is_crossed = grid.iter().flatten().any(|&place| place == Place::Crossed);
+    let bound = |of: EdgeUse| matches!(of.way, Use::Forward | Use::Reversed);
+    let sides = is_crossed && on.model.edge_uses(index).into_iter().all(bound);
+    let face = &on.model.topology.faces[index as usize];
+    Trim::Grid(grid, if sides { all.listed(&ends, face.range, face.period) } else { None })
 }
 
-/// Boxes (of u and v) of the pieces of a p-curve.
-fn pieces(topology: &Topology, edge: u32, curve: &Curve, out: &mut Vec<[[f64; 2]; 2]>) {
+/// Tells the pieces of a p-curve.
+fn pieces(topology: &Topology, edge: u32, curve: &Curve, mut tell: impl FnMut(&Piece<'_>)) {
     let mut points: Vec<Vec3> = Vec::new();
     let ends = cuts(topology.edges[edge as usize].range, None, curve.breaks(), 1);
     let parts = PIECES.div_ceil(ends.len() - 1).max(2);
+    let place = |t: f64| curve.frame(t).map_or([f64::NAN; 2], |frame| [frame.point[0], frame.point[1]]);
     for span in ends.windows(2) {
         for k in 0..parts {
             let at =
@@ -125,10 +153,7 @@ fn pieces(topology: &Topology, edge: u32, curve: &Curve, out: &mut Vec<[[f64; 2]
             points.clear();
             let mut jet = |uv: [f64; 2]| curve.frame(uv[0]).map_or_else(nowhere, as_jet);
             let margin = hull::of_curve(curve, &mut jet, [at(k), at(k + 1)], &mut points);
-            out.push([0, 1].map(|k: usize| {
-                let low = points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
-                [low - margin, points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max) + margin]
-            }));
+            tell(&Piece { ends: [at(k), at(k + 1)].map(place), points: &points, margin });
         }
     }
 }

@@ -3,6 +3,9 @@ use super::super::plane::{NONE, in_circle, turn};
 use super::{Patch, UPRIGHT, look};
 use crate::mesh::vector::{Vec3, cross, dot, norm, sub};
 
+/// By how much a turned diagonal must better a cosine.
+const GAIN: f64 = 0.05;
+
 impl Patch {
     /// Turns diagonals until the triangles in space are Delaunay: the angles opposite to an edge are no more than half a turn together.
     pub(super) fn straighten(&mut self, mut stack: Vec<(u32, usize)>) {
@@ -44,18 +47,20 @@ impl Patch {
         if !is_flat && [[a, b], [a, c], [d, b], [d, c]].into_iter().any(|[x, y]| self.is_one(x, y)) {
             return in_circle(a2, b2, c2, d2) > 0.0 && turn(a2, b2, d2) > 0.0 && turn(a2, d2, c2) > 0.0;
         }
-        let turned = sin_a * cos_d + cos_a * sin_d;
-        let size = (sin_a.hypot(cos_a)) * (sin_d.hypot(cos_d));
-        let is_turned = size > 0.0 && turned < -1e-9 * size;
-        if !is_flat && !is_turned {
-            return false;
-        }
         if !(turn(a2, b2, d2) > 0.0 && turn(a2, d2, c2) > 0.0) {
             return false;
         }
-        // They must not come to look away from the surface.
         let [n_a, n_b, n_c, n_d] = [a, b, c, d].map(|v| self.normals[v as usize]);
         let before = look([p, q, r], [n_a, n_b, n_c]).min(look([q, s, r], [n_b, n_d, n_c]));
-        look([p, q, s], [n_a, n_b, n_d]).min(look([p, s, r], [n_a, n_d, n_c])) >= before.min(UPRIGHT) - 1e-12
+        let after = look([p, q, s], [n_a, n_b, n_d]).min(look([p, s, r], [n_a, n_d, n_c]));
+        // What looks away is turned even where the angles, which know of no folds, are fine;
+        if before < UPRIGHT && after > before + GAIN {
+            return true;
+        }
+        let turned = sin_a * cos_d + cos_a * sin_d;
+        let size = (sin_a.hypot(cos_a)) * (sin_d.hypot(cos_d));
+        let is_turned = size > 0.0 && turned < -1e-9 * size;
+        // and none must come to look away.
+        (is_flat || is_turned) && after >= before.min(UPRIGHT) - 1e-12
     }
 }
