@@ -62,10 +62,12 @@ pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limit
     let logs = team.map(GRAIN, metrics.len(), |v| limited(&metrics[v]));
     let mut found = Resolved { halved: None, logs };
     let mut finer = Finer::of(sizing);
+    // What is graded stays so, but for the vertices that were added.
+    let mut logs: Vec<Sym3> = Vec::new();
     for _ in 0..ROUNDS {
         let mesh = found.mesh(sizing.mesh);
         let around = VertexNeighbours::of_mesh(team, mesh);
-        let mut logs = found.logs.clone();
+        logs.extend(&found.logs[logs.len()..]);
         gradation::grade_with(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
         let edges = finer.unresolved(team, sizing, mesh, &around, &logs);
         if edges.is_empty() || found.added() + edges.len() > MOST[0] + MOST[1] * metrics.len() {

@@ -9,8 +9,8 @@ use crate::mesh::vector::Vec3;
 /// Places in the plane are shares of the face's range.
 type Share = [f64; 2];
 
-/// What counts as rounding, as a share of the range: also what OCCT's classifier counts as on an edge.
-const SLACK: f64 = 1e-6;
+/// What counts as rounding, as a share of the range: so near to a straight edge is on it.
+const SLACK: f64 = 1e-9;
 
 /// The widest gap between the ends of edges that is closed, as a share of the range.
 const GAP: f64 = 1e-2;
@@ -24,6 +24,8 @@ struct Chord {
     high: Share,
     /// How far the piece may be from the line of its chord.
     width: f64,
+    /// Whether it is its chord.
+    is_straight: bool,
 }
 
 /// The chords of a face by the columns and the rows of its grid.
@@ -115,10 +117,11 @@ impl Sides {
                 (low[k], high[k]) = (low[k].min(at[k]), high[k].max(at[k]));
             }
         }
+        let is_straight = width + margin <= 1e-3 * SLACK;
         let margin = margin + SLACK;
         (low, high) = (low.map(|x| x - margin), high.map(|x| x + margin));
         if (0..2).all(|k| high[k] >= 0.0 && low[k] <= 1.0) {
-            self.chords.push(Chord { ends, low, high, width: width + margin });
+            self.chords.push(Chord { ends, low, high, width: width + margin, is_straight });
         }
     }
 
@@ -171,16 +174,15 @@ impl Sides {
         Some(self)
     }
 
-    /// Whether a place is on the same side as one that no piece is near of, along a line: of v where `along` is 0, which crosses the cells of a row; of
-    /// u where it is 1. `cell` is that row or column, and `known` the share along the line.
-    pub fn is_same(&self, along: usize, cell: usize, at: Share, known: f64) -> Option<bool> {
+    /// Whether a place is in the face or on its border, by one of which that is known and no piece is near of, along a line: of v where `along` is 0,
+    /// which crosses the cells of a row; of u where it is 1. `cell` is that row or column, and `known` the share along the line.
+    pub fn is_inside(&self, along: usize, cell: usize, at: Share, (known, mut is_inside): (f64, bool)) -> Option<bool> {
         let across = 1 - along;
         let (s, r) = (at[along], at[across]);
         let (from, to) = (s.min(known), s.max(known));
         let list = &self.lists[across];
-        let mut is_same = true;
         for &i in &list.chords[list.starts[cell] as usize..list.starts[cell + 1] as usize] {
-            let Chord { ends: [p, q], low, high, width } = self.chords[i as usize];
+            let Chord { ends: [p, q], low, high, width, is_straight } = self.chords[i as usize];
             // Beside the line, or to one side of it.
             if high[along] < from || low[along] > to || high[across] < r || low[across] > r {
                 continue;
@@ -189,7 +191,7 @@ impl Sides {
                 let chord = [q[0] - p[0], q[1] - p[1]];
                 let off = chord[0] * (at[1] - p[1]) - chord[1] * (at[0] - p[0]);
                 if off.abs() <= width * chord[0].hypot(chord[1]) {
-                    return None;
+                    return is_straight.then_some(true);
                 }
             }
             let is_on =
@@ -199,10 +201,10 @@ impl Sides {
             }
             if (p[across] > r) != (q[across] > r) {
                 let crossing = p[along] + (r - p[across]) * ((q[along] - p[along]) / (q[across] - p[across]));
-                is_same ^= (from..to).contains(&crossing);
+                is_inside ^= (from..to).contains(&crossing);
             }
         }
-        Some(is_same)
+        Some(is_inside)
     }
 }
 

@@ -67,8 +67,7 @@ impl Trim {
                     let beside = |k: usize| [own.checked_sub(k), (own + k < CELLS).then_some(own + k)];
                     let known = (1..CELLS).flat_map(beside).flatten().find(|&k| place(k) != Place::Crossed)?;
                     let middle = (known as f64 + 0.5) / CELLS as f64;
-                    let is_inside = place(known) == Place::Inside;
-                    sides.is_same(along, cell, [s, r], middle).map(|is_same| is_same == is_inside)
+                    sides.is_inside(along, cell, [s, r], (middle, place(known) == Place::Inside))
                 })
             }
         }
