@@ -39,12 +39,14 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 15] = [
+    const SOURCES: [&str; 17] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
         "cpp/connect.cpp",
         "cpp/separate.cpp",
         "cpp/domain.cpp",
+        "cpp/heal.cpp",
+        "cpp/sew.cpp",
         "cpp/damage.cpp",
         "cpp/model.cpp",
         "cpp/evaluate.cpp",

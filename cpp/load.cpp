@@ -4,8 +4,6 @@
 #include "geo-adapt/cpp/occt.hpp"
 
 #include <BRepBuilderAPI_MakeFace.hxx>
-#include <BRepBuilderAPI_MakeSolid.hxx>
-#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepLib.hxx>
 #include <BRepTools.hxx>
 #include <BRepTools_ReShape.hxx>
@@ -30,11 +28,8 @@
 #include <TopLoc_Location.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
-#include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
-#include <TopoDS_Shell.hxx>
-#include <TopoDS_Solid.hxx>
 
 #include <algorithm>
 #include <array>
@@ -117,29 +112,6 @@ TopoDS_Shape read_step(const std::string& path, Labels& labels)
   return reader.OneShape();
 }
 
-/// The closed shells of a shape as solids, beside all else of it; null where there is none.
-TopoDS_Shape filled(const TopoDS_Shape& shape)
-{
-  TopoDS_Compound all;
-  BRep_Builder builder;
-  builder.MakeCompound(all);
-  bool is_closed = false;
-  for (TopExp_Explorer it(shape, TopAbs_SHELL); it.More(); it.Next()) {
-    const TopoDS_Shell shell = TopoDS::Shell(it.Current());
-    TopoDS_Solid solid;
-    if (BRep_Tool::IsClosed(shell)) {
-      solid = BRepBuilderAPI_MakeSolid(shell).Solid();
-      BRepLib::OrientClosedSolid(solid);
-      is_closed = true;
-    }
-    builder.Add(all, solid.IsNull() ? TopoDS_Shape(shell) : TopoDS_Shape(solid));
-  }
-  for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) {
-    builder.Add(all, it.Current());
-  }
-  return is_closed ? TopoDS_Shape(all) : TopoDS_Shape();
-}
-
 /// IGES knows faces rather than solids, and STEP and BREP files may hold a surface model: closed shells are made solid; where there is
 /// none the faces are sewn. What stays open is left as it is in STEP and BREP files, sewn in IGES files.
 TopoDS_Shape closed(const TopoDS_Shape& shape, Labels& labels, bool is_iges)
@@ -154,21 +126,7 @@ TopoDS_Shape closed(const TopoDS_Shape& shape, Labels& labels, bool is_iges)
   for (TopExp_Explorer it(shape, TopAbs_EDGE); it.More(); it.Next()) {
     tolerance = std::max(tolerance, BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
   }
-  BRepBuilderAPI_Sewing sewing(10.0 * tolerance);
-  sewing.Add(shape);
-  sewing.Perform();
-  const TopoDS_Shape joined = sewing.SewedShape();
-  if (joined.IsNull()) {
-    return shape;
-  }
-  const TopoDS_Shape solids = filled(joined);
-  if (solids.IsNull() && !is_iges) {
-    return shape;
-  }
-  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-    hand_on(labels, it.Current(), sewing.ModifiedSubShape(it.Current()));
-  }
-  return solids.IsNull() ? joined : solids;
+  return sewn(shape, labels, 10.0 * tolerance, is_iges);
 }
 
 TopoDS_Shape read_iges(const std::string& path)

@@ -33,6 +33,13 @@ void hand_on(Labels& labels, const TopoDS_Shape& from, const TopoDS_Shape& to);
 /// The labels of a STEP file whose shapes were transferred.
 Labels step_labels(const STEPControl_Reader& reader);
 
+/// The closed shells of a shape as solids, beside all else of it; null where there is none.
+TopoDS_Shape filled(const TopoDS_Shape& shape);
+
+/// The faces of a shape sewn where they are nearer than the tolerance, and what closes made solid; the shape itself where nothing closes, unless
+/// it `stays` sewn. Labels are handed on.
+TopoDS_Shape sewn(const TopoDS_Shape& shape, Labels& labels, double tolerance, bool stays);
+
 /// A shape without the solids that have no faces: some programs write such, and meshers number or refuse them.
 TopoDS_Shape without_hollow(const TopoDS_Shape& shape);
 

@@ -62,6 +62,7 @@ struct Form;
 struct LabelRecord;
 struct DomainRecord;
 struct FlawRecord;
+struct HealRecord;
 struct EdgeUse;
 struct FaceSide;
 
@@ -109,6 +110,8 @@ public:
   LabelRecord label(std::uint32_t dimension, std::uint32_t index) const;
   /// The far field without this body.
   std::shared_ptr<Model> domain(const DomainRecord& domain) const;
+  /// The model without edges and faces that are narrower than a length, sewn where it is no solid and gaps are narrower; what was done is told.
+  std::shared_ptr<Model> healed(double length, rust::Vec<HealRecord>& done) const;
 
   TopoDS_Face face(std::uint32_t index) const; // FORWARD, as its p-curves want it
   TopoDS_Edge edge(std::uint32_t index) const; // FORWARD

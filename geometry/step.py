@@ -16,7 +16,7 @@ WITHOUT_PCURVES = {"transport", "transport-half"}
 def write(model, name, folder):
     """Writes a model (lengths in millimetres, as OCCT has it) to `folder/name.step`; returns the path.
 
-    A Workplane with one solid, or an Assembly, or a list of solids: several regions. STEP has a face between two solids
+    A Workplane with one solid, or an Assembly, or a compound of surfaces, or a list of solids: several regions. STEP has a face between two solids
     twice, once for each; so these are also written as `folder/name.brep`, where it is one face of both.
     """
     import cadquery
@@ -79,9 +79,11 @@ def _colours_in_order(text):
 
 
 def _shape(model, name):
-    """The solid of a Workplane, or the compound of a list of solids; all are valid."""
+    """The solid of a Workplane, or the compound of a list of solids, all valid; a compound of surfaces as it is."""
     import cadquery
 
+    if isinstance(model, cadquery.Compound):
+        return model
     several = isinstance(model, list)
     solids = model if several else model.solids().vals()
     if not solids or (len(solids) > 1 and not several) or not all(solid.isValid() for solid in solids):

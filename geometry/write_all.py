@@ -2,7 +2,7 @@
 
     write_all.py [-o FOLDER] [NAME ...]
 
-Those of the scripts in this folder come to FOLDER (default: here), those of aircraft/ and zoo/ to FOLDER/aircraft and FOLDER/zoo.
+Those of the scripts in this folder come to FOLDER (default: here), those of aircraft/, faults/ and zoo/ to folders of that name in it.
 """
 
 import argparse
@@ -22,8 +22,9 @@ def models():
     for script in sorted(HERE.glob("*.py")):
         if script.stem not in NO_MODELS:
             found[script.stem.replace("_", "-")] = (importlib.import_module(script.stem).build, "")
-    for script in sorted((HERE / "aircraft").glob("[!_]*.py")):
-        found[script.stem.replace("_", "-")] = (importlib.import_module(f"aircraft.{script.stem}").build, "aircraft")
+    for folder in ("aircraft", "faults"):
+        for script in sorted((HERE / folder).glob("[!_]*.py")):
+            found[script.stem.replace("_", "-")] = (importlib.import_module(f"{folder}.{script.stem}").build, folder)
     for script in sorted((HERE / "zoo").glob("*.py")):
         for name, build in getattr(importlib.import_module(f"zoo.{script.stem}"), "MODELS", {}).items():
             if name in found:

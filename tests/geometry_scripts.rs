@@ -19,7 +19,7 @@ struct Kind {
     places: &'static [&'static str],
 }
 
-const CADQUERY: Kind = Kind { environment: "geometry", script: "write_all.py", places: &["", "aircraft", "zoo"] };
+const CADQUERY: Kind = Kind { environment: "geometry", script: "write_all.py", places: &["", "aircraft", "faults", "zoo"] };
 const BUILD123D: Kind = Kind { environment: "build123d", script: "build123d/write_all.py", places: &["build123d"] };
 
 /// The models in these places below a folder, relative to it.

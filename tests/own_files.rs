@@ -265,8 +265,15 @@ fn nothing_else_in_the_command_line_writes_files() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli");
     let mut sources = Vec::new();
     collect(&root, &mut sources);
-    // What goes to a folder of the run's own: meshers' scripts, what a child answers, the domain for its parent.
-    let own = ["workplace.rs", "child.rs", "bootstrap/netgen.rs", "bootstrap/gmsh.rs", "bootstrap/domain.rs"];
+    // What goes to a folder of the run's own: meshers' scripts, what a child answers, the model that it makes for its parent.
+    let own = [
+        "workplace.rs",
+        "child.rs",
+        "bootstrap/netgen.rs",
+        "bootstrap/gmsh.rs",
+        "bootstrap/domain.rs",
+        "bootstrap/heal.rs",
+    ];
     let ways =
         ["write_", "Batch", "names::write", "formats::write", "fs::write", "File::create", "OpenOptions", "fs::copy"];
     let ways = [&ways[..], &["fs::rename", "println!", "print!(", "stdout()"]].concat();

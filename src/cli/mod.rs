@@ -82,7 +82,7 @@ const BAD_INPUT: u8 = 2;
 pub fn main() -> ExitCode {
     memory::end::take_over_panics();
     geometry::on_memory_end(memory::end::leave_if_ended);
-    if let Some(code) = load::child().or_else(bootstrap::domain::child) {
+    if let Some(code) = load::child().or_else(bootstrap::domain::child).or_else(bootstrap::heal::child) {
         return code;
     }
     let arguments = match Arguments::try_parse() {

@@ -5,6 +5,7 @@ mod entity;
 mod error;
 mod far_field;
 pub mod fidelity;
+mod healed;
 mod model;
 pub mod names;
 #[cfg(feature = "occt")]
@@ -16,6 +17,7 @@ pub use discrete::Discrete;
 pub use entity::{CurveKind, EdgeEntity, Entity, FaceEntity, SurfaceKind, Topology, VertexEntity};
 pub use error::Error;
 pub use far_field::FarField;
+pub use healed::{Healed, Remedy};
 pub use model::{Evaluator, Model};
 pub use names::{Label, Names, called};
 #[cfg(feature = "occt")]

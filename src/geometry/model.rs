@@ -1,6 +1,8 @@
 //! A model of any backend. The kernel works on this type: backends are told apart by a match, not by a virtual call.
 use super::classify::Classification;
-use super::{CurveFrame, Discrete, Evaluate, FarField, Geometry, Names, OnCurve, OnSurface, SurfaceFrame, Topology};
+use super::{
+    CurveFrame, Discrete, Evaluate, FarField, Geometry, Healed, Names, OnCurve, OnSurface, SurfaceFrame, Topology,
+};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::Vec3;
 use std::collections::BTreeMap;
@@ -103,6 +105,22 @@ impl Model {
                 let _ = far;
                 let message = "a mesh's own surface is no CAD model";
                 Err(super::Error::Model { path: "the far field".into(), message: message.into() })
+            }
+        }
+    }
+
+    /// The model without what is smaller than a length, model units; with what was done.
+    ///
+    /// # Errors
+    /// [`super::Error::Model`] when it is no CAD model or OpenCASCADE makes no valid shape of it.
+    pub fn healed(&self, length: f64) -> Result<(Self, Vec<Healed>), super::Error> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.healed(length).map(|(model, done)| (Model::Occt(model), done)),
+            Model::Discrete(_) => {
+                let _ = length;
+                let message = "a mesh's own surface is no CAD model";
+                Err(super::Error::Model { path: "the healed model".into(), message: message.into() })
             }
         }
     }

@@ -32,6 +32,8 @@ const ROUNDS: usize = 64;
 /// Most vertices that are added, and so many times those of the mesh: where more are asked for, the metric is too fine for a first mesh, and
 /// whoever uses it bounds its complexity.
 const MOST: [usize; 2] = [200_000, 2];
+/// Fewer vertices than one in so many are few.
+const FEW: usize = 100;
 /// Vertices a task. Each task makes an evaluator.
 const TASK: usize = 1 << 6;
 
@@ -62,11 +64,14 @@ pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limit
     let logs = team.map(GRAIN, metrics.len(), |v| limited(&metrics[v]));
     let mut found = Resolved { halved: None, logs };
     let mut finer = Finer::of(sizing);
-    // What is graded stays so, but for the vertices that were added.
     let mut logs: Vec<Sym3> = Vec::new();
     for _ in 0..ROUNDS {
         let mesh = found.mesh(sizing.mesh);
         let around = VertexNeighbours::of_mesh(team, mesh);
+        // Where few vertices were added, what is graded stays so.
+        if FEW * (found.logs.len() - logs.len()) > found.logs.len() {
+            logs.clear();
+        }
         logs.extend(&found.logs[logs.len()..]);
         gradation::grade_with(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
         let edges = finer.unresolved(team, sizing, mesh, &around, &logs);

@@ -1,7 +1,7 @@
 //! What can be asked of `geo-adapt bootstrap`.
-use super::domain;
 use super::rung::Choice;
 use super::triangles::is_surface;
+use super::{domain, heal};
 use crate::cli::adapt::files::Targets;
 use crate::cli::files::{Files, JSON, Target};
 use crate::cli::metric::geometry::GeometryArguments;
@@ -16,8 +16,15 @@ const FAR_FIELD: &str = "Mesh the space around the solids instead, for external 
 faces are called farfield, those of the body as in the model, else wall. This domain is written beside the mesh as .brep, with its names \
 as .names.json, for `adapt --cad`. On the body sizes are at most a tenth of its diagonal";
 
-/// The domain of a far field in the workplace, until it is written with the mesh.
+/// Help on --heal.
+const HEAL: &str = "Heal the model first: edges shorter than this length (model units) are collapsed, narrower faces merged into their neighbours, \
+and where there is no solid faces are sewn across gaps as wide as that. What was done is told, and the healed model is written beside the mesh as \
+.brep, with its names as .names.json, for `adapt --cad` [default length: a ten-thousandth of the diagonal]";
+
+/// The model that is made, in the workplace until it is written with the mesh: a far field, or a healed model.
 pub const DOMAIN: &str = "domain.brep";
+/// The healed model that a far field is made of.
+pub const HEALED: &str = "healed.brep";
 
 /// Arguments of `geo-adapt bootstrap`.
 #[derive(clap::Args)]
@@ -42,6 +49,9 @@ pub struct Arguments {
     /// The body is one half: cut the far field at the plane face where the body ends in this direction, and call that symmetry
     #[arg(long, value_enum, value_name = "AXIS", requires = "far_field")]
     pub symmetry: Option<domain::Axis>,
+    /// Heal the model first: what is smaller than a length is no part of it
+    #[arg(long, value_name = "LENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "-", long_help = HEAL)]
+    pub heal: Option<heal::Length>,
     /// Leave the mesh as the mesher made it; our own makes few vertices, whatever the sizes
     #[arg(long)]
     pub no_adapt: bool,
@@ -78,8 +88,8 @@ impl Arguments {
         };
         let mut targets = Targets::of(&mut files, &self.output, self.report.as_ref(), JSON)?;
         let log = files.writes(&self.output.with_extension("log"), "the log beside -o", &[])?;
-        if self.far_field.is_some() {
-            let domain = files.writes(&self.output.with_extension("brep"), "the domain beside -o", &[])?;
+        if self.far_field.is_some() || self.heal.is_some() {
+            let domain = files.writes(&self.output.with_extension("brep"), "the model beside -o", &[])?;
             targets.with_model(place.file(DOMAIN), domain);
         }
         Ok((targets, log))

@@ -7,6 +7,7 @@ mod added;
 mod arguments;
 pub mod domain;
 mod gmsh;
+pub mod heal;
 mod ladder;
 mod netgen;
 #[cfg(feature = "occt")]
@@ -29,11 +30,13 @@ use super::workplace::Workplace;
 use super::{Outcome, load};
 use crate::geometry::{Geometry, Model};
 use crate::tasks::{Plan, Pool, Team, stage};
-use arguments::DOMAIN;
+use arguments::{DOMAIN, HEALED};
 use ladder::{Ladder, Meshed, Stopped};
 use refine::Refined;
 use rung::Choice;
 use solids::{check_solids, small_face};
+use std::error::Error;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use wish::Wish;
@@ -50,12 +53,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         return of_triangles(arguments, &pool, (&targets, threads), start);
     }
     arguments.check_cad()?;
-    let domain = arguments.far_field.as_ref();
-    let domain = domain.map(|spec| domain::build(&arguments.model, spec, arguments.symmetry, &place.file(DOMAIN)));
-    let domain = domain.transpose()?;
-    let path = domain.as_ref().unwrap_or(&arguments.model);
-    let model = load::model(path)?;
-    check_solids(path, &model)?;
+    let path = prepared(arguments, &place)?;
+    let model = load::model(&path)?;
+    check_solids(&path, &model)?;
     stage("model read");
     let options = arguments.sizes.options(&model, arguments.limits(), None);
     let wish = Wish {
@@ -108,10 +108,29 @@ pub fn run(arguments: &Arguments) -> Outcome {
     best.write(arguments, team, (&asked, &targets), model, start)
 }
 
+/// The model that is meshed: healed and with a far field, where that is asked for.
+fn prepared(arguments: &Arguments, place: &Workplace) -> Result<PathBuf, Box<dyn Error>> {
+    let mut path = arguments.model.clone();
+    if let Some(length) = arguments.heal {
+        // The last that is made is the one that is written.
+        let file = place.file(if arguments.far_field.is_some() { HEALED } else { DOMAIN });
+        for done in heal::build(&path, length, &file)?.iter().filter(|_| !arguments.quiet) {
+            super::note(done);
+        }
+        path = file;
+    }
+    if let Some(spec) = &arguments.far_field {
+        path = domain::build(&path, spec, arguments.symmetry, &place.file(DOMAIN))?;
+    }
+    Ok(path)
+}
+
 /// The same of a surface of triangles.
 fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Targets, usize), start: Instant) -> Outcome {
     let unsupported = if arguments.far_field.is_some() {
         Some("--far-field takes a CAD model")
+    } else if arguments.heal.is_some() {
+        Some("--heal takes a CAD model")
     } else if !matches!(arguments.mesher, Choice::Auto | Choice::Own) {
         Some("a surface of triangles is meshed by geo-adapt itself: leave --mesher out")
     } else {

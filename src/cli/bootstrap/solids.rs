@@ -20,7 +20,7 @@ pub fn check_solids(path: &Path, model: &Model) -> Result<(), String> {
     let faces = topology.faces.len();
     Err(format!(
         "{}: the model has no solid, only surfaces ({faces} faces{}): there is nothing to fill; join them to a closed solid in the CAD \
-         program and export that",
+         program and export that, or close gaps with --heal=LENGTH",
         path.display(),
         open_edges(model)
     ))

@@ -67,6 +67,16 @@ pub mod ffi {
         what: String,
     }
 
+    /// What healing has done.
+    struct HealRecord {
+        /// 0: an edge was collapsed, 1: a face, 2: an edge was sewn.
+        what: u32,
+        /// Its middle.
+        at: [f64; 3],
+        /// Its length or area.
+        size: f64,
+    }
+
     /// An edge as a wire of a face has it.
     struct EdgeUse {
         edge: u32,
@@ -154,6 +164,7 @@ pub mod ffi {
         /// Of an edge (dimension 1), face (2) or solid (3).
         fn label(self: &Model, dimension: u32, index: u32) -> Result<LabelRecord>;
         fn domain(self: &Model, domain: &DomainRecord) -> Result<SharedPtr<Model>>;
+        fn healed(self: &Model, length: f64, done: &mut Vec<HealRecord>) -> Result<SharedPtr<Model>>;
 
         fn surface_spline(model: &Model, face: u32) -> Result<Spline>;
         fn surface_generatrix(model: &Model, face: u32) -> Result<Spline>;

@@ -2,7 +2,7 @@
 use super::OcctModel;
 use super::bridge::ffi;
 use super::entities;
-use crate::geometry::{Error, FarField};
+use crate::geometry::{Error, FarField, Healed, Remedy};
 use crate::mesh::io::{self, check_regular};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -87,6 +87,23 @@ pub fn domain(occt: &ffi::Model, far: &FarField) -> Result<OcctModel, Error> {
     let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
     let domain = occt.domain(&record).map_err(|error| fail(error.what().into()))?;
     entities::build(domain).map_err(|error| fail(format!("OpenCASCADE cannot use it: {}", error.what())))
+}
+
+/// A model without what is smaller than a length: see [`OcctModel::healed`].
+pub fn healed(occt: &ffi::Model, length: f64) -> Result<(OcctModel, Vec<Healed>), Error> {
+    let fail = |message: String| Error::Model { path: "the healed model".into(), message };
+    let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut done = Vec::new();
+    let healed = occt.healed(length, &mut done).map_err(|error| fail(error.what().into()))?;
+    let model =
+        entities::build(healed).map_err(|error| fail(format!("OpenCASCADE cannot use it: {}", error.what())))?;
+    let what = |what: u32| match what {
+        0 => Remedy::CollapsedEdge,
+        1 => Remedy::CollapsedFace,
+        _ => Remedy::SewnEdge,
+    };
+    let done = done.iter().map(|done| Healed { remedy: what(done.what), at: done.at, size: done.size });
+    Ok((model, done.collect()))
 }
 
 /// The format by the file's extension.

@@ -21,7 +21,7 @@ mod swept;
 mod tree;
 mod trim;
 
-use super::{Error, FarField, Geometry, Names, Topology};
+use super::{Error, FarField, Geometry, Healed, Names, Topology};
 use bridge::ffi;
 use copy::PCurve;
 use curve::Curve;
@@ -102,6 +102,15 @@ impl OcctModel {
     /// [`Error::Model`] when OpenCASCADE cannot subtract the body.
     pub fn domain(&self, far: &FarField) -> Result<Self, Error> {
         load::domain(&self.occt, far)
+    }
+
+    /// The model without what is smaller than a length (model units): shorter edges are collapsed, narrower faces merged into their neighbours,
+    /// and where there is no solid faces are sewn across gaps as wide as that. With what was done.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when OpenCASCADE makes no valid shape of it.
+    pub fn healed(&self, length: f64) -> Result<(Self, Vec<Healed>), Error> {
+        load::healed(&self.occt, length)
     }
 
     /// Area of a face, in the square of the model's unit; none where OCCT finds none.

@@ -266,8 +266,8 @@ mod tests {
             "zoo/three-tori.step",
         ] {
             let [all, told] = compared(name);
-            println!("{name}: {told} of {all}");
-            assert!(told as f64 >= 0.9 * all as f64, "{name}: {told} of {all}");
+            // Beside edges that bend, and in corners, OCCT is asked.
+            assert!(4 * told >= 3 * all && all > 100, "{name}: {told} of {all}");
         }
     }
 }

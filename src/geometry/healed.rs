@@ -1,0 +1,24 @@
+//! What healing has done to a model.
+use crate::mesh::vector::Vec3;
+
+/// What was done at one place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// An edge shorter than the length is a vertex now.
+    CollapsedEdge,
+    /// A face narrower than the length is an edge or a vertex now.
+    CollapsedFace,
+    /// An edge that had a face on one side alone lies on another one within the length.
+    SewnEdge,
+}
+
+/// Something that was healed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Healed {
+    /// What was done.
+    pub remedy: Remedy,
+    /// The middle of the edge or face, model units.
+    pub at: Vec3,
+    /// Its length, or its area; model units or their square.
+    pub size: f64,
+}
