@@ -34,8 +34,10 @@ fn healed(model: &Path, arguments: &[&str]) -> (TetMesh, String) {
     assert!(validity::check(&mesh).is_valid());
     // The model that the mesh lies on is beside it.
     let brep = folder.path().join("out.brep");
-    let inspect = program().args(["classify"]).arg(&out).arg("--cad").arg(&brep).output().unwrap();
-    assert_eq!(inspect.status.code(), Some(0), "{}", stderr(&inspect));
+    let mut classify = program();
+    classify.arg("classify").arg(&out).arg("--cad").arg(&brep).arg("-o").arg(folder.path().join("again.meshb"));
+    let classified = classify.output().unwrap();
+    assert_eq!(classified.status.code(), Some(0), "{}", stderr(&classified));
     (mesh, stderr(&run))
 }
 

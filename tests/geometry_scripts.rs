@@ -19,7 +19,8 @@ struct Kind {
     places: &'static [&'static str],
 }
 
-const CADQUERY: Kind = Kind { environment: "geometry", script: "write_all.py", places: &["", "aircraft", "faults", "zoo"] };
+const CADQUERY: Kind =
+    Kind { environment: "geometry", script: "write_all.py", places: &["", "aircraft", "faults", "zoo"] };
 const BUILD123D: Kind = Kind { environment: "build123d", script: "build123d/write_all.py", places: &["build123d"] };
 
 /// The models in these places below a folder, relative to it.

@@ -26,7 +26,7 @@ const SHORT: f64 = 4.0;
 /// How much finer interpolation may be than growth from the ends, in the middle of an edge.
 const WRONG: f64 = 1.5;
 /// A side of a triangle that is so many times as long as one that is halved is halved too.
-const LONGER: f64 = 1.25;
+const LONGER: f64 = 1.45;
 /// Most rounds: each halves edges. A size is no less than 1e-16 of the mesh.
 const ROUNDS: usize = 64;
 /// Most vertices that are added, and so many times those of the mesh: where more are asked for, the metric is too fine for a first mesh, and
