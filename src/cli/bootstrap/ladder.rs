@@ -2,6 +2,7 @@
 use super::places::{gmsh_places, netgen_places};
 use super::queue::Queue;
 use super::rung::{Choice, Rung};
+use super::waiting::Waiting;
 use super::wish::Wish;
 use super::{gmsh, netgen};
 use crate::cli::table;
@@ -90,7 +91,11 @@ impl<'a> Ladder<'a> {
         while let Some((rung, limit)) = self.queue.next() {
             let program = rung.program();
             let began = Instant::now();
-            let given = self.attempt(rung, limit);
+            let what = format!("{rung}, of at most {:.0} s", limit.as_secs_f64());
+            let given = {
+                let _line = Waiting::for_what(&what, !self.wish.is_quiet);
+                self.attempt(rung, limit)
+            };
             // What waits for a busy machine has more time by the clock.
             self.queue.spend(began.elapsed().min(limit));
             match given {

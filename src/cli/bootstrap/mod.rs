@@ -19,6 +19,7 @@ mod rung;
 mod solids;
 mod triangles;
 mod unused;
+mod waiting;
 mod wish;
 
 pub use arguments::Arguments;
@@ -39,6 +40,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
+use waiting::Waiting;
 use wish::Wish;
 
 /// Runs the subcommand.
@@ -64,6 +66,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         diagonal: model.topology().diagonal(),
         segments: options.segments,
         stop: interrupt::end_at_once(),
+        is_quiet: arguments.quiet,
         limit: Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX),
     };
     let named = |error: String| format!("{}: {error}", arguments.model.display());
@@ -141,7 +144,9 @@ fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Target
     }
     let team = Team::new(pool, Plan::default());
     let limit = Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX);
+    let line = Waiting::for_what("tetrahedra of its triangles", !arguments.quiet);
     let (model, meshed) = triangles::run(team, &arguments.model, &arguments.patches(), limit)?;
+    drop(line);
     stage("meshed");
     if arguments.no_adapt {
         return write_as_it_is(arguments, &meshed, &model, targets);

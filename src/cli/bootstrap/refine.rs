@@ -3,6 +3,7 @@ use super::arguments::Arguments;
 use super::domain;
 use super::ladder::Meshed;
 use super::rung::Rung;
+use super::waiting::Waiting;
 use crate::adapt::{self, Adapted, Options};
 use crate::cli::Outcome;
 use crate::cli::adapt::files::Targets;
@@ -171,6 +172,7 @@ fn sizes(
     place: &Classification,
     model: &Model,
 ) -> Result<Sizes, String> {
+    let _line = Waiting::for_what("the geometry's sizes", !arguments.quiet);
     let options = arguments.sizes.options(model, arguments.limits(), None);
     let mut resolved = sizing::resolved_metric(team, mesh, place, model, &options);
     if arguments.far_field.is_some() {
