@@ -32,7 +32,7 @@ const ROUNDS: usize = 64;
 /// Most vertices that are added, and so many times those of the mesh: where more are asked for, the metric is too fine for a first mesh, and
 /// whoever uses it bounds its complexity.
 const MOST: [usize; 2] = [200_000, 2];
-/// Fewer vertices than one in so many are few.
+/// Fewer vertices than one in so many are few, and as many edges.
 const FEW: usize = 100;
 /// Vertices a task. Each task makes an evaluator.
 const TASK: usize = 1 << 6;
@@ -192,7 +192,10 @@ impl Finer {
         }
         team.sort(&mut edges);
         edges.dedup();
-        add_longer(mesh, around, &mut edges);
+        // What goes on at few places may have no end there.
+        if FEW * edges.len() < around.len() {
+            add_longer(mesh, around, &mut edges);
+        }
         let length = |&[a, b]: &[u32; 2]| distance(mesh.vertices[a as usize], mesh.vertices[b as usize]);
         edges.sort_by(|a, b| length(b).total_cmp(&length(a)));
         edges
