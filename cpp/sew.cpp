@@ -14,6 +14,7 @@
 
 namespace geo_adapt {
 
+/// The closed shells of a shape as solids, beside all else of it; null where there is none.
 TopoDS_Shape filled(const TopoDS_Shape& shape)
 {
   TopoDS_Compound all;

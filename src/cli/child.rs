@@ -82,18 +82,6 @@ impl Task<'_> {
         self.judge(outcome)
     }
 
-    /// The same where nothing else can do the work.
-    ///
-    /// # Errors
-    /// As [`Self::run`]; when the child refused it, or could not be started.
-    pub fn must_run(&self, place: &Workplace) -> Result<(), Box<dyn Error>> {
-        match self.run(place)? {
-            Answer::Done => Ok(()),
-            Answer::Refused(told) => Err(told.into()),
-            Answer::NotStarted => Err("geo-adapt cannot start itself".into()),
-        }
-    }
-
     /// What the end of the child means.
     fn judge(&self, outcome: Outcome) -> Result<Answer, Box<dyn Error>> {
         let doing = self.doing;

@@ -36,18 +36,11 @@ fn read(file: &OsString, target: &OsString) -> Result<(), String> {
 /// # Errors
 /// When the file is no readable model, also when OpenCASCADE crashes on it, or never comes back; when memory ends; when it is interrupted.
 pub fn model(path: &Path) -> Result<Model, Box<dyn error::Error>> {
-    let model = match in_child(path)? {
+    let mut model = match in_child(path)? {
         Some(model) => model,
         None => Model::read(path)?,
     };
-    Ok(with_names(model, path)?)
-}
-
-/// A model with the names that stand beside a BREP file: it has none of its own.
-///
-/// # Errors
-/// When the names cannot be read.
-pub fn with_names(mut model: Model, path: &Path) -> Result<Model, Error> {
+    // BREP files have no names of their own.
     let is_brep = path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("brep"));
     if is_brep && model.names().is_empty() {
         model

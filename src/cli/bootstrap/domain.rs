@@ -1,6 +1,6 @@
 //! `--far-field`: the domain around a body, built by a child process, since OpenCASCADE can crash on a shape that it cannot cut.
 use super::solids::check_solids;
-use crate::cli::child::{self, Task};
+use crate::cli::child::{self, Answer, Task};
 use crate::cli::workplace::Workplace;
 use crate::geometry::{Evaluate, FaceEntity, FarField, Geometry, Model, SurfaceKind, Topology, names};
 use crate::mesh::vector::{Vec3, distance};
@@ -85,8 +85,11 @@ pub fn build(body: &Path, spec: &Spec, symmetry: Option<Axis>, file: &Path) -> R
         doing: "making the far field around it",
         crash: "OpenCASCADE crashes on the subtraction of the body from the far field; repair the body's solid in the CAD program",
     };
-    task.must_run(&place)?;
-    Ok(file.to_owned())
+    match task.run(&place)? {
+        Answer::Done => Ok(file.to_owned()),
+        Answer::Refused(told) => Err(told.into()),
+        Answer::NotStarted => Err("geo-adapt cannot start itself".into()),
+    }
 }
 
 /// If this process is the child of [`build`]: builds the domain and tells the exit code.

@@ -1,8 +1,8 @@
 //! `--heal`: the model without what is too small to mesh, made by a child process, since OpenCASCADE can crash on a faulty shape.
 use super::solids::check_solids;
-use crate::cli::child::{self, Task};
+use crate::cli::child::{self, Answer, Task};
+use crate::cli::table;
 use crate::cli::workplace::Workplace;
-use crate::cli::{load, table};
 use crate::geometry::{Geometry, Healed, Model, Remedy, names};
 use std::error::Error;
 use std::ffi::OsString;
@@ -51,8 +51,11 @@ pub fn build(model: &Path, length: Length, file: &Path) -> Result<Vec<String>, B
         doing: "healing it",
         crash: "OpenCASCADE crashes when it heals the model; repair it in the CAD program",
     };
-    task.must_run(&place)?;
-    Ok(std::fs::read_to_string(&told)?.lines().map(str::to_owned).collect())
+    match task.run(&place)? {
+        Answer::Done => Ok(std::fs::read_to_string(&told)?.lines().map(str::to_owned).collect()),
+        Answer::Refused(told) => Err(told.into()),
+        Answer::NotStarted => Err("geo-adapt cannot start itself".into()),
+    }
 }
 
 /// If this process is the child of [`build`]: heals the model and tells the exit code.
@@ -67,7 +70,10 @@ pub fn child() -> Option<ExitCode> {
 
 fn write([path, file, told]: [&OsString; 3], length: &str) -> Result<(), Box<dyn Error>> {
     let path = Path::new(path);
-    let model = load::with_names(Model::read(path)?, path)?;
+    let mut model = Model::read(path)?;
+    if path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("brep")) && model.names().is_empty() {
+        model.rename(names::read(path)?);
+    }
     let length = match length.parse()? {
         Length::Default => SHARE * model.topology().diagonal(),
         Length::Given(length) => length,

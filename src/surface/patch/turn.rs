@@ -53,14 +53,14 @@ impl Patch {
         let [n_a, n_b, n_c, n_d] = [a, b, c, d].map(|v| self.normals[v as usize]);
         let before = look([p, q, r], [n_a, n_b, n_c]).min(look([q, s, r], [n_b, n_d, n_c]));
         let after = look([p, q, s], [n_a, n_b, n_d]).min(look([p, s, r], [n_a, n_d, n_c]));
-        // Angles know of no folds: what looks away is turned even where they are fine.
+        // What looks away is turned even where the angles, which know of no folds, are fine;
         if before < UPRIGHT && after > before + GAIN {
             return true;
         }
         let turned = sin_a * cos_d + cos_a * sin_d;
         let size = (sin_a.hypot(cos_a)) * (sin_d.hypot(cos_d));
         let is_turned = size > 0.0 && turned < -1e-9 * size;
-        // Triangles must not come to look away.
+        // and none must come to look away.
         (is_flat || is_turned) && after >= before.min(UPRIGHT) - 1e-12
     }
 }
