@@ -60,6 +60,16 @@ fn edges_beside_a_short_one_have_pieces_that_grow() {
     assert!(mesh.triangles.len() < 10_000, "{}", mesh.triangles.len());
 }
 
+/// Beside its bridges the chords of a hole were farther off their arcs than the bridges are wide: vertices found no room on the model.
+#[test]
+fn bridges_narrower_than_a_chord_is_high_are_resolved() {
+    let mesh = meshed(&here("geometry/zoo/bridged-plate.step"), &[]);
+    check_valid(&mesh, "bridged-plate");
+    assert_eq!(faces(&mesh), 8);
+    let exact = 0.01 * (1.0 - std::f64::consts::PI * 0.4998 * 0.4998);
+    assert!((volume(&mesh) / exact - 1.0).abs() < 0.02, "{} {exact}", volume(&mesh));
+}
+
 /// Balls touch the groove of a shaft along half circles that are no edges there: chords of the two cross, however fine they are. Each body
 /// is filled by itself, and nothing but such crossings may be wrong with that mesh; the kernel takes the bodies apart.
 #[test]

@@ -57,6 +57,13 @@ def perforated_plate():
     return cadquery.Workplane().box(1.2, 0.9, 0.1).faces(">Z").workplane().rarray(0.3, 0.3, 4, 3).hole(0.2)
 
 
+def bridged_plate():
+    """A plate of 1 × 1 × 0.01 whose round hole leaves bridges of 0.0002 at its sides: an arc that comes fifty times nearer to a plane than its chord is off it."""
+    import cadquery
+
+    return cadquery.Workplane().box(1, 1, 0.01).cut(cylinder(0.4998, 1, "z").rotate((0, 0, 0), (0, 0, 1), 30))
+
+
 def sphere_in_cube():
     """A ball of radius 0.65 cut by the sides of a cube of 1: one spherical face with six round openings, its poles cut off."""
     import cadquery
@@ -80,6 +87,7 @@ MODELS = {
     "bored-sphere": bored_sphere,
     "three-tori": three_tori,
     "perforated-plate": perforated_plate,
+    "bridged-plate": bridged_plate,
     "sphere-in-cube": sphere_in_cube,
     "drilled-torus": drilled_torus,
 }

@@ -14,9 +14,6 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Exit code of a mesh that is not valid.
-const INVALID: u8 = 1;
-
 /// Arguments of `geo-adapt inspect`.
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -87,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let inspection = Inspection { valid, validity, statistics, worst_tet, cad };
     let text = if arguments.json { serde_json::to_string_pretty(&inspection)? + "\n" } else { describe(&inspection) };
     super::print(&text)?;
-    Ok(if valid { ExitCode::SUCCESS } else { ExitCode::from(INVALID) })
+    Ok(if valid { ExitCode::SUCCESS } else { ExitCode::from(super::INVALID) })
 }
 
 /// Reads the mesh and shows the notices.

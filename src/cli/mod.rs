@@ -78,6 +78,9 @@ type Outcome = Result<ExitCode, Box<dyn std::error::Error>>;
 /// Exit code of bad input.
 const BAD_INPUT: u8 = 2;
 
+/// Exit code for a mesh that is not valid, or not on its model.
+const INVALID: u8 = 1;
+
 /// Parses the command line, runs the subcommand, prints its error.
 pub fn main() -> ExitCode {
     memory::end::take_over_panics();

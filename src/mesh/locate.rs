@@ -275,7 +275,7 @@ fn sub_volumes(c: &[Vec3; 4], p: Vec3) -> [f64; 4] {
 }
 
 /// Barycentric coordinates of the point of a triangle nearest to p: inside, else on the nearest of its edges.
-pub(super) fn nearest_on_triangle(p: Vec3, t: [Vec3; 3]) -> [f64; 3] {
+pub(crate) fn nearest_on_triangle(p: Vec3, t: [Vec3; 3]) -> [f64; 3] {
     let normal = cross(sub(t[1], t[0]), sub(t[2], t[0]));
     let square = dot(normal, normal);
     if square > 0.0 {

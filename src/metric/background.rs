@@ -1,5 +1,5 @@
 //! The background metric: the input mesh with ln M at its vertices, kept unchanged while the mesh is adapted.
-use super::Sym3;
+use super::{Interpolation, Sym3};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::locate::Locator;
@@ -11,6 +11,10 @@ use std::sync::Arc;
 pub struct Background {
     locator: Locator,
     logs: Vec<Sym3>,
+    /// What is linear between the vertices.
+    interpolation: Interpolation,
+    /// What is interpolated, where that is not `logs`; else empty.
+    values: Vec<Sym3>,
     /// Whether what lies between vertices may have to be cut to be held.
     is_wide: bool,
     cut: usize,
@@ -46,7 +50,22 @@ impl Background {
             cut += usize::from(held != *log);
             *log = held;
         }
-        Self { locator, logs, is_wide, cut }
+        Self { locator, logs, interpolation: Interpolation::default(), values: Vec::new(), is_wide, cut }
+    }
+
+    /// The same, interpolated in another way.
+    pub fn interpolated(mut self, team: Team<'_>, interpolation: Interpolation) -> Self {
+        self.values = match interpolation {
+            Interpolation::Logarithms => Vec::new(),
+            Interpolation::Sizes => team.map(GRAIN, self.logs.len(), |v| interpolation.of_log(&self.logs[v])),
+        };
+        self.interpolation = interpolation;
+        self
+    }
+
+    /// Its complexity ∫ √det M.
+    pub fn complexity(&self, team: Team<'_>) -> f64 {
+        self.interpolation.complexity(team, self.locator.mesh(), &self.logs)
     }
 
     /// At how many vertices sizes were cut.
@@ -54,16 +73,18 @@ impl Background {
         self.cut
     }
 
-    /// ln M at p, log-Euclidean in the tetrahedron that contains p, or in the nearest one at the point nearest to p.
+    /// ln M at p, interpolated in the tetrahedron that contains p, or in the nearest one at the point nearest to p.
     /// The search starts at the tetrahedron `hint` (any number will do), which becomes the one found.
     #[inline]
     pub fn log_at(&self, p: Vec3, hint: &mut u32) -> Sym3 {
         let found = self.locator.locate(p, hint);
         let nodes = self.locator.tets()[found.tet as usize];
-        let mut log = Sym3::ZERO;
+        let values = if self.values.is_empty() { &self.logs } else { &self.values };
+        let mut value = Sym3::ZERO;
         for (node, weight) in nodes.into_iter().zip(found.weights) {
-            log = log.plus(self.logs[node as usize].times(weight));
+            value = value.plus(values[node as usize].times(weight));
         }
+        let log = self.interpolation.log(&value);
         if self.is_wide { log.held_log() } else { log }
     }
 
@@ -72,6 +93,8 @@ impl Background {
         team.fill(GRAIN, &mut self.logs, |_, logs| {
             logs.iter_mut().for_each(|log| *log = log.plus_identity(log_factor));
         });
+        let factor = (-0.5 * log_factor).exp();
+        team.fill(GRAIN, &mut self.values, |_, sizes| sizes.iter_mut().for_each(|size| *size = size.times(factor)));
     }
 
     /// The mesh, for searches.

@@ -1,5 +1,5 @@
 //! Where a new vertex takes its metric from.
-use super::field::{complexity_between, complexity_of_logs};
+use super::field::complexity_of_logs;
 use super::{Analytic, Background, Error, Sym3, held};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{EDGES, MatchedFaces};
@@ -55,7 +55,7 @@ impl Source {
     pub fn complexity(&self, team: Team<'_>, mesh: &TetMesh) -> f64 {
         let corners = |t: usize| Some(mesh.tets.nodes[t].map(|v| mesh.vertices[v as usize]));
         match self {
-            Self::Background(background) => complexity_between(team, mesh, background.logs()),
+            Self::Background(background) => background.complexity(team),
             Self::Analytic { .. } => self.sampled_complexity(team, mesh.tets.len(), corners),
         }
     }
@@ -68,7 +68,7 @@ impl Source {
         corners: impl Fn(usize) -> Option<[Vec3; 4]> + Sync,
     ) -> f64 {
         match self {
-            Self::Background(background) => complexity_between(team, background.locator().mesh(), background.logs()),
+            Self::Background(background) => background.complexity(team),
             Self::Analytic { .. } => self.sampled_complexity(team, tets, corners),
         }
     }

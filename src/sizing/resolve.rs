@@ -1,9 +1,9 @@
 //! A mesh that resolves the geometry's metric: the given one, with its edges halved where sizes between the ends are not what the ends
 //! make of them.
 //!
-//! A metric is interpolated along the edges of the mesh that it lies on. On a coarse mesh that is wrong by orders: from an apex with a size
-//! of 1e-3, sizes grow along a unit edge as a geometric series and not, as gradation lets them, in proportion to the distance. So edges
-//! are halved, and the geometry is asked at their middles, until interpolation and growth agree or the edge is but a few sizes long.
+//! The metric lies on it with [`Interpolation::Sizes`]: from an apex with a size of 1e-3, sizes grow along a unit edge in proportion to the
+//! distance, as gradation lets them. What that misses are places that are far from all that is fine, and have no vertex: there edges are
+//! halved, and on the boundary the geometry is asked at their middles, until interpolation and growth agree.
 use super::feature::Place;
 use super::field::{Asked, Sizing};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry};
@@ -12,7 +12,8 @@ use crate::mesh::adjacency::sorted2;
 use crate::mesh::bisection::{Halved, bisect};
 use crate::mesh::vector::{Vec3, distance, lerp, sub};
 use crate::mesh::vertex_neighbours::VertexNeighbours;
-use crate::metric::{Limits, Sym3, gradation};
+use crate::metric::frame::{Both, Frame, intersect};
+use crate::metric::{Interpolation, Limits, Sym3, gradation};
 use crate::tasks::{GRAIN, Team, stage};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -23,16 +24,15 @@ const SPACING: f64 = 0.5;
 const FINEST: f64 = 1.0 / 32.0;
 /// An edge of no more than so many sizes is short enough whatever the sizes between its ends.
 const SHORT: f64 = 4.0;
-/// How much finer interpolation may be than growth from the ends, in the middle of an edge.
-const WRONG: f64 = 1.5;
-/// A side of a triangle that is so many times as long as one that is halved is halved too.
-const LONGER: f64 = 1.45;
-/// Most rounds: each halves edges. A size is no less than 1e-16 of the mesh.
-const ROUNDS: usize = 64;
+/// How much finer interpolation may be than what growth allows, in the middle of an edge. (On the wing of the UGAWG's M6 in its far field
+/// 2.5 adds a tenth of the vertices that 1.5 adds, and complexities differ by less than what the next mesh brings.)
+const WRONG: f64 = 2.5;
+/// Most rounds: each halves edges.
+const ROUNDS: usize = 32;
 /// Most vertices that are added, and so many times those of the mesh: where more are asked for, the metric is too fine for a first mesh, and
 /// whoever uses it bounds its complexity.
-const MOST: [usize; 2] = [200_000, 2];
-/// Fewer vertices than one in so many are few, and as many edges.
+const MOST: [usize; 2] = [50_000, 2];
+/// Fewer vertices than one in so many are few.
 const FEW: usize = 100;
 /// Vertices a task. Each task makes an evaluator.
 const TASK: usize = 1 << 6;
@@ -43,6 +43,8 @@ pub struct Resolved {
     pub halved: Option<Halved>,
     /// ln M at all vertices, not graded.
     pub logs: Vec<Sym3>,
+    /// ln M graded, to be interpolated by [`Interpolation::Sizes`].
+    pub graded: Vec<Sym3>,
 }
 
 impl Resolved {
@@ -62,10 +64,10 @@ impl Resolved {
 pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limits) -> Resolved {
     let limited = |metric: &Sym3| limits.apply_to_log(&metric.ln());
     let logs = team.map(GRAIN, metrics.len(), |v| limited(&metrics[v]));
-    let mut found = Resolved { halved: None, logs };
+    let mut found = Resolved { halved: None, logs, graded: Vec::new() };
     let mut finer = Finer::of(sizing);
     let mut logs: Vec<Sym3> = Vec::new();
-    for _ in 0..ROUNDS {
+    for round in 0.. {
         let mesh = found.mesh(sizing.mesh);
         let around = VertexNeighbours::of_mesh(team, mesh);
         // Where few vertices were added, what is graded stays so.
@@ -74,12 +76,19 @@ pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limit
         }
         logs.extend(&found.logs[logs.len()..]);
         gradation::grade_with(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
-        let edges = finer.unresolved(team, sizing, mesh, &around, &logs);
-        if edges.is_empty() || found.added() + edges.len() > MOST[0] + MOST[1] * metrics.len() {
+        if round == ROUNDS {
             break;
         }
+        let edges = finer.unresolved(team, sizing, mesh, &around, &logs);
         let places = finer.middles(mesh, &edges);
-        found.logs.extend(ask(team, sizing, mesh, &edges, &places).iter().map(limited));
+        let asked: Vec<Sym3> = ask(team, sizing, mesh, &edges, &places).iter().map(limited).collect();
+        let wrong = finer.wrong(edges, places, asked);
+        if wrong.is_empty() || found.added() + wrong.len() > MOST[0] + MOST[1] * metrics.len() {
+            break;
+        }
+        let (edges, places): (Vec<[u32; 2]>, Vec<Middle>) =
+            wrong.iter().map(|(edge, place, _)| (*edge, *place)).unzip();
+        found.logs.extend(wrong.iter().map(|(.., log)| *log));
         let (mut mesh, mut parents) = match found.halved.take() {
             Some(Halved { mesh, parents }) => (mesh, parents),
             None => (Arc::new(sizing.mesh.clone()), Vec::new()),
@@ -89,28 +98,8 @@ pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limit
         found.halved = Some(Halved { mesh, parents });
         stage("geometry resolved");
     }
+    found.graded = logs;
     found
-}
-
-/// Adds the longest side of each triangle that has one of these edges, where that is far longer: else halving gets no nearer to an end, as on a
-/// side whose thirds see one end each (longest-edge propagation, Rivara 1997).
-fn add_longer(mesh: &TetMesh, around: &VertexNeighbours, edges: &mut Vec<[u32; 2]>) {
-    let length = |a: u32, b: u32| distance(mesh.vertices[a as usize], mesh.vertices[b as usize]);
-    let mut marked: HashSet<[u32; 2]> = edges.iter().copied().collect();
-    let mut next = 0;
-    while next < edges.len() {
-        let [a, b] = edges[next];
-        next += 1;
-        let least = LONGER * length(a, b);
-        let beside_b = around.of_vertex(b);
-        for &c in around.of_vertex(a).iter().filter(|c| beside_b.contains(c)) {
-            let (to_a, to_b) = (length(a, c), length(b, c));
-            let (longest, side) = if to_a > to_b { (to_a, sorted2([a, c])) } else { (to_b, sorted2([b, c])) };
-            if longest > least && marked.insert(side) {
-                edges.push(side);
-            }
-        }
-    }
 }
 
 /// Where the middle of an edge lies.
@@ -119,6 +108,80 @@ struct Middle {
     entity: Entity,
     /// A triangle of the given mesh that it is in.
     triangle: Option<u32>,
+}
+
+/// An edge that may be halved.
+#[derive(Clone, Copy)]
+struct Marked {
+    nodes: [u32; 2],
+    /// What interpolation makes of its middle and what growth allows there; none where the edge is too long whatever they are.
+    means: Option<[Frame; 2]>,
+}
+
+/// The graded metric along the edges.
+struct Along<'a> {
+    mesh: &'a TetMesh,
+    around: &'a VertexNeighbours,
+    /// M^(−1/2), M and M by its eigenvectors at the vertices.
+    values: Vec<Sym3>,
+    metrics: Vec<Sym3>,
+    frames: Vec<Frame>,
+    growth: f64,
+    greatest: f64,
+}
+
+impl<'a> Along<'a> {
+    fn of(team: Team<'_>, sizing: &Sizing, mesh: &'a TetMesh, around: &'a VertexNeighbours, logs: &[Sym3]) -> Self {
+        Self {
+            mesh,
+            around,
+            values: team.map(GRAIN, logs.len(), |v| Interpolation::Sizes.of_log(&logs[v])),
+            metrics: team.map(GRAIN, logs.len(), |v| logs[v].exp()),
+            frames: team.map(GRAIN, logs.len(), |v| Frame::of_log(&logs[v])),
+            growth: sizing.growth,
+            greatest: sizing.options.greatest,
+        }
+    }
+
+    /// The edge, if in its middle interpolation is much finer than what its ends and their common neighbours allow.
+    fn marked(&self, nodes: [u32; 2]) -> Option<Marked> {
+        let [p, q] = nodes.map(|v| v as usize);
+        let edge = sub(self.mesh.vertices[q], self.mesh.vertices[p]);
+        let lengths = [p, q].map(|v| self.metrics[v].quadratic(edge).sqrt());
+        if lengths[0].max(lengths[1]) <= SHORT {
+            return None;
+        }
+        let made = Frame::of_log(&Interpolation::Sizes.log(&self.values[p].plus(self.values[q]).times(0.5)));
+        let middle = lerp(self.mesh.vertices[p], self.mesh.vertices[q], 0.5);
+        let grown = |v: u32| {
+            let from = &self.frames[v as usize];
+            let roots = from.grown(sub(middle, self.mesh.vertices[v as usize]), self.growth);
+            Frame { roots: roots.map(|root| root.max(1.0 / self.greatest)), ..*from }
+        };
+        let mut allowed = both(grown(nodes[0]), grown(nodes[1]));
+        if !is_finer(&made, &allowed, WRONG) {
+            return None;
+        }
+        let beside = self.around.of_vertex(nodes[1]);
+        for &v in self.around.of_vertex(nodes[0]).iter().filter(|v| beside.contains(v)) {
+            allowed = both(allowed, grown(v));
+        }
+        is_finer(&made, &allowed, WRONG).then_some(Marked { nodes, means: Some([made, allowed]) })
+    }
+}
+
+/// The intersection of two metrics.
+fn both(a: Frame, b: Frame) -> Frame {
+    match intersect(&a, &b, 1e-3) {
+        Both::First => a,
+        Both::Second => b,
+        Both::New(both) => both,
+    }
+}
+
+/// Whether a metric is finer than another in some direction, by more than this ratio.
+fn is_finer(a: &Frame, than: &Frame, ratio: f64) -> bool {
+    !than.relative(a, a.roots).is_below(ratio * ratio)
 }
 
 /// What is known of the mesh with its added vertices.
@@ -131,6 +194,8 @@ struct Finer {
     ridges: HashMap<[u32; 2], u32>,
     /// How short the sides of each given triangle are made.
     asked: Vec<f64>,
+    /// Edges whose middles the geometry was asked at in vain.
+    settled: HashSet<[u32; 2]>,
 }
 
 impl Finer {
@@ -147,10 +212,11 @@ impl Finer {
             triangles: (0..mesh.triangles.len() as u32).collect(),
             ridges: place.ridges.iter().map(|&([a, b], edge)| (sorted2([a, b]), edge)).collect(),
             asked: asked.collect(),
+            settled: HashSet::new(),
         }
     }
 
-    /// The edges along which the metric is not resolved, the longest first.
+    /// The edges along which the metric may not be resolved, the longest first.
     fn unresolved(
         &self,
         team: Team<'_>,
@@ -158,54 +224,60 @@ impl Finer {
         mesh: &TetMesh,
         around: &VertexNeighbours,
         logs: &[Sym3],
-    ) -> Vec<[u32; 2]> {
-        let sizes = team.map(GRAIN, logs.len(), |v| (-0.5 * logs[v].eigen().values[2]).exp());
-        let metrics = team.map(GRAIN, logs.len(), |v| logs[v].exp());
-        let (growth, greatest) = (sizing.growth, sizing.options.greatest);
-        let is_wrong = |p: u32, q: u32| {
-            let [p, q] = [p as usize, q as usize];
-            let edge = sub(mesh.vertices[q], mesh.vertices[p]);
-            let length = distance(mesh.vertices[p], mesh.vertices[q]);
-            let across = [p, q].map(|v| length / metrics[v].quadratic(edge).sqrt());
-            // No edge is longer in a metric than by its least size.
-            if length <= SHORT * across[0].min(across[1]) {
-                return false;
-            }
-            let is_finer = |[a, b]: [f64; 2]| {
-                let grown = (a.min(b) + 0.5 * growth * length).min(greatest);
-                grown > WRONG * (a * b).sqrt()
-            };
-            is_finer(across) || is_finer([sizes[p], sizes[q]])
-        };
+    ) -> Vec<Marked> {
+        let along = Along::of(team, sizing, mesh, around, logs);
         let mut edges = team.collect(TASK, around.len(), |range, edges| {
             for p in range.start as u32..range.end as u32 {
-                edges.extend(around.of_vertex(p).iter().filter(|&&q| p < q && is_wrong(p, q)).map(|&q| [p, q]));
+                let marked =
+                    |&q: &u32| if p < q && !self.settled.contains(&[p, q]) { along.marked([p, q]) } else { None };
+                edges.extend(around.of_vertex(p).iter().filter_map(marked));
             }
         });
         for (nodes, &triangle) in mesh.triangles.nodes.iter().zip(&self.triangles) {
             for i in 0..3 {
                 let [a, b] = sorted2([nodes[i], nodes[(i + 1) % 3]]);
                 if distance(mesh.vertices[a as usize], mesh.vertices[b as usize]) > self.asked[triangle as usize] {
-                    edges.push([a, b]);
+                    edges.push(Marked { nodes: [a, b], means: None });
                 }
             }
         }
-        team.sort(&mut edges);
-        edges.dedup();
-        // What goes on at few places may have no end there.
-        if FEW * edges.len() < around.len() {
-            add_longer(mesh, around, &mut edges);
-        }
-        let length = |&[a, b]: &[u32; 2]| distance(mesh.vertices[a as usize], mesh.vertices[b as usize]);
+        // Of the two entries of an edge that one is long whatever its metric stays.
+        edges.sort_by_key(|edge| (edge.nodes, edge.means.is_some()));
+        edges.dedup_by_key(|edge| edge.nodes);
+        let length = |edge: &Marked| {
+            let [p, q] = edge.nodes.map(|v| mesh.vertices[v as usize]);
+            distance(p, q)
+        };
         edges.sort_by(|a, b| length(b).total_cmp(&length(a)));
         edges
     }
 
+    /// Those of the edges that are to be halved, with where their middles lie and what the geometry asks for there. An edge of the boundary is
+    /// left alone where that changes nothing.
+    fn wrong(&mut self, edges: Vec<Marked>, places: Vec<Middle>, asked: Vec<Sym3>) -> Vec<([u32; 2], Middle, Sym3)> {
+        let mut wrong = Vec::with_capacity(edges.len());
+        for ((edge, middle), log) in edges.into_iter().zip(places).zip(asked) {
+            let is_wrong = edge.means.is_none_or(|[made, allowed]| {
+                let asked = Frame::of_log(&log);
+                middle.entity == Entity::Interior
+                    || is_finer(&made, &both(allowed, asked), WRONG)
+                    || is_finer(&asked, &made, WRONG)
+            });
+            if is_wrong {
+                wrong.push((edge.nodes, middle, log));
+            } else {
+                self.settled.insert(edge.nodes);
+            }
+        }
+        wrong
+    }
+
     /// Where the middles of these edges lie.
-    fn middles(&self, mesh: &TetMesh, edges: &[[u32; 2]]) -> Vec<Middle> {
+    fn middles(&self, mesh: &TetMesh, edges: &[Marked]) -> Vec<Middle> {
         let mut on: HashMap<[u32; 2], u32> = HashMap::new();
         let is_end = |v: u32| self.is_on_boundary[v as usize];
-        let marked: HashSet<[u32; 2]> = edges.iter().filter(|[a, b]| is_end(*a) && is_end(*b)).copied().collect();
+        let marked: HashSet<[u32; 2]> =
+            edges.iter().map(|edge| edge.nodes).filter(|[a, b]| is_end(*a) && is_end(*b)).collect();
         if !marked.is_empty() {
             for (nodes, &triangle) in mesh.triangles.nodes.iter().zip(&self.triangles) {
                 for i in 0..3 {
@@ -216,7 +288,7 @@ impl Finer {
                 }
             }
         }
-        let middle = |edge: &[u32; 2]| {
+        let middle = |Marked { nodes: edge, .. }: &Marked| {
             let triangle = on.get(edge).copied();
             match (self.ridges.get(edge), triangle) {
                 (Some(&ridge), _) => Middle { entity: Entity::Edge(ridge), triangle },
@@ -243,11 +315,11 @@ impl Finer {
 }
 
 /// The metrics that the geometry asks for in the middles of these edges.
-fn ask(team: Team<'_>, sizing: &Sizing, mesh: &TetMesh, edges: &[[u32; 2]], places: &[Middle]) -> Vec<Sym3> {
+fn ask(team: Team<'_>, sizing: &Sizing, mesh: &TetMesh, edges: &[Marked], places: &[Middle]) -> Vec<Sym3> {
     team.collect(TASK, edges.len(), |range, found| {
         let (mut evaluator, mut asked) = (sizing.model.evaluator(), Asked::default());
         for i in range {
-            let [p, q] = edges[i].map(|v| mesh.vertices[v as usize]);
+            let [p, q] = edges[i].nodes.map(|v| mesh.vertices[v as usize]);
             found.push(at(sizing, &mut evaluator, lerp(p, q, 0.5), places[i], &mut asked));
         }
     })

@@ -5,6 +5,7 @@ mod outline;
 mod patch;
 pub mod plane;
 mod points;
+mod proximity;
 mod rough;
 #[cfg(test)]
 mod tests;
@@ -81,6 +82,8 @@ pub struct Surface {
     pub flat: usize,
     /// How many triangles look away from their face.
     pub turned: usize,
+    /// For each triangle about how far it is off its face.
+    pub off: Vec<f64>,
 }
 
 impl Surface {
@@ -118,6 +121,8 @@ const ATTEMPTS: [(f64, f64); 7] =
 const LARGE: usize = 20_000;
 /// So many pairs that cross are a fault of the model: no division helps.
 const MANY: usize = 3_000;
+/// So many more triangles may be too near to others than at first, or twice as many.
+const NEAR: usize = 40;
 /// Wishes of a face at most.
 const WISHES: usize = 256;
 
@@ -156,7 +161,8 @@ fn attempt(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> bool) -> Op
     let mut faces: Vec<Face> = topology.faces.iter().map(|_| Face::default()).collect();
     let mut dirty: BTreeSet<u32> = (0..faces.len() as u32).collect();
     let mut history: Vec<usize> = Vec::new();
-    let mut best: Option<(usize, Surface)> = None;
+    let mut most_near = None;
+    let mut best: Option<((usize, usize), Surface)> = None;
     for _ in 0..ROUNDS {
         let mut asked = Asked::default();
         for &face in &dirty {
@@ -167,12 +173,14 @@ fn attempt(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> bool) -> Op
         }
         if asked.pieces.is_empty() && asked.faces.is_empty() {
             let mut surface = whole::assemble(model, &points, &faces);
-            let faults = whole::find_faults(model, &mut surface, &mut faces, options, &mut asked);
+            let (faults, near) = whole::find_faults(model, &mut surface, &mut faces, options, &mut asked);
             history.push(faults);
-            if best.as_ref().is_none_or(|(least, _)| faults < *least) {
-                best = Some((faults, surface));
+            if best.as_ref().is_none_or(|(least, _)| (faults, near) < *least) {
+                best = Some(((faults, near), surface));
             }
-            if faults == 0 || history.len() > options.rounds || is_hopeless(&history) {
+            // In a tip triangles come the nearer the finer they are.
+            let is_tip = near > *most_near.get_or_insert(2 * near + NEAR);
+            if faults + near == 0 || history.len() > options.rounds || is_tip || faults > 0 && is_hopeless(&history) {
                 break;
             }
         }

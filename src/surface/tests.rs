@@ -99,6 +99,15 @@ fn parameters_that_are_skew_do_not_fold() {
     check("aircraft/transport-half.step", 0.1);
 }
 
+/// Bridges of 0.0002 beside a round hole: its chords were off their arcs by fifty times as much.
+#[test]
+fn chords_are_nearer_to_their_arcs_than_to_what_lies_behind() {
+    let surface = check("zoo/bridged-plate.step", 0.05);
+    assert!(proximity::too_near(&surface, &surface.off).is_empty());
+    // What is no nearer than its neighbours stays as it is.
+    assert!(surface.triangles.len() < 4000, "{}", surface.triangles.len());
+}
+
 #[test]
 fn bodies_that_touch_in_an_edge_are_divided_alike() {
     let surface = check("zoo/knife-edge.brep", 1e-9);

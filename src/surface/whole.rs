@@ -1,6 +1,7 @@
 //! The triangles of all faces as one surface, and where they are to be finer: at edges that are met too often, and where they cross.
 use super::plane::NONE;
 use super::points::{Place, Points};
+use super::proximity;
 use super::{Asked, Face, Options, Surface, WISHES, Wish};
 use crate::geometry::{Evaluate, Geometry, OcctEvaluator, OcctModel, Side};
 use crate::mesh::adjacency::sorted2;
@@ -70,6 +71,7 @@ pub fn assemble(model: &OcctModel, points: &Points, faces: &[Face]) -> Surface {
             if a != b && b != c && c != a {
                 surface.triangles.push(if is_turned { [a, c, b] } else { [a, b, c] });
                 surface.faces.push(number);
+                surface.off.push(patch.off(*corners));
             }
         }
         if surface.triangles.len() == before {
@@ -103,14 +105,15 @@ pub fn pieces_of(surface: &Surface) -> Vec<([u32; 2], u32, u32)> {
     all
 }
 
-/// Looks for edges that are met too often and for triangles that cross, and asks for finer ones there; how many there are.
+/// Looks for edges that are met too often and for triangles that cross, and asks for finer ones there. How many there are, and how many
+/// triangles are too near to others.
 pub fn find_faults(
     model: &OcctModel,
     surface: &mut Surface,
     faces: &mut [Face],
     options: &Options,
     asked: &mut Asked,
-) -> usize {
+) -> (usize, usize) {
     find_crossings(surface);
     let pieces = pieces_of(surface);
     let piece_at = |ends: [u32; 2]| pieces.binary_search_by_key(&ends, |&(ends, _, _)| ends).ok().map(|i| &pieces[i]);
@@ -152,6 +155,10 @@ pub fn find_faults(
             asked.faces.insert(face);
         }
     }
+    let near = proximity::too_near(surface, &surface.off);
+    for &t in &near {
+        ask_finer(surface, faces, options, &piece_at, t, asked);
+    }
     let mut on = model.evaluator();
     for pair in surface.crossings.clone() {
         let mut is_any = false;
@@ -169,7 +176,7 @@ pub fn find_faults(
             ask_finer(surface, faces, options, &piece_at, t, asked);
         }
     }
-    faults
+    (faults, near.len())
 }
 
 /// The middle of a triangle, and the closest point of its face.

@@ -17,7 +17,7 @@ use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::mesh::{TetMesh, crossing, io};
 use crate::metric::held::GREATEST_RATIO;
 use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
-use crate::metric::{self, Background, Field, Limits, Source, Sym3, field, grade};
+use crate::metric::{self, Background, Field, Interpolation, Limits, Source, Sym3, field, grade};
 use crate::sizing;
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
@@ -229,7 +229,7 @@ impl InputArguments {
             None => {
                 let complexity = self.complexity.ok_or("--field needs a --complexity")?;
                 let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
-                let wanted = (complexity, Measure::Between);
+                let wanted = (complexity, Measure::Between(Interpolation::default()));
                 let (logs, made) =
                     self.multiscale.make(team, (mesh, copies), &self.field.field, wanted, fixed.as_deref(), notices)?;
                 (logs, Some(made))
@@ -248,7 +248,13 @@ impl InputArguments {
         let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth());
         let fixed = self.local_sizes(team, mesh, names)?;
         let complexity = self.complexity.unwrap_or(1.0);
-        let bounds = Bounds { complexity, measure: Measure::Between, gradation, limits, fixed: fixed.as_deref() };
+        let bounds = Bounds {
+            complexity,
+            measure: Measure::Between(Interpolation::default()),
+            gradation,
+            limits,
+            fixed: fixed.as_deref(),
+        };
         if self.complexity.is_some() {
             return bounded(team, mesh, &logs, &bounds).map(|found| found.0).map_err(|error| error.to_string());
         }
@@ -292,7 +298,13 @@ impl InputArguments {
         let most = GEOMETRY_SHARE * complexity;
         if own > most {
             let limits = Limits::default();
-            let bounds = Bounds { complexity: most, measure: Measure::Between, gradation, limits, fixed: None };
+            let bounds = Bounds {
+                complexity: most,
+                measure: Measure::Between(Interpolation::default()),
+                gradation,
+                limits,
+                fixed: None,
+            };
             logs = bounded(team, mesh, &raw, &bounds).map_err(|error| format!("the geometry's metric: {error}"))?.0;
             notices.push(format!(
                 "the geometry alone asks for a complexity of {own:.0}: its sizes are enlarged, to leave half of {complexity} to \

@@ -10,7 +10,7 @@ use crate::cli::adapt::files::Targets;
 use crate::cli::adapt::input::Input;
 use crate::cli::adapt::progress::{Progress, finish_on_interrupt};
 use crate::cli::adapt::report::{Asked, Report};
-use crate::cli::{interrupt, table};
+use crate::cli::{INVALID, interrupt, table};
 use crate::geometry::classify::Classification;
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Geometry, Model};
@@ -18,7 +18,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::vector::Vec3;
 use crate::metric::multiscale::{Bounds, Measure, bounded};
-use crate::metric::{Background, Limits, Source, Sym3, field, grade};
+use crate::metric::{Background, Interpolation, Limits, Source, Sym3, grade};
 use crate::sizing::{self, Resolved};
 use crate::tasks::{Plan, Pool, Team, stage};
 use std::process::ExitCode;
@@ -95,16 +95,17 @@ fn is_settled(before: f64, after: f64) -> bool {
 }
 
 impl Refined {
-    /// Vertices off the model, whether a triangle of the surface is turned over, and pairs of triangles that cross: 0, false and 0 for a
-    /// good mesh.
-    fn flaws(&self) -> (usize, bool, usize) {
-        let folded = self.fidelity.worst_normal.is_some_and(|worst| worst.deviation > FOLDED);
-        (self.adapted.extracted.off_model.len(), folded, self.adapted.extracted.crossings.count)
+    fn flaws(&self) -> Flaws {
+        Flaws {
+            off: self.adapted.extracted.off_model.len(),
+            folded: self.fidelity.worst_normal.is_some_and(|worst| worst.deviation > FOLDED),
+            crossings: self.adapted.extracted.crossings.count,
+        }
     }
 
     /// Why another mesh to begin with may be better.
     pub fn flaw(&self) -> Option<String> {
-        let (off, folded, crossings) = self.flaws();
+        let Flaws { off, folded, crossings } = self.flaws();
         let at = |at: Option<Vec3>| at.map_or(String::new(), |at| format!(" at {}", table::place(at)));
         if self.interrupted || off == 0 && !folded && crossings == 0 {
             None
@@ -134,6 +135,7 @@ impl Refined {
         model: Model,
         start: Instant,
     ) -> Outcome {
+        let is_refused = self.flaws().are_refused();
         let flaw = self.flaw().map(|flaw| format!("{}: {flaw}; no mesh to begin with gave a better one", self.by));
         for notice in self.notices.iter().chain(&flaw).filter(|_| !arguments.quiet) {
             crate::cli::note(notice);
@@ -147,7 +149,31 @@ impl Refined {
         if !arguments.quiet {
             crate::cli::print(&format!("{:<26} {}\n{}", "mesher", self.by, report.text()))?;
         }
-        Ok(if self.interrupted { interrupt::exit_code() } else { ExitCode::SUCCESS })
+        Ok(if self.interrupted {
+            interrupt::exit_code()
+        } else if is_refused {
+            ExitCode::from(INVALID)
+        } else {
+            ExitCode::SUCCESS
+        })
+    }
+}
+
+/// What is wrong with a mesh; the first is the worst.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Flaws {
+    /// Vertices off the model.
+    off: usize,
+    /// Whether a triangle of the surface is turned over.
+    folded: bool,
+    /// Pairs of triangles that cross.
+    crossings: usize,
+}
+
+impl Flaws {
+    /// Whether other commands refuse such a mesh.
+    fn are_refused(&self) -> bool {
+        self.off > 0 || self.crossings > 0
     }
 }
 
@@ -175,21 +201,27 @@ fn sizes(
     let _line = Waiting::for_what("the geometry's sizes", !arguments.quiet);
     let options = arguments.sizes.options(model, arguments.limits(), None);
     let mut resolved = sizing::resolved_metric(team, mesh, place, model, &options);
+    let on = Arc::clone(resolved.halved.as_ref().map_or(mesh, |halved| &halved.mesh));
+    let on = &on;
     if arguments.far_field.is_some() {
         resolve_body(mesh, place, model, &mut resolved);
+        resolved.graded.clone_from(&resolved.logs);
+        grade(team, on, &mut resolved.graded, GRADATION);
     }
-    let on = resolved.halved.as_ref().map_or(mesh, |halved| &halved.mesh);
     let faces = MatchedFaces::of(team, &on.tets.nodes);
-    let source = |logs| Source::Background(Background::on(team, Arc::clone(on), faces, logs));
-    let mut logs = resolved.logs.clone();
-    grade(team, on, &mut logs, GRADATION);
-    let complexity = field::complexity_between(team, on, &logs);
+    let source = |logs| {
+        let background = Background::on(team, Arc::clone(on), faces, logs);
+        Source::Background(background.interpolated(team, Interpolation::Sizes))
+    };
+    let logs = resolved.graded;
+    let complexity = Interpolation::Sizes.complexity(team, on, &logs);
     let most = arguments.complexity;
     if complexity <= most {
         return Ok(Sizes { source: source(logs), complexity, notice: None });
     }
     let (gradation, limits) = (Some(GRADATION), Limits::default());
-    let bounds = Bounds { complexity: most, measure: Measure::Between, gradation, limits, fixed: None };
+    let bounds =
+        Bounds { complexity: most, measure: Measure::Between(Interpolation::Sizes), gradation, limits, fixed: None };
     let enlarged = bounded(team, on, &resolved.logs, &bounds);
     let (logs, _) = enlarged.map_err(|error| format!("the geometry's metric: {error}"))?;
     let notice = format!(
@@ -222,3 +254,17 @@ const BODY: f64 = 0.1;
 
 /// Growth of the sizes from an edge to the next, as elsewhere.
 const GRADATION: f64 = 1.5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_others_refuse_does_not_pass() {
+        let flaws = |off, folded, crossings| Flaws { off, folded, crossings };
+        assert!(!flaws(0, false, 0).are_refused() && !flaws(0, true, 0).are_refused());
+        assert!(flaws(1, false, 0).are_refused() && flaws(0, false, 1).are_refused());
+        // Vertices off the model are the worst.
+        assert!(flaws(0, true, 9) < flaws(1, false, 0) && flaws(0, false, 9) < flaws(0, true, 0));
+    }
+}

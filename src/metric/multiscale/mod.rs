@@ -20,7 +20,7 @@ pub use bounded::{Bounds, bounded};
 pub use norm::Norm;
 
 use super::recovery::{Recovery, Rings};
-use super::{Limits, Sym3, field, intersect_all};
+use super::{Interpolation, Limits, Sym3, field, intersect_all};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
@@ -47,14 +47,14 @@ pub enum Measure {
     #[default]
     AtVertices,
     /// ∫ √det M of the interpolant. It predicts the vertices of the adapted mesh even where this mesh does not resolve its metric.
-    Between,
+    Between(Interpolation),
 }
 
 impl Measure {
     fn of(self, team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 {
         match self {
             Self::AtVertices => field::complexity_of_logs(team, mesh, logs),
-            Self::Between => field::complexity_between(team, mesh, logs),
+            Self::Between(interpolation) => interpolation.complexity(team, mesh, logs),
         }
     }
 }

@@ -7,7 +7,7 @@ use super::outline::{Outline, Scale};
 use super::plane::{Conflict, NONE, Plane, Point, Region};
 use super::points::Points;
 use crate::geometry::OcctEvaluator;
-use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale};
+use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale, sub};
 use std::ops::{Deref, DerefMut};
 
 /// Cosines between a triangle and its surface: what new ones must have, if the old ones had it; below what one looks away.
@@ -184,6 +184,18 @@ impl Patch {
     /// Parameters of a corner.
     pub fn uv(&self, corner: u32) -> Point {
         self.scale.parameters(self.plane[corner as usize])
+    }
+
+    /// About how far a triangle is off its face, model units: where the normals at the ends of a chord of length L lean by θ from the plane
+    /// across it, the arc above it is L θ/4 high.
+    pub fn off(&self, corners: [u32; 3]) -> f64 {
+        let height = |i: usize| {
+            let [a, b] = [corners[i], corners[(i + 1) % 3]];
+            let chord = sub(self.spot(b), self.spot(a));
+            let lean = |c: u32| dot(self.normals[c as usize], chord).abs();
+            0.25 * lean(a).max(lean(b))
+        };
+        (0..3).map(height).fold(0.0, f64::max)
     }
 
     fn spot(&self, corner: u32) -> Vec3 {
