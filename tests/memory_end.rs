@@ -132,7 +132,7 @@ fn run(words: &[String], megabytes: u64, place: &Place) -> Option<(Option<i32>, 
 
 /// Whether our main begins with so much: the version is told without further memory.
 fn begins(megabytes: u64, place: &Place) -> bool {
-    run(&["--version".to_owned()], megabytes, place).is_none_or(|(code, _)| code.is_some())
+    run(&["--version".to_owned()], megabytes, place).is_none_or(|(code, _)| code == Some(0))
 }
 
 /// Whether this is how a run may end.
@@ -140,8 +140,8 @@ fn is_well(words: &[String], (code, said): (Option<i32>, &str), begins: impl FnO
     match code {
         Some(0) => true,
         Some(ENDED) => said.lines().any(|line| line.contains("memory") || line.contains("cannot start")),
-        // The loader's own words.
-        Some(NOT_LOADED) => said.contains("error while loading shared libraries"),
+        // The loader's own words; without memory for these it says less.
+        Some(NOT_LOADED) => said.contains("error while loading shared libraries") || !begins(),
         // Those of Rust and of the libraries, before our main begins.
         None => !begins(),
         // There is no mesher.
