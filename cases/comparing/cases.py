@@ -66,6 +66,8 @@ def _written(name, count):
 @functools.cache
 def natural(ours):
     """Our own mesh of polar-2 at its natural complexity (4 322): four cycles from the project's start mesh."""
+    # cases/threads comes here first of all.
+    OUT.mkdir(parents=True, exist_ok=True)
     current, log = OWN_START, OUT / "natural.log"
     log.unlink(missing_ok=True)
     for cycle in range(1, 5):
