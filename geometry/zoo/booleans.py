@@ -58,7 +58,7 @@ def perforated_plate():
 
 
 def bridged_plate():
-    """A plate of 1 × 1 × 0.01 whose round hole leaves bridges of 0.0002 at its sides: an arc that comes fifty times nearer to a plane than its chord is off it."""
+    """A plate of 1 × 1 × 0.01 whose round hole leaves bridges of 0.0002 at its sides."""
     import cadquery
 
     return cadquery.Workplane().box(1, 1, 0.01).cut(cylinder(0.4998, 1, "z").rotate((0, 0, 0), (0, 0, 1), 30))

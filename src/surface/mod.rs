@@ -121,7 +121,7 @@ const ATTEMPTS: [(f64, f64); 7] =
 const LARGE: usize = 20_000;
 /// So many pairs that cross are a fault of the model: no division helps.
 const MANY: usize = 3_000;
-/// So many more triangles may be too near to others than at first, or twice as many.
+/// Division ends where more triangles are too near to others than so many, and twice those at first.
 const NEAR: usize = 40;
 /// Wishes of a face at most.
 const WISHES: usize = 256;

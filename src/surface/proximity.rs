@@ -13,8 +13,8 @@ const OPPOSITE: f64 = -0.5;
 /// Triangles nearer to their surface than this share of their longest edge are flat.
 const FLAT: f64 = 1e-6;
 
-/// The triangles that are too near to others for what they are off their surface, and among two the one that is farther off, or both if they are
-/// alike. `off` tells for each triangle by how much, model units. Sorted.
+/// The triangles that are too near to others, sorted. `off` is how far each triangle is off its surface, model units. Of two triangles it is the
+/// one that is farther off; both if neither is twice as far off as the other.
 pub fn too_near(surface: &Surface, off: &[f64]) -> Vec<u32> {
     let corners = |t: u32| surface.triangles[t as usize].map(|v| surface.points[v as usize]);
     let reach = |t: u32| {
