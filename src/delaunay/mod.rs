@@ -14,6 +14,7 @@ mod pipe;
 mod predicates;
 mod recovery;
 mod regions;
+mod shells;
 mod suppress;
 #[cfg(test)]
 mod tests;

@@ -35,17 +35,14 @@ impl Recovery<'_> {
     pub fn run(&mut self) -> Result<(), Error> {
         let (mut edges, mut facets) = self.missing();
         let mut fresh: Vec<u32> = Vec::new();
+        let mut centres = Vec::new();
         loop {
-            for depth in [0, 1, 2, DEPTH, DEPTH] {
-                let mut left = Vec::new();
-                for e in edges {
-                    self.go_on()?;
-                    if self.surface.with_edge(e[0], e[1]).is_some() && !self.recover_edge(e[0], e[1], depth)? {
-                        left.push(e);
-                    }
-                }
-                edges = left;
+            self.recover_edges(&mut edges, &[0, 1, 2, DEPTH])?;
+            if self.split_on_shells(&edges, &mut centres)? {
+                (edges, facets) = self.missing();
+                continue;
             }
+            self.recover_edges(&mut edges, &[DEPTH])?;
             if !edges.is_empty() {
                 // Each that is still missing is split, and what that makes is tried at once.
                 for e in std::mem::take(&mut edges) {
@@ -93,6 +90,21 @@ impl Recovery<'_> {
                 facets.extend_from_slice(&fresh);
             }
         }
+    }
+
+    /// Recovers edges with searches of these depths; those that are still missing stay in the list.
+    fn recover_edges(&mut self, edges: &mut Vec<[u32; 2]>, depths: &[u32]) -> Result<(), Error> {
+        for &depth in depths {
+            let mut left = Vec::new();
+            for &[u, v] in edges.iter() {
+                self.go_on()?;
+                if self.surface.with_edge(u, v).is_some() && !self.recover_edge(u, v, depth)? {
+                    left.push([u, v]);
+                }
+            }
+            *edges = left;
+        }
+        Ok(())
     }
 
     /// Asks the caller whether to go on.
@@ -197,9 +209,6 @@ impl Recovery<'_> {
     /// Adds a point on the missing edge (u, v); appends the triangles that are new with it.
     fn split_edge(&mut self, u: u32, v: u32, changed: &mut Vec<u32>) -> Result<(), Error> {
         let Some(t) = self.surface.with_edge(u, v) else { return Ok(()) };
-        if self.added.len() >= self.most_added {
-            return Err(self.unrecovered(t));
-        }
         let (u, v) = (u.min(v), u.max(v));
         let at = self.crossing_place(u, v);
         let new = self.mesh.points.len() as u32;
@@ -212,9 +221,6 @@ impl Recovery<'_> {
 
     /// Adds a point in the missing triangle t, whose edges are there; appends the three triangles.
     fn split_facet(&mut self, t: u32, changed: &mut Vec<u32>) -> Result<(), Error> {
-        if self.added.len() >= self.most_added {
-            return Err(self.unrecovered(t));
-        }
         let f = self.surface.nodes[t as usize];
         let at = self.facet_place(t);
         let new = self.mesh.points.len() as u32;
@@ -229,14 +235,22 @@ impl Recovery<'_> {
 
     /// Inserts the point `p` of the caller, for triangle t.
     fn add_point(&mut self, p: Vec3, origin: Origin, t: u32) -> Result<(), Error> {
-        if p.iter().any(|x| !x.is_finite()) {
+        let v = self.take_point(p, origin, t)?;
+        self.insert_among_constraints(v, t)
+    }
+
+    /// Takes the point `p` of the caller, for triangle t, as a vertex without tetrahedra.
+    ///
+    /// # Errors
+    /// There are too many added points, or it is not finite.
+    pub fn take_point(&mut self, p: Vec3, origin: Origin, t: u32) -> Result<u32, Error> {
+        if self.added.len() >= self.most_added || p.iter().any(|x| !x.is_finite()) {
             return Err(self.unrecovered(t));
         }
         let v = self.mesh.push_point(scale(p, self.scale));
         self.surface.push_vertex();
-        self.insert_among_constraints(v, t)?;
         self.added.push(Added { point: p, origin });
-        Ok(())
+        Ok(v)
     }
 
     /// The error that triangle t crosses the one of the surface that has the edge or face `nodes`.

@@ -175,6 +175,18 @@ fn random_blobs() {
 }
 
 #[test]
+fn fans_in_a_saddle() {
+    // Without shells the second was not done in two minutes.
+    for (n, pole) in [(16, 0.8), (60, 0.8), (40, 0.5)] {
+        let s = wavy_ball(n, pole);
+        let start = std::time::Instant::now();
+        let r = run(&s).unwrap();
+        println!("{n} {pole}: {} added, {} on the surface, {:?}", r.added.len(), on_surface(&r), start.elapsed());
+        check(&s, &r);
+    }
+}
+
+#[test]
 fn points_stay_on_the_surface_when_asked() {
     let s = schonhardt();
     let keep = |suppress| {

@@ -10,9 +10,10 @@ use crate::geometry::classify::Classification;
 use crate::geometry::discrete::DiscreteOptions;
 use crate::geometry::{Discrete, Model};
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::sorted2;
+use crate::mesh::adjacency::{sorted2, sorted3};
 use crate::mesh::vector::{Vec3, lerp};
 use crate::tasks::Team;
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -33,6 +34,11 @@ pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Durati
     let named = |error: String| format!("{}: {error}", path.display());
     let read = read_surface(team, path).map_err(|error| error.to_string())?;
     let mut surface = alone(read.content);
+    let mut notices = read.notices;
+    let repeated = drop_repeated(&mut surface);
+    if repeated > 0 {
+        notices.push(format!("{repeated} triangles are there twice, as between the parts of an assembly: each was taken once"));
+    }
     check_closed(&surface).map_err(named)?;
     let end = Instant::now().checked_add(limit);
     let go_on = || end.is_none_or(|end| Instant::now() < end);
@@ -45,7 +51,7 @@ pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Durati
     let model = Model::Discrete(discrete);
     let (mesh, on_model) = meshed(&model, &surface, &on, (&filled, &solids));
     let (mesh, place) = judge(team, mesh, &model, Some(on_model)).map_err(named)?;
-    Ok((model, Meshed { mesh, place, by: Rung::Own, notices: read.notices }))
+    Ok((model, Meshed { mesh, place, by: Rung::Own, notices }))
 }
 
 /// The triangles of a mesh with their vertices and what is listed on them.
@@ -56,10 +62,25 @@ fn alone(mesh: TetMesh) -> TetMesh {
     surface
 }
 
+/// The sides of a triangle, the lower vertex first.
+fn sides_of(nodes: &[u32; 3]) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|k| sorted2([nodes[k], nodes[(k + 1) % 3]]))
+}
+
+/// Leaves out triangles that are there again, as between the parts of an assembly; gives their number.
+fn drop_repeated(surface: &mut TetMesh) -> usize {
+    let mut known = HashSet::new();
+    let triangles = std::mem::take(&mut surface.triangles);
+    let count = triangles.len();
+    for (nodes, reference) in triangles.iter().filter(|(nodes, _)| known.insert(sorted3(*nodes))) {
+        surface.triangles.push(nodes, reference);
+    }
+    count - surface.triangles.len()
+}
+
 /// Whether each edge has triangles on two sides.
 fn check_closed(surface: &TetMesh) -> Result<(), String> {
-    let sides = |nodes: &[u32; 3]| [0, 1, 2].map(|k| sorted2([nodes[k], nodes[(k + 1) % 3]]));
-    let mut all: Vec<[u32; 2]> = surface.triangles.nodes.iter().flat_map(sides).collect();
+    let mut all: Vec<[u32; 2]> = surface.triangles.nodes.iter().flat_map(sides_of).collect();
     all.sort_unstable();
     let mut open = all.chunk_by(|a, b| a == b).filter(|same| same.len() == 1).map(|same| same[0]);
     let Some(first) = open.next() else { return Ok(()) };
@@ -113,7 +134,7 @@ fn meshed(
     for ((nodes, source), sides) in filled.triangles.iter().zip(&filled.source).zip(&filled.sides) {
         // What lies between two regions without tetrahedra bounds nothing.
         if sides.iter().any(|&region| solids[region as usize].is_some()) {
-            mesh.triangles.push(*nodes, surface.triangles.refs[*source as usize]);
+            mesh.triangles.push(*nodes, on.faces[*source as usize] as i32 + 1);
         }
     }
     for (nodes, region) in filled.tets.iter().zip(&filled.regions) {
@@ -122,10 +143,14 @@ fn meshed(
         }
     }
     let mut on_model = filled.points.clone();
-    let mut curves = on.ridges.iter().map(|&(nodes, edge)| (sorted2(nodes), edge)).collect();
+    let mut curves: BTreeMap<[u32; 2], u32> = on.ridges.iter().map(|&(nodes, edge)| (sorted2(nodes), edge)).collect();
     for added in added::places(model, filled, |triangle| on.faces[triangle as usize], &mut curves) {
         on_model[added.vertex as usize] = added.point;
     }
+    // The edges of the model are known: they are not to be guessed anew from angles.
+    let sides = mesh.triangles.nodes.iter().flat_map(sides_of).collect::<BTreeSet<_>>();
+    curves.retain(|nodes, _| sides.contains(nodes));
+    curves.iter().for_each(|(nodes, edge)| mesh.edges.push(*nodes, *edge as i32 + 1));
     drop_unused(&mut mesh, &mut on_model);
     (mesh, on_model)
 }

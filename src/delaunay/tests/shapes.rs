@@ -246,3 +246,27 @@ pub fn blob(n: usize, seed: u64, bumps: f64, stretch: Vec3) -> Shape {
         .collect();
     Shape { points, triangles }
 }
+
+/// A ball of n rings of n points with four waves, and poles at that height: with 0.8 fans of n narrow triangles go into a
+/// saddle, with less into a crater.
+pub fn wavy_ball(n: u32, pole: f64) -> Shape {
+    let mut s = Shape { points: vec![[0.0, 0.0, pole]], triangles: Vec::new() };
+    for i in 0..n {
+        for j in 0..n {
+            let (t, p) = (PI * (f64::from(i) + 0.5) / f64::from(n), TAU * f64::from(j) / f64::from(n));
+            let r = 1.0 + 0.2 * (3.0 * t).sin() * (4.0 * p).cos();
+            s.points.push([r * t.sin() * p.cos(), r * t.sin() * p.sin(), r * t.cos()]);
+        }
+    }
+    s.points.push([0.0, 0.0, -pole]);
+    let at = |i: u32, j: u32| 1 + n * i + j % n;
+    for j in 0..n {
+        s.triangles.push([0, at(0, j), at(0, j + 1)]);
+        s.triangles.push([1 + n * n, at(n - 1, j + 1), at(n - 1, j)]);
+        for i in 0..n - 1 {
+            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            s.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    s
+}
