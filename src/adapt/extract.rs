@@ -4,8 +4,8 @@ use crate::adapt::core::ids::{FACE, TetId, VertexId};
 use crate::adapt::core::numbering::inverse;
 use crate::adapt::core::required::Required;
 use crate::adapt::core::store::Store;
-use crate::geometry::Entity;
 use crate::geometry::classify::Classification;
+use crate::geometry::{Entity, Evaluate, Geometry, Model};
 use crate::mesh::crossing::{self, Crossings};
 use crate::mesh::vector::Vec3;
 use crate::mesh::{Elements, TetMesh};
@@ -78,7 +78,7 @@ pub fn extract(
     mesh.triangles.nodes = triangles.iter().map(|triangle| triangle.nodes).collect();
     mesh.triangles.refs = triangles.iter().map(|triangle| refs.faces[triangle.face as usize]).collect();
     let crossings = crossings(team, &mesh.vertices, &triangles);
-    let classification = Classification {
+    let mut classification = Classification {
         entities: at(team, &vertices, |v| store.entity(v)),
         parameters: at(team, &vertices, |v| store.parameters(v)),
         projected: mesh.vertices.clone(),
@@ -93,11 +93,33 @@ pub fn extract(
     Required::list(input, &mut mesh, |v| Some(context.ids[v as usize]).filter(|&v| is_there(v)).map(renumber));
     let mut off_model: Vec<u32> = unprojected.iter().filter(|v| store.is_vertex(**v)).map(|v| renumber(*v)).collect();
     off_model.sort_unstable();
+    settle(&mut classification, &off_model, context.model);
     let held = context.required.frozen().filter(|&v| store.dimension(v) < 3).map(renumber);
     let mut held: Vec<u32> = held.collect();
     held.sort_unstable();
     let metrics = at(team, &vertices, |v| store.metric(v));
     Extracted { mesh, classification, metrics, off_model, held, crossings }
+}
+
+/// Sets the projected places of the vertices without room on the model to their closest points there, so that the next
+/// run tries again.
+fn settle(place: &mut Classification, off_model: &[u32], model: &Model) {
+    let mut evaluator = model.evaluator();
+    for v in off_model.iter().map(|&v| v as usize) {
+        let (point, parameters) = (place.projected[v], &mut place.parameters[v]);
+        match place.entities[v] {
+            Entity::Edge(edge) => {
+                let on = evaluator.closest_on_edge(edge, point, Some(parameters[0]));
+                (place.projected[v], *parameters) = (on.point, [on.t, 0.0]);
+            }
+            Entity::Face(face) => {
+                let on = evaluator.closest_on_face(face, point, Some(*parameters));
+                (place.projected[v], *parameters) = (on.point, on.uv);
+            }
+            Entity::Vertex(corner) => place.projected[v] = model.topology().vertices[corner as usize].point,
+            Entity::Interior => {}
+        }
+    }
 }
 
 /// Where the boundary passes through itself, by the numbers of the triangles.

@@ -4,7 +4,7 @@ use crate::adapt::{Adapted, Extracted};
 use crate::geometry::classify::Classification;
 #[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
-use crate::geometry::{Entity, Evaluate, Geometry, Model};
+use crate::geometry::Model;
 use crate::mesh::TetMesh;
 use crate::mesh::crossing::Crossings;
 use crate::metric::Background;
@@ -76,7 +76,7 @@ impl AdaptedMesh {
 
     /// Of what the kernel gives; `old` is the mesh that went in, taken apart at `doubled`.
     pub(super) fn of(team: Team<'_>, adapted: Adapted, model: &Model, old: &Background, doubled: Vec<u32>) -> Self {
-        let Extracted { mut mesh, mut classification, metrics, off_model, held, crossings } = adapted.extracted;
+        let Extracted { mut mesh, classification, metrics, off_model, held, crossings } = adapted.extracted;
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &classification),
             #[cfg(feature = "occt")]
@@ -84,7 +84,6 @@ impl AdaptedMesh {
                 associate(&mut mesh, &classification);
             }
         }
-        settle(&mut classification, &off_model, model);
         let Places { tets, weights, outside, farthest } = Places::of(team, old.locator(), &mesh.vertices);
         Self {
             metric: metrics.iter().map(|metric| metric.0).collect(),
@@ -97,26 +96,6 @@ impl AdaptedMesh {
             overgrown: adapted.overgrown,
             deviating: adapted.deviating,
             crossings,
-        }
-    }
-}
-
-/// Sets the projected places of the vertices without room on the model to their closest points there, so that the next call tries again.
-fn settle(place: &mut Classification, off_model: &[u32], model: &Model) {
-    let mut evaluator = model.evaluator();
-    for v in off_model.iter().map(|&v| v as usize) {
-        let (point, parameters) = (place.projected[v], &mut place.parameters[v]);
-        match place.entities[v] {
-            Entity::Edge(edge) => {
-                let on = evaluator.closest_on_edge(edge, point, Some(parameters[0]));
-                (place.projected[v], *parameters) = (on.point, [on.t, 0.0]);
-            }
-            Entity::Face(face) => {
-                let on = evaluator.closest_on_face(face, point, Some(*parameters));
-                (place.projected[v], *parameters) = (on.point, on.uv);
-            }
-            Entity::Vertex(corner) => place.projected[v] = model.topology().vertices[corner as usize].point,
-            Entity::Interior => {}
         }
     }
 }

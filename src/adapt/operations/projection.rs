@@ -53,7 +53,7 @@ impl Operation for Project {
         item: VertexId,
     ) -> Result<(), Refusal> {
         let result = worker.project(item);
-        if result == Err(Refusal::Inverted) {
+        if result.is_err_and(|refusal| !matches!(refusal, Refusal::Conflict | Refusal::Stale)) {
             worker.state.unprojected.push(item);
         }
         result

@@ -317,23 +317,19 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn settle(&mut self, pass: usize) {
         self.project();
         if !self.unprojected.is_empty() && pass >= PATIENCE {
-            self.remove_unprojected();
+            self.remove_unprojected(pass + 1 == SHAPE_PASSES);
         }
     }
 
-    /// Takes out the vertices that found no room on the model.
-    fn remove_unprojected(&mut self) {
+    /// Takes out the vertices that found no room on the model: where the surface becomes no worse, or at any price.
+    fn remove_unprojected(&mut self, at_any_price: bool) {
         let limits = self.context.limits;
-        // They go at any price: a coarse surface can be refined again, one beside the model stays there.
-        self.context.limits = Limits {
-            collapse_floor: 0.0,
-            longest_new: f64::INFINITY,
-            cos_deviation: -1.0,
-            cos_variation: -1.0,
-            chord: f64::INFINITY,
-            ball: usize::MAX,
-            ..limits
-        };
+        self.context.limits = Limits { collapse_floor: 0.0, longest_new: f64::INFINITY, ball: usize::MAX, ..limits };
+        if at_any_price {
+            // A coarse surface can be refined again, one beside the model stays there.
+            self.context.limits =
+                Limits { cos_deviation: -1.0, cos_variation: -1.0, chord: f64::INFINITY, ..self.context.limits };
+        }
         let items = std::mem::take(&mut self.unprojected);
         self.sweep(Kind::Project, &RemoveUnprojected, &items);
         self.collect_unprojected();

@@ -35,7 +35,9 @@ pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Durati
     let read = read_surface(team, path).map_err(|error| error.to_string())?;
     let mut surface = alone(read.content);
     let mut notices = read.notices;
-    let repeated = drop_repeated(&mut surface);
+    let count = surface.triangles.len();
+    let kept = drop_repeated(&mut surface);
+    let repeated = count - kept.len();
     if repeated > 0 {
         notices.push(format!("{repeated} triangles are there twice, as between the parts of an assembly: each was taken once"));
     }
@@ -44,7 +46,7 @@ pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Durati
     let go_on = || end.is_none_or(|end| Instant::now() < end);
     let (points, triangles) = (&surface.vertices, &surface.triangles.nodes);
     let mut filled = tetrahedralise(points, triangles, &mut FlatWhile(&go_on), delaunay::Options::default())
-        .map_err(|error| named(describe(&error, &surface)))?;
+        .map_err(|error| named(describe(&error, &surface, &kept)))?;
     let solids = solids(&filled);
     look_out(&mut surface, &mut filled, &solids);
     let (discrete, on) = Discrete::new(team, &surface, options).map_err(|error| named(error.to_string()))?;
@@ -67,15 +69,17 @@ fn sides_of(nodes: &[u32; 3]) -> [[u32; 2]; 3] {
     [0, 1, 2].map(|k| sorted2([nodes[k], nodes[(k + 1) % 3]]))
 }
 
-/// Leaves out triangles that are there again, as between the parts of an assembly; gives their number.
-fn drop_repeated(surface: &mut TetMesh) -> usize {
+/// Leaves out triangles that are there again, as between the parts of an assembly; gives the numbers that the others had.
+fn drop_repeated(surface: &mut TetMesh) -> Vec<u32> {
     let mut known = HashSet::new();
-    let triangles = std::mem::take(&mut surface.triangles);
-    let count = triangles.len();
-    for (nodes, reference) in triangles.iter().filter(|(nodes, _)| known.insert(sorted3(*nodes))) {
-        surface.triangles.push(nodes, reference);
+    let mut kept = Vec::new();
+    for (number, (nodes, reference)) in (0..).zip(std::mem::take(&mut surface.triangles).iter()) {
+        if known.insert(sorted3(nodes)) {
+            surface.triangles.push(nodes, reference);
+            kept.push(number);
+        }
     }
-    count - surface.triangles.len()
+    kept
 }
 
 /// Whether each edge has triangles on two sides.
@@ -93,8 +97,9 @@ fn check_closed(surface: &TetMesh) -> Result<(), String> {
     ))
 }
 
-/// An error in the words of the file.
-fn describe(error: &delaunay::Error, surface: &TetMesh) -> String {
+/// An error in the words of the file, where the triangles have the numbers `kept`.
+fn describe(error: &delaunay::Error, surface: &TetMesh, kept: &[u32]) -> String {
+    let number = |triangle: u32| kept.get(triangle as usize).map_or(0, |number| number + 1);
     let at = |v: u32| place(surface.vertices[v as usize]);
     let repair = "repair it in the program that made it";
     match *error {
@@ -104,18 +109,18 @@ fn describe(error: &delaunay::Error, surface: &TetMesh) -> String {
         }
         delaunay::Error::Points(PointError::Flat) => "the surface lies in one plane and bounds nothing".into(),
         delaunay::Error::Points(PointError::TooMany) => "it has more vertices than numbers of 32 bits allow".into(),
-        delaunay::Error::Corners { triangle } => format!("triangle {} has a corner twice; {repair}", triangle + 1),
+        delaunay::Error::Corners { triangle } => format!("triangle {} has a corner twice; {repair}", number(triangle)),
         delaunay::Error::Repeated { triangles: [a, b] } => {
-            format!("triangles {} and {} are the same; {repair}", a + 1, b + 1)
+            format!("triangles {} and {} are the same; {repair}", number(a), number(b))
         }
         delaunay::Error::Crossing { triangles: [a, b], at } => {
-            format!("triangles {} and {} cross near {}; {repair}", a + 1, b + 1, place(at))
+            format!("triangles {} and {} cross near {}; {repair}", number(a), number(b), place(at))
         }
         delaunay::Error::Touching { triangle, point, at } => {
-            format!("vertex {} lies on triangle {} near {}; {repair}", point + 1, triangle + 1, place(at))
+            format!("vertex {} lies on triangle {} near {}; {repair}", point + 1, number(triangle), place(at))
         }
         delaunay::Error::Unrecovered { triangle, at } => {
-            format!("triangle {} could not be kept near {}; {repair}", triangle + 1, place(at))
+            format!("triangle {} could not be kept near {}; {repair}", number(triangle), place(at))
         }
         delaunay::Error::Stopped => "its tetrahedra took too long; give a greater --time-limit".into(),
     }

@@ -77,7 +77,7 @@ mod tests {
         let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, vec![v]);
         pipeline.surface = SurfaceBounds { normal_deviation: Some(10.0), hausdorff: Some(1e-9) };
         pipeline.limit(shape_limits());
-        pipeline.remove_unprojected();
+        pipeline.remove_unprojected(true);
         assert!(pipeline.unprojected.is_empty() && !pipeline.context.store.is_vertex(v));
         // What is left is still held to the bounds.
         assert_eq!(pipeline.context.limits.chord, 1e-9);
