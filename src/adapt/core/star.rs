@@ -166,8 +166,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let face = FACE[i].map(|k| v[k]);
         let interior = behind.is_some() && star.inside.contains(behind.0);
         if tag != 0 && seed.consumes(face) {
-            // An interface triangle is met from both sides, and listed once.
-            if !interior || t < behind {
+            if !interior || self.store.lists_triangle(t, behind) {
                 star.surface.push(([face[0], face[2], face[1]], tag));
             }
             return Ok(());

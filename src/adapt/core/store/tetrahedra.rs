@@ -64,6 +64,13 @@ impl Store {
         self.tets[t.index()].region.load(Relaxed)
     }
 
+    /// Whether a surface triangle between t and `behind` is listed from t. An interface is met from both sides: it is listed from its lesser
+    /// region, so that the triangles about a vertex look to one side.
+    #[inline(always)]
+    pub fn lists_triangle(&self, t: TetId, behind: TetId) -> bool {
+        !behind.is_some() || (self.region(t), t) < (self.region(behind), behind)
+    }
+
     /// The mean ratio kept with the tetrahedron.
     #[inline(always)]
     pub fn quality(&self, t: TetId) -> f64 {
