@@ -198,7 +198,7 @@ fn over_tets(team: Team<'_>, mesh: &TetMesh, of_tet: impl Fn(&[u32; 4]) -> f64 +
 
 /// Mean of e^ℓ over a tetrahedron, ℓ linear with these values at its vertices: Σ_k 3!/(k+3)! h_k(ℓ), with h_k the complete
 /// homogeneous polynomial (Hermite–Genocchi); counted from the least value no term is negative.
-fn mean_exponential(values: [f64; 4]) -> f64 {
+pub(super) fn mean_exponential(values: [f64; 4]) -> f64 {
     let least = values.into_iter().fold(f64::INFINITY, f64::min);
     let above = values.map(|value| value - least);
     // partial[i] is the term with h_k of the first i + 1 values only.

@@ -53,14 +53,18 @@ impl Interpolation {
                         .iter()
                         .map(|nodes| {
                             let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
-                            let corners = nodes.map(|v| Corner::of(sizes[v as usize]));
-                            volume6(a, b, c, d) / 6.0 * mean_density(corners, DEEPEST)
+                            volume6(a, b, c, d) / 6.0 * mean_of_sizes(nodes.map(|v| sizes[v as usize]))
                         })
                         .sum()
                 })
             }
         }
     }
+}
+
+/// The mean of √det M over a tetrahedron in which M^(−1/2) is linear, with these values at its corners.
+pub(super) fn mean_of_sizes(sizes: [Sym3; 4]) -> f64 {
+    mean_density(sizes.map(Corner::of), DEEPEST)
 }
 
 /// M^(−1/2) at a corner of a tetrahedron, and √det M.

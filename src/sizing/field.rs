@@ -9,7 +9,7 @@ use super::{Options, Summary};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluator, Geometry, Model};
 use crate::mesh::TetMesh;
-use crate::metric::{Limits, Sym3, gradation};
+use crate::metric::{Limits, Sym3, gradation, restrict};
 use crate::tasks::{GRAIN, Team};
 
 /// Vertices a task. Each task makes an evaluator.
@@ -46,7 +46,8 @@ struct Found {
 
 /// ln M at the vertices of a mesh, shape (n,), lengths in model units: sizes 1/(n |κ|) along the principal directions of the CAD faces and
 /// the tangents of the edges, limited across thin parts and gaps, between `least` and `greatest`; inside and on what is flat the greatest
-/// size. Then gradation, along the edges of the tetrahedra, or of the triangles where there are none.
+/// size. Then gradation, along the edges of the tetrahedra, or of the triangles where there are none, and sizes as large as ln M on this mesh
+/// has to have them for the complexity that is asked for ([`restrict`]).
 ///
 /// `place` says where the mesh lies on the model. Coordinates are those of the model: vertices are taken where they were projected.
 pub fn geometry_metric(
@@ -72,6 +73,7 @@ pub fn geometry_metric(
         summary.graded = gradation::grade(team, mesh, &mut logs, ratio).changed;
         // Grown metrics that meet at an angle can leave sizes a little below the least.
         limits.apply(team, &mut logs);
+        summary.enlarged = restrict(team, mesh, &mut logs);
     }
     (logs, summary)
 }

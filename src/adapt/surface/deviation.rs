@@ -179,8 +179,31 @@ impl<A: Access> Worker<'_, '_, A> {
 mod tests {
     use super::*;
     use crate::adapt::core::access::Exclusive;
+    use crate::adapt::core::ball::Ball;
     use crate::adapt::core::ids::FACE;
-    use crate::adapt::tests::bench::{Bench, Shape, sample};
+    use crate::adapt::tests::bench::{Bench, Shape, Task, sample};
+
+    #[test]
+    fn an_interface_is_seen_from_one_side() {
+        let sample = sample(Shape::TwoRegions, 4, 0.5);
+        let mut bench = Bench::new(&sample, 1, 3);
+        for task in [Task::Split, Task::Collapse, Task::Split] {
+            bench.sweep(task);
+        }
+        let store = &bench.context.store;
+        let middle = |v: &VertexId| store.dimension(*v) == 2 && store.position(*v)[0] == 0.5;
+        let vertices: Vec<VertexId> = store.live_vertices().filter(middle).collect();
+        assert!(vertices.len() > 10, "{}", vertices.len());
+        let mut worker = Worker::new(&bench.context, &mut bench.states[0], Exclusive);
+        for v in vertices {
+            let (mut ball, mut triangles) = (Ball::default(), Vec::new());
+            worker.gather_ball(v, &mut ball).unwrap();
+            worker.list_surface(v, &ball.tets, &mut triangles);
+            let sides = triangles.iter().map(|&(triangle, tag)| worker.surface_deviation(triangle, tag - 1).cos_deviation);
+            let sides: Vec<f64> = sides.collect();
+            assert!(sides.len() > 2 && sides.iter().all(|side| side * sides[0] > 0.9), "{sides:?}");
+        }
+    }
 
     #[test]
     fn a_distance_that_is_no_number_is_beyond_any_bound() {

@@ -17,7 +17,7 @@ use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::mesh::{TetMesh, crossing, io};
 use crate::metric::held::GREATEST_RATIO;
 use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
-use crate::metric::{self, Background, Field, Interpolation, Limits, Source, Sym3, field, grade};
+use crate::metric::{self, Background, Field, Interpolation, Limits, Source, Sym3, field, grade, restrict};
 use crate::sizing;
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
@@ -293,6 +293,7 @@ impl InputArguments {
         let mut logs = raw.clone();
         if let Some(ratio) = gradation {
             grade(team, mesh, &mut logs, ratio);
+            restrict(team, mesh, &mut logs);
         }
         let own = field::complexity_between(team, mesh, &logs);
         let most = GEOMETRY_SHARE * complexity;

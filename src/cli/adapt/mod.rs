@@ -134,6 +134,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
         if progress.interrupted() {
             return Ok(interrupt::exit_code());
         }
+        if report.is_refused() {
+            // No command would take it, the next cycle neither.
+            return Ok(ExitCode::from(super::INVALID));
+        }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
         given = Given { mesh: std::mem::take(&mut report.mesh), logs, names: report.names.clone(), is_result: true };
         cad = arguments.input.has_model().then_some(input.model);

@@ -145,6 +145,11 @@ impl Report {
         }
     }
 
+    /// Whether other commands refuse the mesh on this model: a vertex is off it.
+    pub fn is_refused(&self) -> bool {
+        !self.off_model.is_empty()
+    }
+
     /// The table for the terminal.
     pub fn text(&self) -> String {
         let mut table = Table::new();
