@@ -44,6 +44,11 @@ impl Options {
     pub fn new(diagonal: f64) -> Self {
         Self { segments: 1.5, greatest: diagonal / 8.0, least: 1e-5 * diagonal, growth: 0.5, rounds: 12 }
     }
+
+    /// The same with sizes divided by `ratio`.
+    pub fn finer(self, ratio: f64) -> Self {
+        Self { segments: ratio * self.segments, greatest: self.greatest / ratio, ..self }
+    }
 }
 
 /// A size that is wanted about a point of a face.

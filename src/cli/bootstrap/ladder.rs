@@ -121,8 +121,8 @@ impl<'a> Ladder<'a> {
 
     /// One rung: the mesh, valid and on the model.
     fn attempt(&self, rung: Rung, limit: Duration) -> Result<(TetMesh, Classification), Miss> {
-        if rung == Rung::Own {
-            let Some((mesh, on_model)) = own(self.model, limit).map_err(Miss::Failed)? else {
+        if let Rung::Own { finer } = rung {
+            let Some((mesh, on_model)) = own(self.model, finer, limit).map_err(Miss::Failed)? else {
                 return Err(Miss::TooLong("it was ended (--time-limit)".into()));
             };
             return judge(self.team, mesh, self.model, Some(on_model)).map_err(Miss::Failed);
@@ -162,12 +162,12 @@ impl<'a> Ladder<'a> {
 
 /// Our own mesh, and where its vertices belong on the model; none where the time was over.
 #[cfg(feature = "occt")]
-fn own(model: &Model, limit: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, String> {
-    super::own::run(model, limit).map(|own| own.map(|own| (own.mesh, own.on_model)))
+fn own(model: &Model, finer: f64, limit: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, String> {
+    super::own::run(model, finer, limit).map(|own| own.map(|own| (own.mesh, own.on_model)))
 }
 
 #[cfg(not(feature = "occt"))]
-fn own(_: &Model, _: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, String> {
+fn own(_: &Model, _: f64, _: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, String> {
     Err("this program was built without OpenCASCADE".into())
 }
 
@@ -187,7 +187,7 @@ fn describe((missing, failed): (&[String], &[(Rung, String)]), is_over: bool, lo
         [_] => format!("{rung} made no valid mesh of it: {why}"),
         _ => format!("no mesher made a valid mesh of it in {} attempts; the last, {rung}: {why}", failed.len()),
     };
-    let said = if failed.iter().all(|(rung, _)| *rung == Rung::Own) {
+    let said = if failed.iter().all(|(rung, _)| matches!(rung, Rung::Own { .. })) {
         String::new()
     } else {
         format!(" (all that was said is in {})", log.display())
@@ -219,7 +219,7 @@ fn start(
     log: &Path,
 ) -> Result<(), Miss> {
     let (variable, remedy, places) = match rung {
-        Rung::Own | Rung::Gmsh { .. } | Rung::Triangles => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
+        Rung::Own { .. } | Rung::Gmsh { .. } | Rung::Triangles => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
         Rung::Netgen { .. } => (netgen::VARIABLE, netgen::REMEDY, netgen_places()),
     };
     let failed = |error: std::io::Error| Miss::Failed(format!("no file for it: {error}"));
@@ -268,7 +268,7 @@ fn command(
         Rung::Gmsh { surface, volume, finer, least } => {
             gmsh::command(program, (surface, volume, finer, least), wish, place, files)
         }
-        Rung::Own | Rung::Triangles => Ok(gmsh::run(program, &place.file(gmsh::TRIANGLES), files[1])),
+        Rung::Own { .. } | Rung::Triangles => Ok(gmsh::run(program, &place.file(gmsh::TRIANGLES), files[1])),
         Rung::Netgen { finer } => netgen::command(program, finer, wish, place, files),
     }
 }

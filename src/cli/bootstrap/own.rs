@@ -21,13 +21,13 @@ pub struct Own {
     pub on_model: Vec<Vec3>,
 }
 
-/// Makes it; none where the time was over.
+/// Makes it, with the sizes of the surface divided by `finer`; none where the time was over.
 ///
 /// # Errors
 /// What part of the surface could not be triangulated or filled, and where.
-pub fn run(model: &Model, limit: Duration) -> Result<Option<Own>, String> {
+pub fn run(model: &Model, finer: f64, limit: Duration) -> Result<Option<Own>, String> {
     let Model::Occt(cad) = model else { return Err("it is no CAD model".into()) };
-    let options = Options::new(model.topology().diagonal());
+    let options = Options::new(model.topology().diagonal()).finer(finer);
     let end = Instant::now().checked_add(limit);
     let go_on = || end.is_none_or(|end| Instant::now() < end);
     let Some(surface) = triangulate(cad, &options, &go_on) else { return Ok(None) };

@@ -125,7 +125,8 @@ mod tests {
 
     #[test]
     fn one_alone_has_all_the_time() {
-        assert_eq!(Queue::new(Rung::of(Choice::Own), WHOLE).next(), Some((Rung::Own, WHOLE)));
+        let alone = Rung::Netgen { finer: 1.0 };
+        assert_eq!(Queue::new([alone].into_iter(), WHOLE).next(), Some((alone, WHOLE)));
     }
 
     #[test]

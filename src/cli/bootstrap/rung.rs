@@ -27,7 +27,7 @@ pub enum Choice {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rung {
     /// Our own: constrained Delaunay tetrahedra of our own triangulation.
-    Own,
+    Own { finer: f64 },
     /// gmsh, with its numbers of the algorithms in two and in three dimensions.
     Gmsh { surface: u32, volume: u32, finer: f64, least: Least },
     /// gmsh, on OpenCASCADE's own triangles: poor ones, but there are some of any face.
@@ -46,8 +46,9 @@ pub enum Least {
 }
 
 /// What is tried in turn. gmsh: 6 is frontal-Delaunay, 5 Delaunay, 1 MeshAdapt; in three dimensions 1 is Delaunay, 10 HXT, 4 frontal.
-const RUNGS: [Rung; 13] = [
-    Rung::Own,
+const RUNGS: [Rung; 14] = [
+    Rung::Own { finer: 1.0 },
+    Rung::Own { finer: 2.0 },
     Rung::Gmsh { surface: 6, volume: 1, finer: 1.0, least: Least::Usual },
     Rung::Gmsh { surface: 5, volume: 1, finer: 1.0, least: Least::Usual },
     Rung::Gmsh { surface: 6, volume: 10, finer: 1.0, least: Least::Usual },
@@ -66,7 +67,7 @@ impl Rung {
     /// What may be tried.
     pub fn of(choice: Choice) -> impl Iterator<Item = Self> {
         RUNGS.into_iter().filter(move |rung| match rung {
-            Self::Own => matches!(choice, Choice::Auto | Choice::Own),
+            Self::Own { .. } => matches!(choice, Choice::Auto | Choice::Own),
             Self::Gmsh { .. } | Self::Triangles => matches!(choice, Choice::Auto | Choice::Gmsh),
             Self::Netgen { .. } => matches!(choice, Choice::Auto | Choice::Netgen),
         })
@@ -75,7 +76,7 @@ impl Rung {
     /// The program.
     pub fn program(self) -> &'static str {
         match self {
-            Self::Own => OWN,
+            Self::Own { .. } => OWN,
             Self::Gmsh { .. } | Self::Triangles => GMSH,
             Self::Netgen { .. } => NETGEN,
         }
@@ -85,7 +86,8 @@ impl Rung {
     pub fn is_light(self) -> bool {
         match self {
             Self::Gmsh { least, .. } => least == Least::Large,
-            Self::Own | Self::Triangles => true,
+            Self::Triangles => true,
+            Self::Own { finer } => finer < 2.0,
             Self::Netgen { finer } => finer < 1.0,
         }
     }
@@ -94,7 +96,10 @@ impl Rung {
 impl std::fmt::Display for Rung {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let finer = match *self {
-            Self::Own => return write!(f, "geo-adapt (constrained Delaunay)"),
+            Self::Own { finer } => {
+                write!(f, "geo-adapt (constrained Delaunay")?;
+                finer
+            }
             Self::Gmsh { surface, volume, finer, least } => {
                 write!(f, "gmsh ({} surfaces, {} volumes", algorithm(surface), algorithm_3d(volume))?;
                 if least == Least::Large {

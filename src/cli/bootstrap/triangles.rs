@@ -53,7 +53,7 @@ pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Durati
     let model = Model::Discrete(discrete);
     let (mesh, on_model) = meshed(&model, &surface, &on, (&filled, &solids));
     let (mesh, place) = judge(team, mesh, &model, Some(on_model)).map_err(named)?;
-    Ok((model, Meshed { mesh, place, by: Rung::Own, notices }))
+    Ok((model, Meshed { mesh, place, by: Rung::Own { finer: 1.0 }, notices }))
 }
 
 /// The triangles of a mesh with their vertices and what is listed on them.
