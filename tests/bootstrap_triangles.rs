@@ -145,3 +145,16 @@ fn holes_crossings_and_what_it_cannot_do_are_told() {
     let message = told(&ball, &["--time-limit", "1e-9"]);
     assert!(message.contains("--time-limit"), "{message}");
 }
+
+#[test]
+fn parts_that_share_triangles_are_solids_beside_each_other() {
+    let place = Place::new();
+    // The side that both have is there twice, looking either way.
+    let two: Soup = [cuboid([0.0; 3], [1.0; 3]), cuboid([1.0, 0.0, 0.0], [2.0, 1.0, 1.0])].concat();
+    let surface = place.stl("parts.stl", &two);
+    let run = place.run(&surface, &[]);
+    assert!(run.status.success() && stderr(&run).contains("2 triangles are there twice"), "{}", stderr(&run));
+    let found = volumes(&io::read_mesh(&place.path("out.meshb")).unwrap().content);
+    assert_eq!(found.len(), 2);
+    assert!(found.values().all(|volume| (volume - 1.0).abs() < 1e-9), "{found:?}");
+}

@@ -8,7 +8,7 @@ use geo_adapt::geometry::{Discrete, Entity, Evaluate, Geometry, Model};
 use geo_adapt::mesh::vector::{Vec3, add, cross, distance, dot, scale, sub, unit};
 use geo_adapt::mesh::{TetMesh, io, validity};
 use geo_adapt::metric::field::complexity_between;
-use geo_adapt::metric::{Field, Sym3, grade, plane_basis};
+use geo_adapt::metric::{Field, Interpolation, Sym3, grade, plane_basis};
 use geo_adapt::sizing::{Options, Summary, geometry_metric, resolved_metric};
 use geo_adapt::tasks::{Plan, Pool, Team};
 use std::f64::consts::{PI, TAU};
@@ -446,6 +446,20 @@ fn a_few_vertices_resolve_an_apex_as_well_as_many() {
     };
     let [few, many] = [complexity(6), complexity(48)];
     assert!((few / many - 1.0).abs() < 0.2, "{few} {many}");
+}
+
+#[test]
+fn a_few_vertices_ask_for_no_more_than_the_geometry_does() {
+    let model = model("cone");
+    let mesh = coarse_cone(6);
+    let place = lies(&mesh, &model);
+    let options = Options { gradation: Some(1.5), ..Options::of(model.topology()) };
+    let (logs, summary) = geometry_metric(Team::alone(), &mesh, &place, &model, &options);
+    let found = complexity_between(Team::alone(), &mesh, &logs);
+    let resolved = resolved_metric(Team::alone(), &mesh, &place, &model, &options);
+    let right = Interpolation::Sizes.complexity(Team::alone(), resolved.mesh(&mesh), &resolved.graded);
+    // By orders more where ln M is linear from the apex to the rim.
+    assert!(summary.enlarged > 0 && found < 2.0 * right && found > 0.3 * right, "{found} {right}");
 }
 
 #[test]

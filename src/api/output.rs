@@ -1,10 +1,10 @@
 //! What comes out.
 use super::MeshView;
 use crate::adapt::{Adapted, Extracted};
+use crate::geometry::Model;
 use crate::geometry::classify::Classification;
 #[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
-use crate::geometry::Model;
 use crate::mesh::TetMesh;
 use crate::mesh::crossing::Crossings;
 use crate::metric::Background;

@@ -87,7 +87,8 @@ fn steep(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Vec<Steep> {
     team.collect(GRAIN, mesh.tets.len(), |range, steep| {
         for &nodes in &mesh.tets.nodes[range] {
             let densities = nodes.map(|v| density(&logs[v as usize]));
-            let (least, most) = densities.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
+            let (least, most) =
+                densities.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
             if most - least <= ALIKE.ln() {
                 continue;
             }
@@ -112,8 +113,11 @@ mod tests {
         for n in [1, 3] {
             let mesh = cube(n);
             let log = |h: f64| Sym3::ZERO.plus_identity(-2.0 * h.ln());
-            let mut logs: Vec<Sym3> =
-                mesh.vertices.iter().map(|p| log(1e-3 + 0.4 * (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt())).collect();
+            let mut logs: Vec<Sym3> = mesh
+                .vertices
+                .iter()
+                .map(|p| log(1e-3 + 0.4 * (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt()))
+                .collect();
             let wanted = Interpolation::Sizes.complexity(Team::alone(), &mesh, &logs);
             let before = complexity_between(Team::alone(), &mesh, &logs);
             assert!(before > 100.0 * wanted, "{before} {wanted}");
@@ -124,7 +128,11 @@ mod tests {
             // Sizes get larger alone, and not as large as the greatest.
             assert!(changed > 0 && changed < logs.len() / 2, "{changed} of {}", logs.len());
             let greatest = given.iter().map(Sym3::trace).fold(f64::INFINITY, f64::min);
-            assert!(logs.iter().zip(&given).all(|(log, given)| log.trace() <= given.trace() && log.trace() >= greatest - 1e-9));
+            assert!(
+                logs.iter()
+                    .zip(&given)
+                    .all(|(log, given)| log.trace() <= given.trace() && log.trace() >= greatest - 1e-9)
+            );
         }
     }
 
@@ -134,7 +142,13 @@ mod tests {
         let logs: Vec<Sym3> = mesh
             .vertices
             .iter()
-            .map(|p| Sym3::from_sizes([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.1 + 0.2 * p[2], 0.3, 0.05 + 0.4 * p[0]]).ln())
+            .map(|p| {
+                Sym3::from_sizes(
+                    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+                    [0.1 + 0.2 * p[2], 0.3, 0.05 + 0.4 * p[0]],
+                )
+                .ln()
+            })
             .collect();
         let mut same = logs.clone();
         assert_eq!(restrict(Team::alone(), &mesh, &mut same), 0);

@@ -71,7 +71,9 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         for &t in tets {
             let (w, tags, n) = (self.store.vertices(t), self.store.tags(t), self.store.neighbours(t));
-            for i in (0..4).filter(|&i| tags[i] != 0 && w[i] != v && w.contains(&v) && self.store.lists_triangle(t, n[i])) {
+            for i in
+                (0..4).filter(|&i| tags[i] != 0 && w[i] != v && w.contains(&v) && self.store.lists_triangle(t, n[i]))
+            {
                 let [a, b, c] = FACE[i].map(|k| w[k]);
                 triangles.push(([a, c, b], tags[i]));
             }

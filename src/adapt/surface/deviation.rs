@@ -199,7 +199,8 @@ mod tests {
             let (mut ball, mut triangles) = (Ball::default(), Vec::new());
             worker.gather_ball(v, &mut ball).unwrap();
             worker.list_surface(v, &ball.tets, &mut triangles);
-            let sides = triangles.iter().map(|&(triangle, tag)| worker.surface_deviation(triangle, tag - 1).cos_deviation);
+            let sides =
+                triangles.iter().map(|&(triangle, tag)| worker.surface_deviation(triangle, tag - 1).cos_deviation);
             let sides: Vec<f64> = sides.collect();
             assert!(sides.len() > 2 && sides.iter().all(|side| side * sides[0] > 0.9), "{sides:?}");
         }

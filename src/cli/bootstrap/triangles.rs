@@ -39,7 +39,9 @@ pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Durati
     let kept = drop_repeated(&mut surface);
     let repeated = count - kept.len();
     if repeated > 0 {
-        notices.push(format!("{repeated} triangles are there twice, as between the parts of an assembly: each was taken once"));
+        notices.push(format!(
+            "{repeated} triangles are there twice, as between the parts of an assembly: each was taken once"
+        ));
     }
     check_closed(&surface).map_err(named)?;
     let end = Instant::now().checked_add(limit);

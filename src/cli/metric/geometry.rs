@@ -221,7 +221,7 @@ fn describe(report: &Report, has_volume: bool) -> String {
         );
     }
     if has_volume {
-        table.row("complexity", figure(figures.complexity));
+        table.row("complexity", figure(figures.complexity_between));
     }
     let Seconds { read_and_classify, metric } = report.seconds;
     table.row("seconds", format_args!("{metric:.2}, after {read_and_classify:.2} of reading"));
