@@ -183,8 +183,15 @@ impl Locator {
             }
             slack(least).powi(2)
         });
-        if let (Some(tet), true) = (nearest, outer) {
-            return self.nearest_in(tet, p);
+        match nearest {
+            Some(tet) if outer => return self.nearest_in(tet, p),
+            // p is inside, behind a wall that the walk came to. Between it and the nearest place on the boundary there is no wall.
+            Some(tet) => {
+                if let Walk::Found(found) = self.walk(p, tet) {
+                    return found;
+                }
+            }
+            None => {}
         }
         self.search(p, bound)
     }
