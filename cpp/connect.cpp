@@ -3,7 +3,6 @@
 
 #include <BRepAlgoAPI_BuilderAlgo.hxx>
 #include <BRepBndLib.hxx>
-#include <BRepTools_ReShape.hxx>
 #include <BRep_Builder.hxx>
 #include <Bnd_Box.hxx>
 #include <NCollection_DataMap.hxx>
@@ -14,6 +13,7 @@
 #include <TopTools_MapOfShape.hxx>
 #include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Iterator.hxx>
 
 #include <algorithm>
 #include <cmath>
@@ -126,19 +126,24 @@ void hand_on_all(Labels& labels, const TopoDS_Shape& shape, BRepAlgoAPI_BuilderA
 
 } // namespace
 
-TopoDS_Shape without_hollow(const TopoDS_Shape& shape)
+TopoDS_Shape with_faces(const TopoDS_Shape& shape)
 {
-  TopTools_IndexedMapOfShape solids;
-  TopExp::MapShapes(shape, TopAbs_SOLID, solids);
-  BRepTools_ReShape change;
-  bool is_hollow = false;
-  for (int i = 1; i <= solids.Extent(); ++i) {
-    if (!TopExp_Explorer(solids(i), TopAbs_FACE).More()) {
-      change.Remove(solids(i));
-      is_hollow = true;
+  if (shape.ShapeType() != TopAbs_COMPOUND) {
+    return TopExp_Explorer(shape, TopAbs_FACE).More() ? shape : TopoDS_Shape();
+  }
+  TopoDS_Compound rest;
+  const BRep_Builder builder;
+  builder.MakeCompound(rest);
+  bool is_same = true, is_empty = true;
+  for (TopoDS_Iterator part(shape); part.More(); part.Next()) {
+    const TopoDS_Shape kept = with_faces(part.Value());
+    is_same = is_same && kept.IsEqual(part.Value());
+    if (!kept.IsNull()) {
+      builder.Add(rest, kept);
+      is_empty = false;
     }
   }
-  return is_hollow ? change.Apply(shape) : shape;
+  return is_empty ? TopoDS_Shape() : is_same ? shape : rest;
 }
 
 TopoDS_Shape connected(const TopoDS_Shape& shape, Labels& labels)

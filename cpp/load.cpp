@@ -221,10 +221,13 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
     throw std::runtime_error("OpenCASCADE stopped reading it (" + reason +
                              "): the file is damaged; copy or export it again");
   }
-  if (shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More()) {
+  if (!shape.IsNull()) {
+    shape = with_faces(shape);
+  }
+  if (shape.IsNull()) {
     throw std::runtime_error("the model has no faces; export the solid's surfaces, not only curves or a mesh");
   }
-  shape = bounded(without_hollow(shape), labels);
+  shape = bounded(shape, labels);
   BRepLib::BuildCurves3d(shape);
   const TopoDS_Shape solids = connected(closed(shape, labels, format == 1), labels);
   const TopoDS_Shape apart = separated(solids, labels);

@@ -40,8 +40,9 @@ TopoDS_Shape filled(const TopoDS_Shape& shape);
 /// it `stays` sewn. Labels are handed on.
 TopoDS_Shape sewn(const TopoDS_Shape& shape, Labels& labels, double tolerance, bool stays);
 
-/// A shape without the solids that have no faces: some programs write such, and meshers number or refuse them.
-TopoDS_Shape without_hollow(const TopoDS_Shape& shape);
+/// A shape without its parts that have no faces: solids that some programs write, sketches of curves and points. They bound nothing, and
+/// meshers number them, refuse them, or make points of them in the midst of a face. Null where nothing is left.
+TopoDS_Shape with_faces(const TopoDS_Shape& shape);
 
 /// A file of several solids that touch in faces: these, their edges and vertices are made one, and there once. Solids that touch in edges
 /// or points alone stay as they are. Labels are handed on.

@@ -87,7 +87,7 @@ fn the_geometry_is_resolved_beside_a_field() {
     // On a mesh that resolves it, the metric of 60 segments has a complexity of 1290: less than half of 3000, and not only there.
     let (_, note) = around(&["--segments", "60"]);
     assert!(!note.contains("enlarged"), "{note}");
-    let (_, note) = around(&["--segments", "120"]);
+    let (_, note) = around(&["--segments", "240"]);
     assert!(note.contains("the geometry alone asks for") && note.contains("--no-geometry"), "{note}");
 }
 

@@ -63,7 +63,7 @@ impl Interpolation {
 }
 
 /// The mean of √det M over a tetrahedron in which M^(−1/2) is linear, with these values at its corners.
-pub(super) fn mean_of_sizes(sizes: [Sym3; 4]) -> f64 {
+fn mean_of_sizes(sizes: [Sym3; 4]) -> f64 {
     mean_density(sizes.map(Corner::of), DEEPEST)
 }
 

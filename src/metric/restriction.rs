@@ -2,21 +2,25 @@
 //!
 //! Where sizes of 1e-3 and of 1 meet along an edge, ln M linear makes a geometric series of them, and gradation lets them grow in proportion to
 //! the distance: the complexity of the one is orders above that of the other ([`Interpolation`]). A file of metrics has no room for what lies
-//! between the vertices, so the finest vertex of such a tetrahedron gets larger sizes, until the complexity is that of sizes which grow
-//! in proportion. A mesh that is adapted to them is finer there, and can be given more of them.
+//! between the vertices, so the finest vertex of such a tetrahedron gets larger sizes, until the complexity is near that of sizes which grow
+//! from there as fast as gradation lets them. A mesh that is adapted to them is finer there, and can be given more of them.
 use super::field::mean_exponential;
-use super::interpolation::mean_of_sizes;
-use super::{Interpolation, Sym3};
+use super::frame::{Both, Frame, intersect};
+use super::{Eigen, Interpolation, Sym3};
 use crate::mesh::TetMesh;
-use crate::mesh::vector::volume6;
+use crate::mesh::adjacency::EDGES;
+use crate::mesh::vector::{Vec3, lerp, sub, volume6};
 use crate::tasks::{GRAIN, Team};
 use std::collections::BTreeMap;
 
-/// A tetrahedron may have so many times the complexity of sizes that grow in proportion.
+/// A tetrahedron may have so many times the complexity of sizes that grow as fast as they may.
 const MORE: f64 = 1.5;
 
 /// Corners whose √det M differ by less than this factor have no more than that.
 const ALIKE: f64 = 4.0;
+
+/// Most bisections of a tetrahedron on the way to corners that are alike.
+const DEEPEST: u32 = 96;
 
 /// Most rounds. Each takes a vertex nearly to where it belongs, as long as its neighbours stay.
 const ROUNDS: usize = 40;
@@ -39,10 +43,11 @@ struct Said {
     count: f64,
 }
 
-/// Enlarges sizes of a metric that is graded on this mesh, until its complexity with ln M linear between the vertices is near that with sizes
-/// linear; `logs` is ln M at the vertices, shape (n,). Returns how many vertices were changed: none on a mesh that resolves the metric.
-pub fn restrict(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3]) -> usize {
-    let steep = steep(team, mesh, logs);
+/// Enlarges sizes of a metric that is graded on this mesh by `ratio`, until its complexity with ln M linear between the vertices is near that of
+/// sizes which grow by this ratio, from the finest vertices to what the others allow; `logs` is ln M at the vertices, shape
+/// (n,). Returns how many vertices were changed: none on a mesh that resolves the metric.
+pub fn restrict(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3], ratio: f64) -> usize {
+    let steep = steep(team, mesh, logs, ratio.ln());
     let mut changed = vec![false; if steep.is_empty() { 0 } else { logs.len() }];
     for _ in 0..ROUNDS {
         let mut said: BTreeMap<u32, Said> = BTreeMap::new();
@@ -83,7 +88,7 @@ fn density(log: &Sym3) -> f64 {
 }
 
 /// The tetrahedra that have too great a complexity.
-fn steep(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Vec<Steep> {
+fn steep(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3], growth: f64) -> Vec<Steep> {
     team.collect(GRAIN, mesh.tets.len(), |range, steep| {
         for &nodes in &mesh.tets.nodes[range] {
             let densities = nodes.map(|v| density(&logs[v as usize]));
@@ -92,9 +97,10 @@ fn steep(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Vec<Steep> {
             if most - least <= ALIKE.ln() {
                 continue;
             }
-            let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
+            let corners = nodes.map(|v| Corner::of(mesh.vertices[v as usize], Frame::of_log(&logs[v as usize])));
+            let [a, b, c, d] = corners.map(|corner| corner.at);
             let volume = volume6(a, b, c, d) / 6.0;
-            let wanted = volume * mean_of_sizes(nodes.map(|v| Interpolation::Sizes.of_log(&logs[v as usize])));
+            let wanted = volume * mean_density(corners, growth, DEEPEST);
             if volume * mean_exponential(densities) > MORE * wanted {
                 steep.push(Steep { nodes, volume, wanted });
             }
@@ -102,11 +108,70 @@ fn steep(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Vec<Steep> {
     })
 }
 
+/// M at a point, M^(−1/2), and √det M.
+#[derive(Clone, Copy)]
+struct Corner {
+    at: Vec3,
+    frame: Frame,
+    size: Sym3,
+    density: f64,
+}
+
+impl Corner {
+    fn of(at: Vec3, frame: Frame) -> Self {
+        let size = Sym3::from_eigen(&Eigen { values: frame.roots.map(|root| 1.0 / root), vectors: frame.vectors });
+        Self { at, frame, size, density: frame.roots.into_iter().product() }
+    }
+
+    /// Between two corners of a tetrahedron: sizes are linear, or as all four corners let them grow, if that is coarser; but no coarser than at
+    /// the coarser end.
+    fn middle(corners: &[Self; 4], [i, j]: [usize; 2], growth: f64) -> Self {
+        let [p, q] = [corners[i], corners[j]];
+        let at = lerp(p.at, q.at, 0.5);
+        let linear = Self::of(at, Frame::of_log(&Interpolation::Sizes.log(&p.size.plus(q.size).times(0.5))));
+        let coarse = if p.density < q.density { p.frame } else { q.frame };
+        let grown = corners.iter().fold(coarse, |least, corner| {
+            let grown = Frame { roots: corner.frame.grown(sub(at, corner.at), growth), ..corner.frame };
+            match intersect(&least, &grown, 1e-3) {
+                Both::First => least,
+                Both::Second => grown,
+                Both::New(both) => both,
+            }
+        });
+        let grown = Self::of(at, grown);
+        if grown.density < linear.density { grown } else { linear }
+    }
+}
+
+/// The mean of √det M over a tetrahedron, bisected between the corners that differ most until they are alike; then by a quadrature of second
+/// degree for linear sizes.
+fn mean_density(corners: [Corner; 4], growth: f64, depth: u32) -> f64 {
+    let ratio = |[i, j]: [usize; 2]| {
+        let [a, b] = [corners[i].density, corners[j].density];
+        a.max(b) / a.min(b)
+    };
+    let most = EDGES.into_iter().max_by(|&a, &b| ratio(a).total_cmp(&ratio(b)));
+    let [i, j] = most.unwrap_or([0, 1]);
+    let is_steep = ratio([i, j]) > ALIKE;
+    if depth == 0 || !is_steep {
+        let centre = corners.iter().fold(Sym3::ZERO, |sum, corner| sum.plus(corner.size)).times(0.25);
+        return 0.8 / centre.sqrt_det().powi(2) + 0.05 * corners.iter().map(|corner| corner.density).sum::<f64>();
+    }
+    let middle = Corner::middle(&corners, [i, j], growth);
+    let with = |k: usize| {
+        let mut half = corners;
+        half[k] = middle;
+        mean_density(half, growth, depth - 1)
+    };
+    0.5 * (with(i) + with(j))
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::field::complexity_between;
     use super::*;
     use crate::mesh::samples::cube;
+    use crate::mesh::vector::norm;
 
     #[test]
     fn a_coarse_mesh_has_the_complexity_of_sizes_that_grow_in_proportion() {
@@ -122,7 +187,7 @@ mod tests {
             let before = complexity_between(Team::alone(), &mesh, &logs);
             assert!(before > 100.0 * wanted, "{before} {wanted}");
             let given = logs.clone();
-            let changed = restrict(Team::alone(), &mesh, &mut logs);
+            let changed = restrict(Team::alone(), &mesh, &mut logs, 0.4f64.exp());
             let found = complexity_between(Team::alone(), &mesh, &logs);
             assert!(found < 1.5 * wanted && found > 0.5 * wanted, "{found} {wanted}");
             // Sizes get larger alone, and not as large as the greatest.
@@ -134,6 +199,38 @@ mod tests {
                     .all(|(log, given)| log.trace() <= given.trace() && log.trace() >= greatest - 1e-9)
             );
         }
+    }
+
+    #[test]
+    fn sizes_grow_as_fast_as_they_may() {
+        // h = min(1e-3 + 0.4 r, 0.1) about a corner, in a cube of one to whose other corners they have long grown: the integral in spheres, an
+        // eighth of them, and what is beyond.
+        let mesh = cube(1);
+        let growth = 0.4;
+        let corner = |p: &Vec3| {
+            let size: f64 = if norm(*p) == 0.0 { 1e-3 } else { 0.1 };
+            Corner::of(*p, Frame::of_metric(&Sym3::IDENTITY.times(size.powi(-2))))
+        };
+        let found: f64 = mesh
+            .tets
+            .nodes
+            .iter()
+            .map(|nodes| {
+                let corners = nodes.map(|v| corner(&mesh.vertices[v as usize]));
+                let [a, b, c, d] = corners.map(|corner| corner.at);
+                volume6(a, b, c, d) / 6.0 * mean_density(corners, growth, DEEPEST)
+            })
+            .sum();
+        let (far, steps) = ((0.1 - 1e-3) / growth, 100_000);
+        let within: f64 = (0..steps)
+            .map(|i| {
+                let r = far * (f64::from(i) + 0.5) / f64::from(steps);
+                r * r / (1e-3 + growth * r).powi(3) * far / f64::from(steps)
+            })
+            .sum();
+        let eighth = std::f64::consts::FRAC_PI_2;
+        let exact = eighth * within + 1e3 * (1.0 - eighth * far.powi(3) / 3.0);
+        assert!((found / exact - 1.0).abs() < 0.25, "{found} {exact}");
     }
 
     #[test]
@@ -151,7 +248,7 @@ mod tests {
             })
             .collect();
         let mut same = logs.clone();
-        assert_eq!(restrict(Team::alone(), &mesh, &mut same), 0);
+        assert_eq!(restrict(Team::alone(), &mesh, &mut same, 1.5), 0);
         assert_eq!(same, logs);
     }
 }

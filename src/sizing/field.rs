@@ -73,7 +73,7 @@ pub fn geometry_metric(
         summary.graded = gradation::grade(team, mesh, &mut logs, ratio).changed;
         // Grown metrics that meet at an angle can leave sizes a little below the least.
         limits.apply(team, &mut logs);
-        summary.enlarged = restrict(team, mesh, &mut logs);
+        summary.enlarged = restrict(team, mesh, &mut logs, ratio);
     }
     (logs, summary)
 }

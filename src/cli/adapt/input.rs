@@ -293,7 +293,7 @@ impl InputArguments {
         let mut logs = raw.clone();
         if let Some(ratio) = gradation {
             grade(team, mesh, &mut logs, ratio);
-            restrict(team, mesh, &mut logs);
+            restrict(team, mesh, &mut logs, ratio);
         }
         let own = field::complexity_between(team, mesh, &logs);
         let most = GEOMETRY_SHARE * complexity;
