@@ -7,7 +7,7 @@ use crate::geometry::OcctEvaluator;
 use crate::mesh::adjacency::sorted2;
 use crate::mesh::vector::{Vec3, distance, dot, lerp, norm, sub};
 use std::cmp::Ordering;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 /// Rounds of halving at most.
 const ROUNDS: usize = 40;
@@ -29,8 +29,9 @@ impl Patch {
     ) {
         let all: Vec<(u32, usize)> = (0..self.triangles.len() as u32).flat_map(|t| [(t, 0), (t, 1), (t, 2)]).collect();
         self.straighten(all);
+        let mut short = HashSet::new();
         for _ in 0..ROUNDS {
-            let mut wanted = self.wanted(on, face, options, wishes, barred);
+            let mut wanted = self.wanted(on, face, options, (wishes, barred), &mut short);
             if wanted.is_empty() || self.triangles.len() > TRIANGLES {
                 return;
             }
@@ -59,14 +60,15 @@ impl Patch {
         Some(3 - i - j)
     }
 
-    /// Edges that are too long, with how much and a triangle.
-    pub(super) fn wanted(
+    /// Edges that are too long, with how much and a triangle. Those that are known to be short enough are passed by, and what is found to be is
+    /// put to them.
+    fn wanted(
         &self,
         on: &mut OcctEvaluator,
         face: u32,
         options: &Options,
-        wishes: &[Wish],
-        barred: &BTreeSet<[u32; 2]>,
+        (wishes, barred): (&[Wish], &BTreeSet<[u32; 2]>),
+        short: &mut HashSet<[u32; 2]>,
     ) -> Vec<(f64, [u32; 2], u32)> {
         let twice = self.edges_met_twice();
         let mut found = Vec::new();
@@ -79,9 +81,15 @@ impl Patch {
                 let [a, b] = [1, 2].map(|k| self.triangles[t as usize][(i + k) % 3]);
                 let pair = sorted2([self.key(a), self.key(b)]);
                 let is_barred = barred.contains(&pair) || twice.contains(&pair);
+                let edge = sorted2([a, b]);
+                if !is_barred && short.contains(&edge) {
+                    continue;
+                }
                 let ratio = if is_barred { f64::MAX } else { self.excess(on, face, [a, b], options, wishes) };
                 if ratio > 1.0 {
-                    found.push((ratio, [a.min(b), a.max(b)], t));
+                    found.push((ratio, edge, t));
+                } else {
+                    short.insert(edge);
                 }
             }
         }
