@@ -4,7 +4,7 @@ mod common;
 
 use common::adapting::stderr;
 use common::{program, shared_case};
-use geo_adapt::mesh::vector::volume6;
+use geo_adapt::mesh::vector::{distance, volume6};
 use geo_adapt::mesh::{FlawKind, TetMesh, io, validity};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -58,6 +58,17 @@ fn edges_beside_a_short_one_have_pieces_that_grow() {
     check_valid(&mesh, "n-offsetbox");
     assert_eq!(faces(&mesh), 12);
     assert!(mesh.triangles.len() < 10_000, "{}", mesh.triangles.len());
+}
+
+/// A point of a sketch lay on a triangle.
+#[test]
+fn curves_of_no_face_are_left_out() {
+    let mesh = meshed(&here("geometry/faults/sketched-pocket.step"), &[]);
+    check_valid(&mesh, "sketched-pocket");
+    assert_eq!((faces(&mesh), mesh.edges.refs.iter().collect::<BTreeSet<_>>().len()), (15, 36));
+    // The sketch has corners where the pocket has fillets.
+    let corner = [0.75, 0.5, 1.0];
+    assert!(mesh.vertices.iter().all(|&p| distance(p, corner) > 1e-6));
 }
 
 /// Beside its bridges the chords of a hole were farther off their arcs than the bridges are wide: vertices found no room on the model.

@@ -1,1 +1,1 @@
-"""Models with faults that `bootstrap --heal` mends; write_all.py writes their files here."""
+"""Models with faults that `bootstrap` mends, some of them with `--heal`; write_all.py writes their files here."""
