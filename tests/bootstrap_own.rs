@@ -63,8 +63,8 @@ fn edges_beside_a_short_one_have_pieces_that_grow() {
 /// A point of a sketch lay on a triangle.
 #[test]
 fn curves_of_no_face_are_left_out() {
-    let mesh = meshed(&here("geometry/faults/sketched-pocket.step"), &[]);
-    check_valid(&mesh, "sketched-pocket");
+    let mesh = meshed(&here("geometry/faults/left-sketch.step"), &[]);
+    check_valid(&mesh, "left-sketch");
     assert_eq!((faces(&mesh), mesh.edges.refs.iter().collect::<BTreeSet<_>>().len()), (15, 36));
     // The sketch has corners where the pocket has fillets.
     let corner = [0.75, 0.5, 1.0];

@@ -123,7 +123,8 @@ impl<'a> Near<'a> {
     }
 
     /// The metric at a place, limited across the gaps there, and the nearest gap that limits it. `local` has the directions of the entities
-    /// at the place.
+    /// at the place. Only gaps are looked for that limit `known` too: a metric no coarser than what there is
+    /// to be, which is limited as well.
     ///
     /// The nearest entity limits first; often it leaves nothing to do for those behind it. Closest points cost most, so that of an entity
     /// is found only when its boxes say that it is the next, and that it could still limit the metric.
@@ -133,15 +134,16 @@ impl<'a> Near<'a> {
         at: &Place,
         local: &Local,
         mut metric: Sym3,
+        known: &mut Sym3,
         Scratch { pieces, others }: &mut Scratch,
     ) -> (Sym3, Option<Gap>) {
-        let reach = self.cells / metric.eigen().values[0].sqrt();
+        let reach = self.cells / known.eigen().values[0].sqrt();
         let mut list = std::mem::take(others).into_vec();
-        self.collect(at, local, metric, reach, pieces, &mut list);
+        self.collect(at, local, *known, reach, pieces, &mut list);
         *others = BinaryHeap::from(list);
         let mut nearest: Option<Gap> = None;
         let mut thinnest = f64::INFINITY;
-        let mut bound = Bound::new(at, local, metric, self.cells);
+        let mut bound = Bound::new(at, local, *known, self.cells);
         while let Some(Other { length, to, found }) = others.pop() {
             if length >= bound.reach() {
                 break;
@@ -167,13 +169,13 @@ impl<'a> Near<'a> {
             let share = norm(across);
             let (g, size) = (unit(across), (share * length / self.cells).max(self.least));
             // The line of sight is tested last: it costs most.
-            if share < ALONG || dot(g, metric.solve(g)) <= size * size || !self.is_facing(local, way, normal) {
+            if share < ALONG || dot(g, known.solve(g)) <= size * size || !self.is_facing(local, way, normal) {
                 continue;
             }
             let in_face = normal.is_none() && self.touch.share_face(at.entity, edge_of(to));
             if in_face || self.sight.is_clear(at.point, there, |triangle| self.is_own(at, to, triangle)) {
-                metric = cut(metric, g, size);
-                bound = Bound::new(at, local, metric, self.cells);
+                (metric, *known) = (cut(metric, g, size), cut(*known, g, size));
+                bound = Bound::new(at, local, *known, self.cells);
                 thinnest = thinnest.min(size);
                 nearest = nearest.or(Some(Gap { distance: length, at: at.point, from: at.entity, to }));
             }

@@ -9,11 +9,15 @@ use super::{Options, Summary};
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluator, Geometry, Model};
 use crate::mesh::TetMesh;
+use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::{Limits, Sym3, gradation, restrict};
 use crate::tasks::{GRAIN, Team};
 
 /// Vertices a task. Each task makes an evaluator.
 const VERTICES: usize = 1 << 9;
+
+/// Gaps are looked for at one vertex in so many, and again at more.
+const STRIDES: [usize; 3] = [64, 8, 1];
 
 /// What a thread has in hand.
 #[derive(Default)]
@@ -87,9 +91,9 @@ pub fn resolved_metric(
     options: &Options,
 ) -> Resolved {
     let sizing = Sizing::new(team, mesh, place, model, options);
-    let found = sizing.at_vertices(team);
-    let metrics = team.map(GRAIN, found.len(), |v| found[v].metric);
-    resolve(team, &sizing, &metrics, &limits(options))
+    let limits = limits(options);
+    let metrics = sizing.where_gradation_leaves_room(team, &limits);
+    resolve(team, &sizing, &metrics, &limits)
 }
 
 fn limits(options: &Options) -> Limits {
@@ -143,15 +147,68 @@ impl<'a> Sizing<'a> {
         })
     }
 
+    /// The metrics at the vertices without the gaps that change nothing once the metric is graded, as most are: beside small sizes those that
+    /// gradation leaves are too small to see them. First the curvature is asked at all vertices, then gaps at more and more of them, each time
+    /// as far as the graded metric that is known by then reaches.
+    fn where_gradation_leaves_room(&self, team: Team<'_>, limits: &Limits) -> Vec<Sym3> {
+        let count = self.mesh.vertices.len();
+        let mut metrics: Vec<Sym3> = team.collect(VERTICES, count, |range, found| {
+            let (mut evaluator, mut asked) = (self.model.evaluator(), Asked::default());
+            found.extend(range.map(|v| self.curvature_at_vertex(&mut evaluator, v, &mut asked)));
+        });
+        let Some(near) = &self.near else { return metrics };
+        let limited = |metric: &Sym3| limits.apply_to_log(&metric.ln());
+        let mut graded = team.map(GRAIN, count, |v| limited(&metrics[v]));
+        let around = VertexNeighbours::of_mesh(team, self.mesh);
+        let mut before: Option<usize> = None;
+        for stride in STRIDES {
+            gradation::grade_with(team, &self.mesh.vertices, &around, &mut graded, self.growth.exp());
+            let is_next = |&v: &usize| {
+                self.place.entities[v] != Entity::Interior
+                    && v.is_multiple_of(stride)
+                    && before.is_none_or(|before| !v.is_multiple_of(before))
+            };
+            let list: Vec<usize> = (0..count).filter(is_next).collect();
+            let found = team.collect(VERTICES, list.len(), |range, found| {
+                let (mut evaluator, mut asked) = (self.model.evaluator(), Asked::default());
+                found.extend(list[range].iter().map(|&v| {
+                    let (metric, mut known) =
+                        (self.curvature_at_vertex(&mut evaluator, v, &mut asked), graded[v].exp());
+                    let Asked { local, scratch } = &mut asked;
+                    let (metric, _) = near.limit(&mut evaluator, &self.place_of(v), local, metric, &mut known, scratch);
+                    (metric, limited(&known))
+                }));
+            });
+            for (&v, (metric, log)) in list.iter().zip(found) {
+                (metrics[v], graded[v]) = (metric, log);
+            }
+            before = Some(stride);
+        }
+        metrics
+    }
+
     /// The metric of a mesh vertex.
     fn at_vertex(&self, evaluator: &mut Evaluator, vertex: usize, asked: &mut Asked) -> Found {
+        let metric = self.curvature_at_vertex(evaluator, vertex, asked);
+        if self.place.entities[vertex] == Entity::Interior {
+            return Found { metric, gap: None, is_limit: false };
+        }
+        let (metric, gap) = self.limited(evaluator, &self.place_of(vertex), asked);
+        Found { metric, gap, is_limit: asked.local.is_limit }
+    }
+
+    /// Where a vertex of the boundary is.
+    fn place_of(&self, vertex: usize) -> Place {
+        let (point, entity) = (self.place.projected[vertex], self.place.entities[vertex]);
+        Place { point, entity, vertex: Some(vertex as u32), triangle: None }
+    }
+
+    /// The metric of the curvature at a mesh vertex.
+    fn curvature_at_vertex(&self, evaluator: &mut Evaluator, vertex: usize, asked: &mut Asked) -> Sym3 {
         let entity = self.place.entities[vertex];
         let parameters = self.place.parameters[vertex];
-        if entity == Entity::Interior {
-            asked.local.clear();
-            return Found { metric: self.curvature.metric_of(&asked.local), gap: None, is_limit: false };
-        }
         match &self.estimate {
+            _ if entity == Entity::Interior => asked.local.clear(),
             None => self.curvature.at(evaluator, entity, parameters, &mut asked.local),
             Some(estimate) => {
                 asked.local.clear();
@@ -159,10 +216,7 @@ impl<'a> Sizing<'a> {
                 self.curvature.add_edges(evaluator, entity, parameters[0], &mut asked.local);
             }
         }
-        let point = self.place.projected[vertex];
-        let place = Place { point, entity, vertex: Some(vertex as u32), triangle: None };
-        let (metric, gap) = self.limited(evaluator, &place, asked);
-        Found { metric, gap, is_limit: asked.local.is_limit }
+        self.curvature.metric_of(&asked.local)
     }
 
     /// The metric at a place between the vertices, and the nearest gap that limits it.
@@ -181,8 +235,39 @@ impl<'a> Sizing<'a> {
     fn limited(&self, evaluator: &mut Evaluator, place: &Place, asked: &mut Asked) -> (Sym3, Option<Gap>) {
         let metric = self.curvature.metric_of(&asked.local);
         match &self.near {
-            Some(near) => near.limit(evaluator, place, &asked.local, metric, &mut asked.scratch),
+            Some(near) => near.limit(evaluator, place, &asked.local, metric, &mut { metric }, &mut asked.scratch),
             None => (metric, None),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Discrete;
+    use crate::mesh::samples::cube;
+
+    #[test]
+    fn what_gradation_leaves_no_room_for_changes_nothing() {
+        // A wedge: a gap from 0.01 to 0.3 across, and flat beside it.
+        let mut mesh = cube(12);
+        mesh.vertices.iter_mut().for_each(|p| p[2] *= 0.01 + 0.29 * p[0] * p[0]);
+        let (model, place) = Discrete::from_mesh(Team::alone(), &mesh, 20.0).unwrap();
+        let model = Model::Discrete(model);
+        let options = Options { greatest: 0.5, least: 1e-4, gradation: Some(1.5), ..Options::of(model.topology()) };
+        let sizing = Sizing::new(Team::alone(), &mesh, &place, &model, &options);
+        let limits = limits(&options);
+        let all: Vec<Sym3> = sizing.at_vertices(Team::alone()).iter().map(|found| found.metric).collect();
+        let some = sizing.where_gradation_leaves_room(Team::alone(), &limits);
+        assert!(all.iter().zip(&some).filter(|(all, some)| all != some).count() > 10);
+        let graded = |metrics: &[Sym3]| {
+            let mut logs: Vec<Sym3> = metrics.iter().map(|metric| limits.apply_to_log(&metric.ln())).collect();
+            gradation::grade(Team::alone(), &mesh, &mut logs, 1.5);
+            logs
+        };
+        for (all, some) in graded(&all).iter().zip(graded(&some)) {
+            let apart = (0..6).map(|i| (all.0[i] - some.0[i]).abs()).fold(0.0, f64::max);
+            assert!(apart < 0.1, "{apart}");
         }
     }
 }
