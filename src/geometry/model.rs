@@ -269,4 +269,8 @@ impl Evaluate for Evaluator<'_> {
     fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
         forward!(self, closest_on_surface(face, point, guess))
     }
+
+    fn foot_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
+        forward!(self, foot_on_surface(face, point, guess))
+    }
 }

@@ -113,4 +113,9 @@ pub trait Evaluate {
     /// where chords of the face's edges leave it (a plane with a round edge): a vertex in a layer thinner than the chord's rise would
     /// come to lie beside the face. Falls back to [`Evaluate::closest_on_face`] when it does not converge to a true foot point.
     fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface;
+
+    /// The same without a look at the trimming: for points that are known to be on the face, as on its border, where that look costs most.
+    fn foot_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
+        self.closest_on_surface(face, point, guess)
+    }
 }

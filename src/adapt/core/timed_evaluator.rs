@@ -53,4 +53,8 @@ impl Evaluate for TimedEvaluator<'_> {
     fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
         self.timed(|inner| inner.closest_on_surface(face, point, guess))
     }
+
+    fn foot_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
+        self.timed(|inner| inner.foot_on_surface(face, point, guess))
+    }
 }

@@ -88,7 +88,7 @@ impl<A: Access> Worker<'_, '_, A> {
     /// a little towards `inner`.
     fn normal_near(&mut self, face: u32, p: Vec3, uv: Option<[f64; 2]>, inner: [f64; 2]) -> Vec3 {
         let evaluator = &mut self.state.evaluator;
-        let uv = uv.unwrap_or_else(|| evaluator.closest_on_surface(face, p, inner).uv);
+        let uv = uv.unwrap_or_else(|| evaluator.foot_on_surface(face, p, inner).uv);
         let normal = evaluator.face_normal(face, uv);
         if normal != [0.0; 3] {
             return normal;

@@ -295,4 +295,8 @@ impl Evaluate for OcctEvaluator<'_> {
     fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
         project::on_surface(self, face, point, guess)
     }
+
+    fn foot_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
+        project::foot(self, face, point, guess)
+    }
 }

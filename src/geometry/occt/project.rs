@@ -25,6 +25,21 @@ pub fn starts(simple: bool) -> &'static [f64] {
 /// Closest point of a face near the guess. Chords of its edges may leave the face, where its edges do not follow the parameters: there
 /// the trimming counts.
 pub fn on_surface(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
+    near(on, face, point, guess, is_within)
+}
+
+/// The same, beyond the face's edges too.
+pub fn foot(on: &mut OcctEvaluator, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
+    near(on, face, point, guess, |_, _, _| true)
+}
+
+fn near(
+    on: &mut OcctEvaluator,
+    face: u32,
+    point: Vec3,
+    guess: [f64; 2],
+    is_within: impl Fn(&mut OcctEvaluator, u32, [f64; 2]) -> bool,
+) -> OnSurface {
     let model = on.model;
     if let Some(foot) = model.surfaces[face as usize].form.foot(point, guess) {
         let (uv, in_range) = on.placed(face, foot);

@@ -68,7 +68,20 @@ pub fn grade_with(
     ratio: f64,
 ) -> Graded {
     assert_eq!(vertices.len(), logs.len(), "one ln M a vertex");
-    Grading::new(team, vertices, around, logs, ratio.ln()).run()
+    Grading::new(team, vertices, around, logs, ratio.ln()).run(|_| true)
+}
+
+/// As [`grade_with`], where only the metrics of some vertices have become finer since all were graded.
+pub fn grade_again(
+    team: Team<'_>,
+    vertices: &[Vec3],
+    around: &VertexNeighbours,
+    logs: &mut [Sym3],
+    (ratio, finer): (f64, &[u32]),
+) -> Graded {
+    let mut is_finer = vec![false; logs.len()];
+    finer.iter().for_each(|&v| is_finer[v as usize] = true);
+    Grading::new(team, vertices, around, logs, ratio.ln()).run(|v| is_finer[v as usize])
 }
 
 /// The list in which a vertex waits to be a source.
@@ -130,9 +143,10 @@ impl<'a> Grading<'a> {
         }
     }
 
-    fn run(mut self) -> Graded {
+    /// Grades all, where only edges from the vertices that `may_violate` need to be looked at.
+    fn run(mut self, may_violate: impl Fn(u32) -> bool + Sync) -> Graded {
         let mut graded = Graded::default();
-        let mut waiting = self.violators(|_, _| true);
+        let mut waiting = self.violators(|p, _| may_violate(p));
         loop {
             let [rounds, updates] = self.propagate(&waiting);
             graded.rounds += rounds;
