@@ -402,6 +402,19 @@ fn where_no_mesher_is_the_error_says_what_to_install() {
 }
 
 #[test]
+fn a_surface_that_takes_too_long_is_ended() {
+    let place = Place::new();
+    let bow = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/faulty/bow-tie.brep");
+    let run = place.command(&bow, &["--mesher", "own", "--time-limit", "0.2"]).output().unwrap();
+    let message = complaint(&run);
+    assert!(
+        message.contains("it was ended (--time-limit)") && message.contains("boundary crosses itself"),
+        "{message}"
+    );
+    assert!(!place.path("out.meshb").exists());
+}
+
+#[test]
 fn our_own_mesher_needs_no_other_program() {
     let place = Place::new();
     // Faces and volume: a seam, a cavity, two regions, thin walls.

@@ -56,13 +56,13 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     program().current_dir(folder).args(arguments).stdin(Stdio::null()).output().expect("the program is built")
 }
 
-/// Exit code 0, or 2 with one error that names the file.
-fn ends_well(output: &Output, what: &str) {
-    let told = String::from_utf8_lossy(&output.stderr);
+/// Exit code 0, or 2 with one error that names the file; or another one that is allowed.
+fn ends_well(output: &Output, what: &str, other: Option<i32>) {
+    let (code, told) = (output.status.code(), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.signal().is_none(), "{what}: ended by a signal, {:?}: {told}", output.status);
-    assert!(matches!(output.status.code(), Some(0 | 2)), "{what}: {:?}: {told}", output.status);
+    assert!(matches!(code, Some(0 | 2)) || code == other, "{what}: {:?}: {told}", output.status);
     assert!(!told.contains("panicked"), "{what}: {told}");
-    assert!(output.status.success() || told.contains("damaged."), "{what}: no error that names the file: {told}");
+    assert!(code != Some(2) || told.contains("damaged."), "{what}: no error that names the file: {told}");
 }
 
 fn is_long() -> bool {
@@ -84,12 +84,13 @@ fn survives(source: &str, extension: &str) {
         fs::write(folder.path().join(&name), damaged(&valid, &mut random)).expect("the folder is ours");
         let output = run(folder.path(), &["model", &name]);
         let keep = |what: &str| format!("{what} of {source}, number {number}");
-        ends_well(&output, &keep("model"));
+        ends_well(&output, &keep("model"), None);
         if output.status.success() {
             models += 1;
             if models <= meshed {
                 let output = run(folder.path(), &["bootstrap", &name, "-o", "out.meshb", "--time-limit", "5"]);
-                ends_well(&output, &keep("bootstrap"));
+                // A mesh that has flaws is written and told, with exit code 1.
+                ends_well(&output, &keep("bootstrap"), Some(1));
                 meshes += usize::from(output.status.success());
             }
         }

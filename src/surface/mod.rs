@@ -174,7 +174,10 @@ fn attempt(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> bool) -> Op
             if !go_on() {
                 return None;
             }
-            work(model, options, &points, face, &mut faces[face as usize], &mut asked);
+            work((model, options, go_on), &points, face, &mut faces[face as usize], &mut asked);
+        }
+        if !go_on() {
+            return None;
         }
         if asked.pieces.is_empty() && asked.faces.is_empty() {
             let mut surface = whole::assemble(model, &points, &faces);
@@ -217,8 +220,14 @@ fn is_hopeless(history: &[usize]) -> bool {
     last > MANY || last > 8 * first + 200 || before.is_some_and(|before| last >= before)
 }
 
-/// Triangulates one face, or tells what of its border is to be divided first.
-fn work(model: &OcctModel, options: &Options, points: &Points, index: u32, face: &mut Face, asked: &mut Asked) {
+/// Triangulates one face, or tells what of its border is to be divided first. Where it may not go on the face is left as it is.
+fn work(
+    (model, options, go_on): (&OcctModel, &Options, &dyn Fn() -> bool),
+    points: &Points,
+    index: u32,
+    face: &mut Face,
+    asked: &mut Asked,
+) {
     let mut on = model.evaluator();
     let Some(outline) = outline::outline(model, &mut on, points, index, options.segments) else {
         face.patch = None;
@@ -229,7 +238,7 @@ fn work(model: &OcctModel, options: &Options, points: &Points, index: u32, face:
     match Patch::new(&mut on, index, &outline, points) {
         Ok(mut patch) => {
             patch.is_strict = face.turned < TURNED;
-            patch.refine(&mut on, index, options, &face.wishes, &face.barred);
+            patch.refine(&mut on, index, options, (&face.wishes, &face.barred), go_on);
             face.turned += 1;
             if face.turned <= TURNED {
                 ask_turned(&patch, &outline, index, face, asked);

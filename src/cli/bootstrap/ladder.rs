@@ -51,6 +51,8 @@ enum Miss {
     TooLong(String),
     /// It failed, or its mesh was not good.
     Failed(String),
+    /// It failed, and so will all others of its program.
+    Hopeless(String),
 }
 
 /// The rungs that are left, and what the ones before gave.
@@ -114,6 +116,10 @@ impl<'a> Ladder<'a> {
                     self.failed.push((rung, why));
                 }
                 Err(Miss::Failed(why)) => self.failed.push((rung, why)),
+                Err(Miss::Hopeless(why)) => {
+                    self.queue.give_up(program);
+                    self.failed.push((rung, why));
+                }
             }
         }
         Err(Stopped::Failed(describe((&self.missing, &self.failed), self.queue.is_over(), self.log, self.model)))
@@ -122,7 +128,7 @@ impl<'a> Ladder<'a> {
     /// One rung: the mesh, valid and on the model.
     fn attempt(&self, rung: Rung, limit: Duration) -> Result<(TetMesh, Classification), Miss> {
         if let Rung::Own { finer } = rung {
-            let Some((mesh, on_model)) = own(self.model, finer, limit).map_err(Miss::Failed)? else {
+            let Some((mesh, on_model)) = own(self.model, finer, limit)? else {
                 return Err(Miss::TooLong("it was ended (--time-limit)".into()));
             };
             return judge(self.team, mesh, self.model, Some(on_model)).map_err(Miss::Failed);
@@ -162,13 +168,17 @@ impl<'a> Ladder<'a> {
 
 /// Our own mesh, and where its vertices belong on the model; none where the time was over.
 #[cfg(feature = "occt")]
-fn own(model: &Model, finer: f64, limit: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, String> {
-    super::own::run(model, finer, limit).map(|own| own.map(|own| (own.mesh, own.on_model)))
+fn own(model: &Model, finer: f64, limit: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, Miss> {
+    match super::own::run(model, finer, limit) {
+        Ok(own) => Ok(own.map(|own| (own.mesh, own.on_model))),
+        Err(failure) if failure.is_crossing => Err(Miss::Hopeless(failure.why)),
+        Err(failure) => Err(Miss::Failed(failure.why)),
+    }
 }
 
 #[cfg(not(feature = "occt"))]
-fn own(_: &Model, _: f64, _: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, String> {
-    Err("this program was built without OpenCASCADE".into())
+fn own(_: &Model, _: f64, _: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, Miss> {
+    Err(Miss::Failed("this program was built without OpenCASCADE".into()))
 }
 
 /// The error of a ladder without a good rung.

@@ -21,12 +21,27 @@ pub struct Own {
     pub on_model: Vec<Vec3>,
 }
 
+/// Why there is no mesh of our own.
+#[derive(Debug)]
+pub struct Failure {
+    /// What part of the surface could not be triangulated or filled, and where.
+    pub why: String,
+    /// Whether its triangles cross at all sizes: finer ones were tried.
+    pub is_crossing: bool,
+}
+
+impl From<String> for Failure {
+    fn from(why: String) -> Self {
+        Self { why, is_crossing: false }
+    }
+}
+
 /// Makes it, with the sizes of the surface divided by `finer`; none where the time was over.
 ///
 /// # Errors
 /// What part of the surface could not be triangulated or filled, and where.
-pub fn run(model: &Model, finer: f64, limit: Duration) -> Result<Option<Own>, String> {
-    let Model::Occt(cad) = model else { return Err("it is no CAD model".into()) };
+pub fn run(model: &Model, finer: f64, limit: Duration) -> Result<Option<Own>, Failure> {
+    let Model::Occt(cad) = model else { return Err("it is no CAD model".to_string().into()) };
     let options = Options::new(model.topology().diagonal()).finer(finer);
     let end = Instant::now().checked_add(limit);
     let go_on = || end.is_none_or(|end| Instant::now() < end);
@@ -34,10 +49,10 @@ pub fn run(model: &Model, finer: f64, limit: Duration) -> Result<Option<Own>, St
     crate::tasks::stage("surface");
     if let Some(face) = surface.missing.first() {
         let count = surface.missing.len();
-        return Err(format!("{count} faces have no triangles, the first is face {}", face + 1));
+        return Err(format!("{count} faces have no triangles, the first is face {}", face + 1).into());
     }
     let mut own: Option<Own> = None;
-    for mut surface in parts(surface)? {
+    for mut surface in parts(surface).map_err(|why| Failure { why, is_crossing: true })? {
         merge(&mut surface);
         let (points, triangles) = (&surface.points, &surface.triangles);
         let filled = match tetrahedralise(points, triangles, &mut FlatWhile(&go_on), delaunay::Options::default()) {
@@ -51,7 +66,7 @@ pub fn run(model: &Model, finer: f64, limit: Duration) -> Result<Option<Own>, St
         });
     }
     crate::tasks::stage("tetrahedra");
-    own.map(Some).ok_or_else(|| "its surface has no triangles".into())
+    own.map(Some).ok_or_else(|| "its surface has no triangles".to_string().into())
 }
 
 impl Own {
@@ -87,18 +102,34 @@ fn parts(surface: Surface) -> Result<Vec<Surface>, String> {
         let [a, b] = pair.map(|t| surface.faces[t as usize] + 1);
         let at = surface.points[surface.triangles[pair[0] as usize][0] as usize];
         let count = surface.crossings.len();
+        let solids = match apart(&surface, *pair) {
+            [Some(a), Some(b)] => format!(": solids {} and {} overlap there, or touch along no edge", a + 1, b + 1),
+            _ => String::new(),
+        };
         return Err(format!(
-            "{count} pairs of triangles of its surface cross, the first of faces {a} and {b} near {}",
+            "{count} pairs of triangles of its surface cross, the first of faces {a} and {b} near {}{solids}",
             place(at)
         ));
     }
     if let Some(pair) = surface.crossings.iter().find(|pair| cosine(&surface, **pair) > TOUCHING) {
-        let solid = |t: u32| surface.sides[surface.faces[t as usize] as usize].iter().flatten().next().map(|s| s + 1);
-        let [a, b] = pair.map(|t| solid(t).unwrap_or_default());
+        let [a, b] = pair.map(|t| sides(&surface, t).next().map_or(0, |solid| solid + 1));
         let at = surface.points[surface.triangles[pair[0] as usize][0] as usize];
         return Err(format!("solids {a} and {b} overlap near {}", place(at)));
     }
     Ok(bodies.divide(&surface))
+}
+
+/// The solids of a triangle's face.
+fn sides(surface: &Surface, triangle: u32) -> impl Iterator<Item = u32> + '_ {
+    surface.sides[surface.faces[triangle as usize] as usize].iter().flatten().copied()
+}
+
+/// A solid of each of two triangles, if they have none in common.
+fn apart(surface: &Surface, [a, b]: [u32; 2]) -> [Option<u32>; 2] {
+    if sides(surface, a).any(|solid| sides(surface, b).any(|other| other == solid)) {
+        return [None; 2];
+    }
+    [a, b].map(|t| sides(surface, t).next())
 }
 
 /// Surfaces that touch look at each other, and so do their chords there, with a smaller cosine between their normals.

@@ -56,6 +56,11 @@ impl Queue {
         self.gone.push(program);
     }
 
+    /// No rung of this program will do.
+    pub fn give_up(&mut self, program: &str) {
+        self.waiting.retain(|rung| rung.program() != program);
+    }
+
     /// It was ended.
     pub fn took_too_long(&mut self, rung: Rung) {
         if !self.slow.contains(&rung) {
@@ -97,6 +102,15 @@ mod tests {
         assert!(others.iter().all(|(_, limit)| *limit == WHOLE / FIRST));
         // The last one has all that is left.
         assert_eq!(last.1, WHOLE - WHOLE / 100 * others.len() as u32);
+    }
+
+    #[test]
+    fn a_program_that_is_given_up_comes_no_more() {
+        let mut queue = Queue::new(Rung::of(Choice::Auto), WHOLE);
+        let program = queue.next().unwrap().0.program();
+        queue.give_up(program);
+        let others: Vec<&str> = std::iter::from_fn(|| queue.next()).map(|(rung, _)| rung.program()).collect();
+        assert!(!others.is_empty() && !others.contains(&program), "{others:?}");
     }
 
     #[test]

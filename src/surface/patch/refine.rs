@@ -17,22 +17,22 @@ const TRIANGLES: usize = 400_000;
 const ACROSS: f64 = 1.0 / 24.0;
 
 impl Patch {
-    /// Makes it as fine as the options, the wishes and its own curvature want. Edges between the pairs of points that are `barred` are
-    /// halved in any case.
+    /// Makes it as fine as the options, the wishes and its own curvature want, or until `go_on` says no. Edges between the pairs of points that
+    /// are `barred` are halved in any case.
     pub fn refine(
         &mut self,
         on: &mut OcctEvaluator,
         face: u32,
         options: &Options,
-        wishes: &[Wish],
-        barred: &BTreeSet<[u32; 2]>,
+        (wishes, barred): (&[Wish], &BTreeSet<[u32; 2]>),
+        go_on: &dyn Fn() -> bool,
     ) {
         let all: Vec<(u32, usize)> = (0..self.triangles.len() as u32).flat_map(|t| [(t, 0), (t, 1), (t, 2)]).collect();
         self.straighten(all);
         let mut short = HashSet::new();
         for _ in 0..ROUNDS {
             let mut wanted = self.wanted(on, face, options, (wishes, barred), &mut short);
-            if wanted.is_empty() || self.triangles.len() > TRIANGLES {
+            if wanted.is_empty() || self.triangles.len() > TRIANGLES || !go_on() {
                 return;
             }
             wanted.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
