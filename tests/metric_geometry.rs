@@ -433,7 +433,8 @@ fn a_few_vertices_resolve_an_apex_as_well_as_many() {
     let complexity = |n: u32| {
         let mesh = coarse_cone(n);
         let place = lies(&mesh, &model);
-        let mut resolved = resolved_metric(Team::alone(), &mesh, &place, &model, &Options::of(model.topology()));
+        let mut resolved =
+            resolved_metric(Team::alone(), &mesh, &place, &model, (&Options::of(model.topology()), None));
         grade(Team::alone(), resolved.halved.as_ref().map_or(&mesh, |halved| &halved.mesh), &mut resolved.logs, 1.5);
         let on = resolved.mesh(&mesh);
         assert!(validity::check(on).is_valid());
@@ -456,7 +457,7 @@ fn a_few_vertices_ask_for_no_more_than_the_geometry_does() {
     let options = Options { gradation: Some(1.5), ..Options::of(model.topology()) };
     let (logs, summary) = geometry_metric(Team::alone(), &mesh, &place, &model, &options);
     let found = complexity_between(Team::alone(), &mesh, &logs);
-    let resolved = resolved_metric(Team::alone(), &mesh, &place, &model, &options);
+    let resolved = resolved_metric(Team::alone(), &mesh, &place, &model, (&options, None));
     let right = Interpolation::Sizes.complexity(Team::alone(), resolved.mesh(&mesh), &resolved.graded);
     println!("cone of 6 tetrahedra: {found:.0}, on a mesh that resolves it {right:.0}");
     // By orders more where ln M is linear from the apex to the rim.

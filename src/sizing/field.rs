@@ -7,7 +7,7 @@ use super::options::GRADATION;
 use super::resolve::{Resolved, resolve};
 use super::{Options, Summary};
 use crate::geometry::classify::Classification;
-use crate::geometry::{Entity, Evaluator, Geometry, Model};
+use crate::geometry::{Entity, Evaluator, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
 use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::{Limits, Sym3, gradation, restrict};
@@ -38,9 +38,31 @@ pub(super) struct Sizing<'a> {
     /// Growth of the sizes with the distance, ln r.
     pub growth: f64,
     curvature: Curvature<'a>,
+    body: Option<&'a Body>,
     /// Where the model is the mesh's own surface.
     estimate: Option<Estimate<'a>>,
     near: Option<Near<'a>>,
+}
+
+/// Faces that have a greatest size of their own: those of a body in its far field.
+pub struct Body {
+    /// Whether each face of the model is one of them.
+    pub faces: Vec<bool>,
+    /// The greatest size on them, model units.
+    pub greatest: f64,
+}
+
+impl Body {
+    /// Whether an entity is on these faces.
+    fn has(&self, topology: &Topology, entity: Entity) -> bool {
+        let has_edge = |edge: u32| topology.edges[edge as usize].faces.iter().any(|&face| self.faces[face as usize]);
+        match entity {
+            Entity::Face(face) => self.faces[face as usize],
+            Entity::Edge(edge) => has_edge(edge),
+            Entity::Vertex(vertex) => topology.vertices[vertex as usize].edges.iter().any(|&edge| has_edge(edge)),
+            Entity::Interior => false,
+        }
+    }
 }
 
 /// What is known of a vertex.
@@ -85,15 +107,16 @@ pub fn geometry_metric(
     (logs, summary)
 }
 
-/// The same without gradation, on a mesh that resolves it: the given one with vertices added.
+/// The same without gradation, on a mesh that resolves it: the given one with vertices added. On the faces of a `body` sizes are no greater than
+/// those of it.
 pub fn resolved_metric(
     team: Team<'_>,
     mesh: &TetMesh,
     place: &Classification,
     model: &Model,
-    options: &Options,
+    (options, body): (&Options, Option<&Body>),
 ) -> Resolved {
-    let sizing = Sizing::new(team, mesh, place, model, options);
+    let sizing = Sizing { body, ..Sizing::new(team, mesh, place, model, options) };
     let limits = limits(options);
     let metrics = sizing.where_gradation_leaves_room(team, &limits);
     resolve(team, &sizing, &metrics, &limits)
@@ -136,6 +159,7 @@ impl<'a> Sizing<'a> {
             options,
             growth: options.gradation.unwrap_or(GRADATION).ln(),
             curvature: Curvature::new(options, model.topology()),
+            body: None,
             estimate: is_discrete.then(|| Estimate::new(team, mesh, place, model)),
             near: options
                 .cells
@@ -226,7 +250,18 @@ impl<'a> Sizing<'a> {
                 self.curvature.add_edges(evaluator, entity, parameters[0], &mut asked.local);
             }
         }
-        self.curvature.metric_of(&asked.local)
+        self.metric_of(entity, &asked.local)
+    }
+
+    /// The metric so far, on an entity.
+    fn metric_of(&self, entity: Entity, local: &Local) -> Sym3 {
+        let metric = self.curvature.metric_of(local);
+        match self.body {
+            Some(body) if body.has(self.model.topology(), entity) => {
+                metric.intersect(&Sym3::IDENTITY.times(body.greatest.powi(-2)))
+            }
+            _ => metric,
+        }
     }
 
     /// The metric at a place between the vertices, and the nearest gap that limits it.
@@ -243,7 +278,7 @@ impl<'a> Sizing<'a> {
 
     /// The metric of the curvature, limited across gaps.
     fn limited(&self, evaluator: &mut Evaluator, place: &Place, asked: &mut Asked) -> (Sym3, Option<Gap>) {
-        let metric = self.curvature.metric_of(&asked.local);
+        let metric = self.metric_of(place.entity, &asked.local);
         match &self.near {
             Some(near) => near.limit(evaluator, place, &asked.local, metric, &mut { metric }, &mut asked.scratch),
             None => (metric, None),

@@ -22,7 +22,7 @@ mod tree;
 
 pub use curvature::{Curvature, Local};
 pub use feature::Gap;
-pub use field::{geometry_metric, resolved_metric};
+pub use field::{Body, geometry_metric, resolved_metric};
 pub use options::Options;
 pub use resolve::Resolved;
 pub use summary::Summary;

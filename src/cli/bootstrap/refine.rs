@@ -18,8 +18,8 @@ use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::vector::Vec3;
 use crate::metric::multiscale::{Bounds, Measure, bounded};
-use crate::metric::{Background, Interpolation, Limits, Source, Sym3, grade};
-use crate::sizing::{self, Resolved};
+use crate::metric::{Background, Interpolation, Limits, Source};
+use crate::sizing::{self, Body};
 use crate::tasks::{Plan, Pool, Team, stage};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -200,14 +200,10 @@ fn sizes(
 ) -> Result<Sizes, String> {
     let _line = Waiting::for_what("the geometry's sizes", !arguments.quiet);
     let options = arguments.sizes.options(model, arguments.limits(), None);
-    let mut resolved = sizing::resolved_metric(team, mesh, place, model, &options);
+    let body = arguments.far_field.is_some().then(|| body(model));
+    let resolved = sizing::resolved_metric(team, mesh, place, model, (&options, body.as_ref()));
     let on = Arc::clone(resolved.halved.as_ref().map_or(mesh, |halved| &halved.mesh));
     let on = &on;
-    if arguments.far_field.is_some() {
-        resolve_body(mesh, place, model, &mut resolved);
-        resolved.graded.clone_from(&resolved.logs);
-        grade(team, on, &mut resolved.graded, GRADATION);
-    }
     let faces = MatchedFaces::of(team, &on.tets.nodes);
     let source = |logs| {
         let background = Background::on(team, Arc::clone(on), faces, logs);
@@ -232,21 +228,11 @@ fn sizes(
 }
 
 /// In a far field the default of the greatest size is none for the body: there it is that of the body alone.
-fn resolve_body(mesh: &TetMesh, place: &Classification, model: &Model, resolved: &mut Resolved) {
-    let (faces, diagonal) = domain::body(model);
-    let mut is_of_body = vec![false; model.topology().faces.len()];
-    faces.iter().for_each(|&face| is_of_body[face as usize] = true);
-    let mut is_on_body = vec![false; mesh.vertices.len()];
-    for (nodes, _) in mesh.triangles.nodes.iter().zip(&place.faces).filter(|(_, face)| is_of_body[**face as usize]) {
-        nodes.iter().for_each(|&v| is_on_body[v as usize] = true);
-    }
-    if let Some(halved) = &resolved.halved {
-        halved.extend(&mut is_on_body, |a, b| a && b);
-    }
-    let size = Sym3::ZERO.plus_identity(-2.0 * (BODY * diagonal).ln());
-    for (log, _) in resolved.logs.iter_mut().zip(is_on_body).filter(|(_, is_on_body)| *is_on_body) {
-        *log = log.intersect_logs(&size);
-    }
+fn body(model: &Model) -> Body {
+    let (of_body, diagonal) = domain::body(model);
+    let mut faces = vec![false; model.topology().faces.len()];
+    of_body.iter().for_each(|&face| faces[face as usize] = true);
+    Body { faces, greatest: BODY * diagonal }
 }
 
 /// Greatest size on the body, of its diagonal.

@@ -119,7 +119,7 @@ impl Plane {
         (self.region.fixed[t as usize][i], self.region.fixed[u as usize][j]) = (0, 0);
         for [p, q] in fresh {
             if let Some(edge) = self.edge(p, q) {
-                self.legalise(&mut vec![edge]);
+                self.legalise(&mut vec![edge])?;
             }
         }
         let (t, i) = self.edge(a, b).ok_or(Conflict::Lost)?;

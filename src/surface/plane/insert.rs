@@ -1,6 +1,9 @@
 //! Points into the triangulation, and the flips that keep it Delaunay.
 use super::{Conflict, FRAME, NONE, Plane, Point, in_circle, turn};
 
+/// A new point, or a new segment, flips no more edges than so many for each point.
+const FLIPS: usize = 100;
+
 impl Plane {
     /// Adds a point; it gets the next number.
     ///
@@ -26,7 +29,7 @@ impl Plane {
             Some(i) => self.split_edge(triangle, i, vertex)?,
             None => self.split_triangle(triangle, vertex),
         };
-        self.legalise(&mut stack);
+        self.legalise(&mut stack)?;
         self.last = self.at[vertex as usize];
         Ok(vertex - FRAME as u32)
     }
@@ -73,7 +76,11 @@ impl Plane {
     }
 
     /// Flips edges, given by a triangle and the corner opposite, until all about them are Delaunay.
-    pub(super) fn legalise(&mut self, stack: &mut Vec<(u32, usize)>) {
+    ///
+    /// # Errors
+    /// [`Conflict::Lost`] where that comes to no end: coordinates so far apart that their products are no doubles have no exact predicates.
+    pub(super) fn legalise(&mut self, stack: &mut Vec<(u32, usize)>) -> Result<(), Conflict> {
+        let mut left = FLIPS * (self.points.len() + FRAME);
         while let Some((t, i)) = stack.pop() {
             let u = self.region.beside[t as usize][i];
             if u == NONE || self.region.fixed[t as usize][i] != NONE {
@@ -82,9 +89,11 @@ impl Plane {
             let j = self.region.place_beside(t, i);
             let [a, b, c] = self.region.triangles[t as usize].map(|v| self.point(v));
             if in_circle(a, b, c, self.point(self.region.triangles[u as usize][j])) > 0.0 {
+                left = left.checked_sub(1).ok_or(Conflict::Lost)?;
                 self.flip(t, i);
                 stack.extend([(t, 0), (u, 0), (t, 2), (u, 1)]);
             }
         }
+        Ok(())
     }
 }

@@ -14,6 +14,9 @@ pub type Point = [f64; 2];
 /// No triangle, no segment.
 pub const NONE: u32 = u32::MAX;
 
+/// Coordinates are less than this: the predicates multiply four of them.
+const MODERATE: f64 = 1e60;
+
 /// Corners of the square around all points.
 const FRAME: usize = 4;
 
@@ -79,7 +82,7 @@ impl Plane {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for point in points {
             for k in 0..2 {
-                let is_moderate = point[k].abs() < 1e100;
+                let is_moderate = point[k].abs() < MODERATE;
                 if !is_moderate {
                     return Err(Conflict::Lost);
                 }

@@ -173,3 +173,25 @@ proptest! {
         }
     }
 }
+
+/// Products of these are no doubles any more: signs of determinants contradict each other, and edges are flipped to and fro.
+#[test]
+fn coordinates_that_have_no_exact_predicates_end_all_the_same() {
+    let mut random = 7u64;
+    for exponent in [-1, -40, -60, -79, -81, -90, -120, -150, -160] {
+        for _ in 0..40 {
+            let points: Vec<Point> = (0..40)
+                .map(|_| {
+                    [0, 1].map(|_| {
+                        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                        ((random >> 33) as f64 / (1u64 << 31) as f64)
+                            * 10f64.powi(if random & 1 << 40 == 0 { 0 } else { exponent })
+                    })
+                })
+                .collect();
+            if let Ok(mut plane) = Plane::new(&points) {
+                let _ = plane.constrain([0, 20], 1);
+            }
+        }
+    }
+}
