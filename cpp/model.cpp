@@ -55,6 +55,22 @@ bool has_exact_box(const TopoDS_Edge& edge, const TopoDS_Face& face)
   return type == GeomAbs_Line || type == GeomAbs_Circle || type == GeomAbs_Ellipse;
 }
 
+/// The length of a curve that there is in the parameters of a surface alone, by Simpson's rule. OCCT's own integration asks such for poles that
+/// they do not have.
+double length_on_surface(const BRepAdaptor_Curve& curve)
+{
+  constexpr int PARTS = 256;
+  const double first = curve.FirstParameter(), step = (curve.LastParameter() - first) / PARTS;
+  double sum = 0.0;
+  for (int i = 0; i <= PARTS; ++i) {
+    gp_Pnt at;
+    gp_Vec along;
+    curve.D1(first + i * step, at, along);
+    sum += along.Magnitude() * (i == 0 || i == PARTS ? 1.0 : i % 2 == 1 ? 4.0 : 2.0);
+  }
+  return sum * std::abs(step) / 3.0;
+}
+
 } // namespace
 
 Model::Model(const TopoDS_Shape& loaded, const Labels& given, const TopoDS_Shape& whole, std::vector<Box> known)
@@ -169,6 +185,10 @@ double Model::face_area(std::uint32_t index) const
 
 double Model::edge_length(std::uint32_t index) const
 {
+  const BRepAdaptor_Curve curve(edge(index));
+  if (!curve.Is3DCurve()) {
+    return length_on_surface(curve);
+  }
   GProp_GProps properties;
   BRepGProp::LinearProperties(edge(index), properties);
   return properties.Mass();

@@ -99,6 +99,18 @@ fn survives(source: &str, extension: &str) {
     eprintln!("{source}: {count} damaged files, {models} still models, {meshes} meshed");
 }
 
+/// OCCT asks a curve for its poles that there is on a surface alone, and has none: a line that became an arc has no curve in space.
+#[test]
+fn an_edge_without_a_curve_in_space_has_a_length() {
+    let valid = fs::read_to_string(data("block-inches.igs")).expect("a file of the tests");
+    let line = valid.lines().nth(49).expect("it has more lines");
+    assert!(line.starts_with("     110"), "another file: {line}");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let damaged = valid.replace(line, &line.replacen("110", "100", 1));
+    fs::write(folder.path().join("damaged.igs"), damaged).expect("the folder is ours");
+    ends_well(&run(folder.path(), &["model", "damaged.igs"]), "an arc for a line", None);
+}
+
 #[test]
 fn damaged_step_files_end_well() {
     survives("capped-cylinder.step", "step");

@@ -14,6 +14,7 @@ mod whole;
 
 pub use check::{Report, report};
 pub use points::Place;
+pub use whole::ENOUGH;
 
 use crate::geometry::{Geometry, OcctModel};
 use crate::mesh::vector::Vec3;

@@ -243,7 +243,10 @@ pub fn longest(corners: &[Vec3; 3]) -> (Vec3, f64, usize) {
     (lerp(corners[i], corners[(i + 1) % 3], 0.5), length(i), i)
 }
 
-/// Finds the pairs of triangles that cross or touch beside what they share: exact.
+/// More pairs that cross are not looked for: the surface is in ruins.
+pub const ENOUGH: usize = 20_000;
+
+/// Finds the pairs of triangles that cross or touch beside what they share, or enough of them: exact.
 pub fn find_crossings(surface: &mut Surface) {
     let corners = |t: u32| surface.triangles[t as usize].map(|v| surface.points[v as usize]);
     let bounds = |t: u32| -> Bounds {
@@ -256,7 +259,7 @@ pub fn find_crossings(surface: &mut Surface) {
         bounds,
         |_, _| true,
         |found: &mut Vec<[u32; 2]>, i, j| {
-            if meeting(&corners(i), &corners(j)).is_some() {
+            if found.len() < ENOUGH && meeting(&corners(i), &corners(j)).is_some() {
                 found.push(sorted2([i, j]));
             }
         },

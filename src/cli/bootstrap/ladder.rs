@@ -178,7 +178,7 @@ fn own(model: &Model, finer: f64, limit: Duration) -> Result<Option<(TetMesh, Ve
 
 #[cfg(not(feature = "occt"))]
 fn own(_: &Model, _: f64, _: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, Miss> {
-    Err(Miss::Failed("this program was built without OpenCASCADE".into()))
+    Err(Miss::Hopeless("this program was built without OpenCASCADE".into()))
 }
 
 /// The error of a ladder without a good rung.

@@ -9,7 +9,7 @@ use crate::geometry::{Entity, Geometry, Model};
 use crate::mesh::adjacency::sorted2;
 use crate::mesh::vector::{Vec3, area2, dot, unit};
 use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
-use crate::surface::{Options, Place, Surface, triangulate};
+use crate::surface::{ENOUGH, Options, Place, Surface, triangulate};
 use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
@@ -102,12 +102,13 @@ fn parts(surface: Surface) -> Result<Vec<Surface>, String> {
         let [a, b] = pair.map(|t| surface.faces[t as usize] + 1);
         let at = surface.points[surface.triangles[pair[0] as usize][0] as usize];
         let count = surface.crossings.len();
+        let least = if count < ENOUGH { "" } else { "at least " };
         let solids = match apart(&surface, *pair) {
             [Some(a), Some(b)] => format!(": solids {} and {} overlap there, or touch along no edge", a + 1, b + 1),
             _ => String::new(),
         };
         return Err(format!(
-            "{count} pairs of triangles of its surface cross, the first of faces {a} and {b} near {}{solids}",
+            "{least}{count} pairs of triangles of its surface cross, the first of faces {a} and {b} near {}{solids}",
             place(at)
         ));
     }
