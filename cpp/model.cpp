@@ -55,8 +55,7 @@ bool has_exact_box(const TopoDS_Edge& edge, const TopoDS_Face& face)
   return type == GeomAbs_Line || type == GeomAbs_Circle || type == GeomAbs_Ellipse;
 }
 
-/// The length of a curve that there is in the parameters of a surface alone, by Simpson's rule. OCCT's own integration asks such for poles that
-/// they do not have.
+/// The length of an edge that has a curve on a surface and none in space, by Simpson's rule. OCCT's own integration may crash on one.
 double length_on_surface(const BRepAdaptor_Curve& curve)
 {
   constexpr int PARTS = 256;

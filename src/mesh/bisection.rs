@@ -18,16 +18,6 @@ pub struct Halved {
     pub parents: Vec<[u32; 2]>,
 }
 
-impl Halved {
-    /// Gives values to the added vertices, by those at the ends of their edges.
-    pub fn extend<T: Copy>(&self, values: &mut Vec<T>, mean: impl Fn(T, T) -> T) {
-        values.reserve(self.parents.len());
-        for &[a, b] in &self.parents {
-            values.push(mean(values[a as usize], values[b as usize]));
-        }
-    }
-}
-
 /// Edges to be halved, in an order.
 pub struct MarkedEdges {
     numbers: HashMap<[u32; 2], u32>,

@@ -18,10 +18,10 @@ pub enum Interpolation {
 
 /// Between points whose √det M differ by less than this factor, a quadrature of second degree will do: where sizes are linear along an edge it
 /// is 0.5 % off at most.
-const ALIKE: f64 = 4.0;
+pub(super) const ALIKE: f64 = 4.0;
 
 /// Most bisections of a tetrahedron on the way to such points.
-const DEEPEST: u32 = 96;
+pub(super) const DEEPEST: u32 = 96;
 
 impl Interpolation {
     /// What is interpolated of ln M.
@@ -53,7 +53,8 @@ impl Interpolation {
                         .iter()
                         .map(|nodes| {
                             let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
-                            volume6(a, b, c, d) / 6.0 * mean_of_sizes(nodes.map(|v| sizes[v as usize]))
+                            let corners = nodes.map(|v| Linear::of(sizes[v as usize]));
+                            volume6(a, b, c, d) / 6.0 * mean_density(corners, &Linear::between, DEEPEST)
                         })
                         .sum()
                 })
@@ -62,55 +63,95 @@ impl Interpolation {
     }
 }
 
-/// The mean of √det M over a tetrahedron in which M^(−1/2) is linear, with these values at its corners.
-fn mean_of_sizes(sizes: [Sym3; 4]) -> f64 {
-    mean_density(sizes.map(Corner::of), DEEPEST)
+/// A corner of a tetrahedron that is bisected.
+pub(super) trait Corner: Copy {
+    /// M^(−1/2).
+    fn size(&self) -> Sym3;
+    /// √det M.
+    fn density(&self) -> f64;
 }
 
-/// M^(−1/2) at a corner of a tetrahedron, and √det M.
-#[derive(Clone, Copy)]
-struct Corner {
-    size: Sym3,
-    density: f64,
+/// What is known between two corners.
+pub(super) enum Between<C> {
+    /// Their middle.
+    Middle(C),
+    /// The mean of √det M over the whole tetrahedron.
+    Mean(f64),
 }
 
-impl Corner {
-    fn of(size: Sym3) -> Self {
-        Self { size, density: 1.0 / size.sqrt_det().powi(2) }
-    }
-
-    /// The geometric mean of the three sizes.
-    fn mean_size(&self) -> f64 {
-        self.density.cbrt().recip()
-    }
-}
-
-/// The mean of √det M over a tetrahedron in which M^(−1/2) is linear. Where (det M)^(−1/6), the mean size, is nearly linear too, as it is for
-/// equal sizes in all directions, there is a formula; else it is bisected between the corners that differ most, until they are alike.
-fn mean_density(corners: [Corner; 4], depth: u32) -> f64 {
+/// The mean of √det M over a tetrahedron. It is bisected between the corners that differ most, as `between` tells, until they are alike; then by
+/// a quadrature of second degree for linear sizes.
+pub(super) fn mean_density<C: Corner>(
+    corners: [C; 4],
+    between: &impl Fn(&[C; 4], [usize; 2]) -> Between<C>,
+    depth: u32,
+) -> f64 {
     let ratio = |[i, j]: [usize; 2]| {
-        let [a, b] = [corners[i].density, corners[j].density];
+        let [a, b] = [corners[i].density(), corners[j].density()];
         a.max(b) / a.min(b)
     };
     let most = EDGES.into_iter().max_by(|&a, &b| ratio(a).total_cmp(&ratio(b)));
     let [i, j] = most.unwrap_or([0, 1]);
     let is_steep = ratio([i, j]) > ALIKE;
     if depth == 0 || !is_steep {
-        let sum = corners.iter().fold(Sym3::ZERO, |sum, corner| sum.plus(corner.size));
-        let centre = Corner::of(sum.times(0.25));
-        return 0.8 * centre.density + 0.05 * corners.iter().map(|corner| corner.density).sum::<f64>();
+        let centre = corners.iter().fold(Sym3::ZERO, |sum, corner| sum.plus(corner.size())).times(0.25);
+        return 0.8 * density(&centre) + 0.05 * corners.iter().map(C::density).sum::<f64>();
     }
-    let middle = Corner::of(corners[i].size.plus(corners[j].size).times(0.5));
-    let linear = 0.5 * (corners[i].mean_size() + corners[j].mean_size());
-    if (middle.mean_size() / linear - 1.0).abs() < STRAIGHT {
-        return mean_of_powers(corners.map(|corner| corner.mean_size()));
+    match between(&corners, [i, j]) {
+        Between::Mean(mean) => mean,
+        Between::Middle(middle) => {
+            let with = |k: usize| {
+                let mut half = corners;
+                half[k] = middle;
+                mean_density(half, between, depth - 1)
+            };
+            0.5 * (with(i) + with(j))
+        }
     }
-    let with = |k: usize| {
-        let mut half = corners;
-        half[k] = middle;
-        mean_density(half, depth - 1)
-    };
-    0.5 * (with(i) + with(j))
+}
+
+/// √det M of M^(−1/2).
+fn density(size: &Sym3) -> f64 {
+    1.0 / size.sqrt_det().powi(2)
+}
+
+/// A corner of a tetrahedron in which M^(−1/2) is linear.
+#[derive(Clone, Copy)]
+struct Linear {
+    size: Sym3,
+    density: f64,
+}
+
+impl Corner for Linear {
+    fn size(&self) -> Sym3 {
+        self.size
+    }
+
+    fn density(&self) -> f64 {
+        self.density
+    }
+}
+
+impl Linear {
+    fn of(size: Sym3) -> Self {
+        Self { size, density: density(&size) }
+    }
+
+    /// The geometric mean of the three sizes.
+    fn mean_size(&self) -> f64 {
+        self.density.cbrt().recip()
+    }
+
+    /// Where (det M)^(−1/6), the mean size, is nearly linear too, as it is for equal sizes in all directions, there is a formula.
+    fn between(corners: &[Self; 4], [i, j]: [usize; 2]) -> Between<Self> {
+        let middle = Self::of(corners[i].size.plus(corners[j].size).times(0.5));
+        let linear = 0.5 * (corners[i].mean_size() + corners[j].mean_size());
+        if (middle.mean_size() / linear - 1.0).abs() < STRAIGHT {
+            Between::Mean(mean_of_powers(corners.map(|corner| corner.mean_size())))
+        } else {
+            Between::Middle(middle)
+        }
+    }
 }
 
 /// How far the mean size in the middle of an edge may be from the mean of its ends.

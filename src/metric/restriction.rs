@@ -6,21 +6,15 @@
 //! from there as fast as gradation lets them. A mesh that is adapted to them is finer there, and can be given more of them.
 use super::field::mean_exponential;
 use super::frame::{Both, Frame, intersect};
+use super::interpolation::{self, ALIKE, Between, DEEPEST};
 use super::{Eigen, Interpolation, Sym3};
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::EDGES;
 use crate::mesh::vector::{Vec3, lerp, sub, volume6};
 use crate::tasks::{GRAIN, Team};
 use std::collections::BTreeMap;
 
 /// A tetrahedron may have so many times the complexity of sizes that grow as fast as they may.
 const MORE: f64 = 1.5;
-
-/// Corners whose √det M differ by less than this factor have no more than that.
-const ALIKE: f64 = 4.0;
-
-/// Most bisections of a tetrahedron on the way to corners that are alike.
-const DEEPEST: u32 = 96;
 
 /// Most rounds. Each takes a vertex nearly to where it belongs, as long as its neighbours stay.
 const ROUNDS: usize = 40;
@@ -117,6 +111,16 @@ struct Corner {
     density: f64,
 }
 
+impl interpolation::Corner for Corner {
+    fn size(&self) -> Sym3 {
+        self.size
+    }
+
+    fn density(&self) -> f64 {
+        self.density
+    }
+}
+
 impl Corner {
     fn of(at: Vec3, frame: Frame) -> Self {
         let size = Sym3::from_eigen(&Eigen { values: frame.roots.map(|root| 1.0 / root), vectors: frame.vectors });
@@ -143,27 +147,9 @@ impl Corner {
     }
 }
 
-/// The mean of √det M over a tetrahedron, bisected between the corners that differ most until they are alike; then by a quadrature of second
-/// degree for linear sizes.
+/// The mean of √det M over a tetrahedron in which sizes grow so.
 fn mean_density(corners: [Corner; 4], growth: f64, depth: u32) -> f64 {
-    let ratio = |[i, j]: [usize; 2]| {
-        let [a, b] = [corners[i].density, corners[j].density];
-        a.max(b) / a.min(b)
-    };
-    let most = EDGES.into_iter().max_by(|&a, &b| ratio(a).total_cmp(&ratio(b)));
-    let [i, j] = most.unwrap_or([0, 1]);
-    let is_steep = ratio([i, j]) > ALIKE;
-    if depth == 0 || !is_steep {
-        let centre = corners.iter().fold(Sym3::ZERO, |sum, corner| sum.plus(corner.size)).times(0.25);
-        return 0.8 / centre.sqrt_det().powi(2) + 0.05 * corners.iter().map(|corner| corner.density).sum::<f64>();
-    }
-    let middle = Corner::middle(&corners, [i, j], growth);
-    let with = |k: usize| {
-        let mut half = corners;
-        half[k] = middle;
-        mean_density(half, growth, depth - 1)
-    };
-    0.5 * (with(i) + with(j))
+    interpolation::mean_density(corners, &|all, ends| Between::Middle(Corner::middle(all, ends, growth)), depth)
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ const VERTICES: usize = 1 << 9;
 /// Gaps are looked for at one vertex in so many, and again at more.
 const STRIDES: [usize; 3] = [64, 8, 1];
 
-/// A graded metric may be so much finer than what there is to be, in size, where metrics that turn were intersected.
+/// Sizes of a graded metric may be too small by this factor, where metrics that turn were intersected.
 const ROOM: f64 = 1.2;
 
 /// What a thread has in hand.
@@ -174,8 +174,8 @@ impl<'a> Sizing<'a> {
         })
     }
 
-    /// The metrics at the vertices without the gaps that change nothing once the metric is graded, as most are: beside small sizes those that
-    /// gradation leaves are too small to see them. First the curvature is asked at all vertices, then gaps at more and more of them, each time
+    /// The metrics at the vertices, without the gaps that change nothing once the metric is graded: most gaps are wider than the sizes that
+    /// gradation leaves beside small ones. First the curvature is asked at all vertices, then gaps at more and more of them, each time
     /// as far as the graded metric that is known by then reaches.
     fn where_gradation_leaves_room(&self, team: Team<'_>, limits: &Limits) -> Vec<Sym3> {
         let count = self.mesh.vertices.len();

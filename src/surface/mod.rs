@@ -221,7 +221,7 @@ fn is_hopeless(history: &[usize]) -> bool {
     last > MANY || last > 8 * first + 200 || before.is_some_and(|before| last >= before)
 }
 
-/// Triangulates one face, or tells what of its border is to be divided first. Where it may not go on the face is left as it is.
+/// Triangulates one face, or tells what of its border is to be divided first. Ends early where `go_on` says no.
 fn work(
     (model, options, go_on): (&OcctModel, &Options, &dyn Fn() -> bool),
     points: &Points,

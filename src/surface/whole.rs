@@ -2,13 +2,14 @@
 use super::plane::NONE;
 use super::points::{Place, Points};
 use super::proximity;
-use super::{Asked, Face, Options, Surface, WISHES, Wish};
+use super::{Asked, Face, MANY, Options, Surface, WISHES, Wish};
 use crate::geometry::{Evaluate, Geometry, OcctEvaluator, OcctModel, Side};
 use crate::mesh::adjacency::sorted2;
 use crate::mesh::box_tree::{Bounds, BoxTree};
 use crate::mesh::triangle_pair::meeting;
 use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, norm, scale, sub};
 use crate::tasks::Team;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Height over length below which a triangle is flat.
 const FLAT: f64 = 1e-10;
@@ -106,7 +107,7 @@ pub fn pieces_of(surface: &Surface) -> Vec<([u32; 2], u32, u32)> {
 }
 
 /// Looks for edges that are met too often and for triangles that cross, and asks for finer ones there. How many there are, and how many
-/// triangles are too near to others.
+/// triangles are too near to others. Where more than [`MANY`] pairs cross nothing else is looked for.
 pub fn find_faults(
     model: &OcctModel,
     surface: &mut Surface,
@@ -115,6 +116,9 @@ pub fn find_faults(
     asked: &mut Asked,
 ) -> (usize, usize) {
     find_crossings(surface);
+    if surface.crossings.len() > MANY {
+        return (surface.crossings.len(), 0);
+    }
     let pieces = pieces_of(surface);
     let piece_at = |ends: [u32; 2]| pieces.binary_search_by_key(&ends, |&(ends, _, _)| ends).ok().map(|i| &pieces[i]);
     let mut barred = Vec::new();
@@ -243,10 +247,10 @@ pub fn longest(corners: &[Vec3; 3]) -> (Vec3, f64, usize) {
     (lerp(corners[i], corners[(i + 1) % 3], 0.5), length(i), i)
 }
 
-/// More pairs that cross are not looked for: the surface is in ruins.
+/// Most pairs that cross that are looked for: with so many the surface is beyond repair.
 pub const ENOUGH: usize = 20_000;
 
-/// Finds the pairs of triangles that cross or touch beside what they share, or enough of them: exact.
+/// Finds the pairs of triangles that cross or touch beside what they share, at most [`ENOUGH`]: exact.
 pub fn find_crossings(surface: &mut Surface) {
     let corners = |t: u32| surface.triangles[t as usize].map(|v| surface.points[v as usize]);
     let bounds = |t: u32| -> Bounds {
@@ -254,12 +258,15 @@ pub fn find_crossings(surface: &mut Surface) {
         [[0, 1, 2].map(|k| p[k].min(q[k]).min(r[k])), [0, 1, 2].map(|k| p[k].max(q[k]).max(r[k]))]
     };
     let tree = BoxTree::new(surface.triangles.len(), bounds);
+    // One thread counts: which pairs are found is the same each time.
+    let count = AtomicUsize::new(0);
     let parts = tree.overlapping_pairs(
         Team::alone(),
         bounds,
-        |_, _| true,
+        |_, _| count.load(Relaxed) < ENOUGH,
         |found: &mut Vec<[u32; 2]>, i, j| {
-            if found.len() < ENOUGH && meeting(&corners(i), &corners(j)).is_some() {
+            if count.load(Relaxed) < ENOUGH && meeting(&corners(i), &corners(j)).is_some() {
+                count.fetch_add(1, Relaxed);
                 found.push(sorted2([i, j]));
             }
         },

@@ -60,8 +60,7 @@ impl Patch {
         Some(3 - i - j)
     }
 
-    /// Edges that are too long, with how much and a triangle. Those that are known to be short enough are passed by, and what is found to be is
-    /// put to them.
+    /// Edges that are too long, with how much and a triangle. Edges in `short` are skipped; those found short enough are added to it.
     fn wanted(
         &self,
         on: &mut OcctEvaluator,

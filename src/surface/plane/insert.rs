@@ -1,7 +1,7 @@
 //! Points into the triangulation, and the flips that keep it Delaunay.
 use super::{Conflict, FRAME, NONE, Plane, Point, in_circle, turn};
 
-/// A new point, or a new segment, flips no more edges than so many for each point.
+/// Most flips after a new point or segment, for each point of the plane.
 const FLIPS: usize = 100;
 
 impl Plane {
@@ -78,7 +78,7 @@ impl Plane {
     /// Flips edges, given by a triangle and the corner opposite, until all about them are Delaunay.
     ///
     /// # Errors
-    /// [`Conflict::Lost`] where that comes to no end: coordinates so far apart that their products are no doubles have no exact predicates.
+    /// [`Conflict::Lost`] where that does not end: predicates are not exact where products of coordinates overflow or underflow.
     pub(super) fn legalise(&mut self, stack: &mut Vec<(u32, usize)>) -> Result<(), Conflict> {
         let mut left = FLIPS * (self.points.len() + FRAME);
         while let Some((t, i)) = stack.pop() {
