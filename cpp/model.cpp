@@ -55,6 +55,9 @@ bool has_exact_box(const TopoDS_Edge& edge, const TopoDS_Face& face)
   return type == GeomAbs_Line || type == GeomAbs_Circle || type == GeomAbs_Ellipse;
 }
 
+/// Most turns of a face round a periodic surface.
+constexpr double TURNS = 1e5;
+
 /// The length of an edge that has a curve on a surface and none in space, by Simpson's rule. OCCT's own integration may crash on one.
 double length_on_surface(const BRepAdaptor_Curve& curve)
 {
@@ -121,6 +124,13 @@ FaceRecord Model::face_record(std::uint32_t index) const
   record.natural = {surface.FirstUParameter(), surface.LastUParameter(), surface.FirstVParameter(),
                     surface.LastVParameter()};
   record.period = {surface.IsUPeriodic() ? surface.UPeriod() : 0.0, surface.IsVPeriodic() ? surface.VPeriod() : 0.0};
+  for (const std::size_t k : {0, 1}) {
+    // OCCT walks to parameters turn by turn.
+    if (record.range[2 * k + 1] - record.range[2 * k] > TURNS * record.period[k] && record.period[k] > 0.0) {
+      throw std::runtime_error("face " + std::to_string(index + 1)
+                               + " goes round its surface too often; its boundary is damaged, export the model again");
+    }
+  }
   record.tolerance = BRep_Tool::Tolerance(here);
   auto& known = boxes.at(index);
   if (!known) {

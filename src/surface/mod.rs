@@ -139,9 +139,12 @@ struct Asked {
     faces: BTreeSet<u32>,
 }
 
+/// Whether to go on: no once the time is over.
+pub type GoOn<'a> = &'a (dyn Fn() -> bool + Sync);
+
 /// Triangulates all faces of a model. Where triangles cross in the end, which finer ones do not cure where faces touch, other sizes are tried:
-/// what crosses least is kept. None where `go_on` said no, which is asked before each face.
-pub fn triangulate(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> bool) -> Option<Surface> {
+/// what crosses least is kept. None where `go_on` said no.
+pub fn triangulate(model: &OcctModel, options: &Options, go_on: GoOn<'_>) -> Option<Surface> {
     let mut best = attempt(model, options, go_on)?;
     for (finer, growth) in ATTEMPTS {
         if best.faults().1 == 0 || best.triangles.len() > LARGE || best.crossings.len() > MANY {
@@ -160,7 +163,7 @@ pub fn triangulate(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> boo
 }
 
 /// One attempt: what has the fewest faults of all rounds.
-fn attempt(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> bool) -> Option<Surface> {
+fn attempt(model: &OcctModel, options: &Options, go_on: GoOn<'_>) -> Option<Surface> {
     let topology = model.topology();
     let twins = Twins::of(model);
     let mut points = Points::new(model, edges::divided(model, options, &twins), twins);
@@ -182,7 +185,10 @@ fn attempt(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> bool) -> Op
         }
         if asked.pieces.is_empty() && asked.faces.is_empty() {
             let mut surface = whole::assemble(model, &points, &faces);
-            let (faults, near) = whole::find_faults(model, &mut surface, &mut faces, options, &mut asked);
+            let (faults, near) = whole::find_faults((model, options, go_on), &mut surface, &mut faces, &mut asked);
+            if !go_on() {
+                return None;
+            }
             history.push(faults);
             if best.as_ref().is_none_or(|(least, _)| (faults, near) < *least) {
                 best = Some(((faults, near), surface));
@@ -205,7 +211,7 @@ fn attempt(model: &OcctModel, options: &Options, go_on: &dyn Fn() -> bool) -> Op
     let surface = best.map_or_else(
         || {
             let mut surface = whole::assemble(model, &points, &faces);
-            whole::find_crossings(&mut surface);
+            whole::find_crossings(&mut surface, go_on);
             surface
         },
         |(_, surface)| surface,
@@ -223,7 +229,7 @@ fn is_hopeless(history: &[usize]) -> bool {
 
 /// Triangulates one face, or tells what of its border is to be divided first. Ends early where `go_on` says no.
 fn work(
-    (model, options, go_on): (&OcctModel, &Options, &dyn Fn() -> bool),
+    (model, options, go_on): (&OcctModel, &Options, GoOn<'_>),
     points: &Points,
     index: u32,
     face: &mut Face,

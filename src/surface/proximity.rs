@@ -2,7 +2,7 @@
 //!
 //! Such triangles do not cross, but whoever moves their points onto the model has no room for that: between a hole and the side of a plate, in
 //! the wall of a pipe, a chord is as far off its arc as the arc is from what lies behind it.
-use super::Surface;
+use super::{GoOn, Surface};
 use crate::mesh::box_tree::{Bounds, BoxTree};
 use crate::mesh::locate::nearest_on_triangle;
 use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, scale, unit};
@@ -14,8 +14,8 @@ const OPPOSITE: f64 = -0.5;
 const FLAT: f64 = 1e-6;
 
 /// The triangles that are too near to others, sorted. `off` is how far each triangle is off its surface, model units. Of two triangles it is the
-/// one that is farther off; both if neither is twice as far off as the other.
-pub fn too_near(surface: &Surface, off: &[f64]) -> Vec<u32> {
+/// one that is farther off; both if neither is twice as far off as the other. Ends early where `go_on` says no.
+pub fn too_near(surface: &Surface, off: &[f64], go_on: GoOn<'_>) -> Vec<u32> {
     let corners = |t: u32| surface.triangles[t as usize].map(|v| surface.points[v as usize]);
     let reach = |t: u32| {
         let (off, longest) = (off[t as usize], super::whole::longest(&corners(t)).1);
@@ -38,7 +38,7 @@ pub fn too_near(surface: &Surface, off: &[f64]) -> Vec<u32> {
     let parts = tree.overlapping_pairs(
         Team::alone(),
         bounds,
-        |_, _| true,
+        |_, node| node > 0 || go_on(),
         |found: &mut Vec<u32>, i, j| {
             let [a, b] = [i, j].map(reach);
             if a + b > 0.0 && are_opposite(i, j) && !are_beside(i, j) && apart(&corners(i), &corners(j)) < a + b {
@@ -76,7 +76,7 @@ mod tests {
             vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.1, 0.1, gap], [0.9, 0.1, gap], [0.1, 0.9, gap]];
         let surface =
             Surface { points, triangles: vec![[0, 1, 2], [3, 5, 4]], faces: vec![0, 1], ..Surface::default() };
-        too_near(&surface, &off)
+        too_near(&surface, &off, &|| true)
     }
 
     #[test]

@@ -2,7 +2,7 @@
 use super::plane::NONE;
 use super::points::{Place, Points};
 use super::proximity;
-use super::{Asked, Face, MANY, Options, Surface, WISHES, Wish};
+use super::{Asked, Face, GoOn, MANY, Options, Surface, WISHES, Wish};
 use crate::geometry::{Evaluate, Geometry, OcctEvaluator, OcctModel, Side};
 use crate::mesh::adjacency::sorted2;
 use crate::mesh::box_tree::{Bounds, BoxTree};
@@ -108,15 +108,15 @@ pub fn pieces_of(surface: &Surface) -> Vec<([u32; 2], u32, u32)> {
 
 /// Looks for edges that are met too often and for triangles that cross, and asks for finer ones there. How many there are, and how many
 /// triangles are too near to others. Where more than [`MANY`] pairs cross nothing else is looked for.
+/// Both are not complete where `go_on` said no.
 pub fn find_faults(
-    model: &OcctModel,
+    (model, options, go_on): (&OcctModel, &Options, GoOn<'_>),
     surface: &mut Surface,
     faces: &mut [Face],
-    options: &Options,
     asked: &mut Asked,
 ) -> (usize, usize) {
-    find_crossings(surface);
-    if surface.crossings.len() > MANY {
+    find_crossings(surface, go_on);
+    if surface.crossings.len() > MANY || !go_on() {
         return (surface.crossings.len(), 0);
     }
     let pieces = pieces_of(surface);
@@ -159,7 +159,7 @@ pub fn find_faults(
             asked.faces.insert(face);
         }
     }
-    let near = proximity::too_near(surface, &surface.off);
+    let near = proximity::too_near(surface, &surface.off, go_on);
     for &t in &near {
         ask_finer(surface, faces, options, &piece_at, t, asked);
     }
@@ -250,8 +250,9 @@ pub fn longest(corners: &[Vec3; 3]) -> (Vec3, f64, usize) {
 /// Most pairs that cross that are looked for: with so many the surface is beyond repair.
 pub const ENOUGH: usize = 20_000;
 
-/// Finds the pairs of triangles that cross or touch beside what they share, at most [`ENOUGH`]: exact.
-pub fn find_crossings(surface: &mut Surface) {
+/// Finds the pairs of triangles that cross or touch beside what they share, at most [`ENOUGH`]: exact. Ends early where `go_on`
+/// says no.
+pub fn find_crossings(surface: &mut Surface, go_on: GoOn<'_>) {
     let corners = |t: u32| surface.triangles[t as usize].map(|v| surface.points[v as usize]);
     let bounds = |t: u32| -> Bounds {
         let [p, q, r] = corners(t);
@@ -263,7 +264,7 @@ pub fn find_crossings(surface: &mut Surface) {
     let parts = tree.overlapping_pairs(
         Team::alone(),
         bounds,
-        |_, _| count.load(Relaxed) < ENOUGH,
+        |_, node| count.load(Relaxed) < ENOUGH && (node > 0 || go_on()),
         |found: &mut Vec<[u32; 2]>, i, j| {
             if count.load(Relaxed) < ENOUGH && meeting(&corners(i), &corners(j)).is_some() {
                 count.fetch_add(1, Relaxed);

@@ -132,7 +132,7 @@ impl Fit<'_> {
             Entity::Face(face) => self.face_borders[face as usize],
             Entity::Vertex(_) | Entity::Interior => 0.0,
         };
-        (SLACK * self.usual(entity)).max(2.0 * border)
+        SLACK * self.usual(entity).max(border)
     }
 
     /// A point of the mesh.

@@ -104,6 +104,7 @@ impl Patch {
                         conflicts.push(Conflict::Cross(i as u32, other));
                     }
                 }
+                Err(Conflict::Lost) => return Err(vec![Conflict::Lost]),
                 Err(conflict) => conflicts.push(conflict),
             }
         }

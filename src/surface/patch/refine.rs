@@ -1,7 +1,7 @@
 //! Which edges of a face are too long.
 use super::super::edges::{STRETCH, angle};
 use super::super::plane::NONE;
-use super::super::{Options, Wish};
+use super::super::{GoOn, Options, Wish};
 use super::{Patch, sample};
 use crate::geometry::OcctEvaluator;
 use crate::mesh::adjacency::sorted2;
@@ -25,7 +25,7 @@ impl Patch {
         face: u32,
         options: &Options,
         (wishes, barred): (&[Wish], &BTreeSet<[u32; 2]>),
-        go_on: &dyn Fn() -> bool,
+        go_on: GoOn<'_>,
     ) {
         let all: Vec<(u32, usize)> = (0..self.triangles.len() as u32).flat_map(|t| [(t, 0), (t, 1), (t, 2)]).collect();
         self.straighten(all);

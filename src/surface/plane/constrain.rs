@@ -2,6 +2,9 @@
 use super::{Conflict, FRAME, NONE, Plane, turn};
 use std::collections::VecDeque;
 
+/// Most flips about an edge that a segment no longer crosses, for each point of the plane.
+const FLIPS: usize = 100;
+
 impl Plane {
     /// Makes the segment between two points an edge. The segment that is there already, if one is.
     ///
@@ -119,7 +122,7 @@ impl Plane {
         (self.region.fixed[t as usize][i], self.region.fixed[u as usize][j]) = (0, 0);
         for [p, q] in fresh {
             if let Some(edge) = self.edge(p, q) {
-                self.legalise(&mut vec![edge])?;
+                self.legalise(&mut vec![edge], FLIPS * self.points.len())?;
             }
         }
         let (t, i) = self.edge(a, b).ok_or(Conflict::Lost)?;

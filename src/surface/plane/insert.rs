@@ -1,26 +1,25 @@
 //! Points into the triangulation, and the flips that keep it Delaunay.
 use super::{Conflict, FRAME, NONE, Plane, Point, in_circle, turn};
-
-/// Most flips after a new point or segment, for each point of the plane.
-const FLIPS: usize = 100;
+use crate::mesh::adjacency::sorted2;
 
 impl Plane {
-    /// Adds a point; it gets the next number.
+    /// Adds a point, which is looked for from a triangle on.
     ///
     /// # Errors
-    /// [`Conflict::Equal`] where it is there already.
-    pub(super) fn insert(&mut self, point: Point) -> Result<u32, Conflict> {
-        let triangle = self.locate(point).ok_or(Conflict::Lost)?;
-        let vertex = self.points.len() as u32;
+    /// [`Conflict::Equal`] where there is one already.
+    pub(super) fn insert(&mut self, vertex: u32, from: u32) -> Result<(), Conflict> {
+        let point = self.point(vertex);
+        let triangle = self.locate(point, from).ok_or(Conflict::Lost)?;
         let corners = self.region.triangles[triangle as usize];
         if let Some(&same) = corners.iter().find(|&&v| self.point(v) == point) {
             return Err(match (same as usize).checked_sub(FRAME) {
-                Some(same) => Conflict::Equal(same as u32, vertex - FRAME as u32),
+                Some(same) => {
+                    let [first, second] = sorted2([same as u32, vertex - FRAME as u32]);
+                    Conflict::Equal(first, second)
+                }
                 None => Conflict::Lost,
             });
         }
-        self.points.push(point);
-        self.at.push(triangle);
         let on = (0..3).find(|&i| {
             let [b, c] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
             turn(self.point(b), self.point(c), point) == 0.0
@@ -29,14 +28,12 @@ impl Plane {
             Some(i) => self.split_edge(triangle, i, vertex)?,
             None => self.split_triangle(triangle, vertex),
         };
-        self.legalise(&mut stack)?;
-        self.last = self.at[vertex as usize];
-        Ok(vertex - FRAME as u32)
+        // Each flip makes an edge to the new point.
+        self.legalise(&mut stack, self.points.len())
     }
 
     /// The triangle that a point lies in, boundary included: by a walk towards it.
-    fn locate(&self, point: Point) -> Option<u32> {
-        let mut t = self.last;
+    fn locate(&self, point: Point, mut t: u32) -> Option<u32> {
         let mut from = NONE;
         for step in 0..=4 * self.region.triangles.len() {
             let corners = self.region.triangles[t as usize].map(|v| self.point(v));
@@ -78,9 +75,8 @@ impl Plane {
     /// Flips edges, given by a triangle and the corner opposite, until all about them are Delaunay.
     ///
     /// # Errors
-    /// [`Conflict::Lost`] where that does not end: predicates are not exact where products of coordinates overflow or underflow.
-    pub(super) fn legalise(&mut self, stack: &mut Vec<(u32, usize)>) -> Result<(), Conflict> {
-        let mut left = FLIPS * (self.points.len() + FRAME);
+    /// [`Conflict::Lost`] where that takes more than `left` flips: predicates are not exact where products of coordinates overflow or underflow.
+    pub(super) fn legalise(&mut self, stack: &mut Vec<(u32, usize)>, mut left: usize) -> Result<(), Conflict> {
         while let Some((t, i)) = stack.pop() {
             let u = self.region.beside[t as usize][i];
             if u == NONE || self.region.fixed[t as usize][i] != NONE {

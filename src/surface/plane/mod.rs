@@ -44,10 +44,8 @@ pub struct Plane {
     points: Vec<Point>,
     /// The whole square.
     region: Region,
-    /// A triangle at each point.
+    /// A triangle at each point; none at those that are not inserted yet.
     at: Vec<u32>,
-    /// Where the last search ended.
-    last: u32,
 }
 
 /// Positive where c is on the left of the line from a to b: exact.
@@ -64,6 +62,17 @@ pub fn in_circle(a: Point, b: Point, c: Point, d: Point) -> f64 {
     robust::incircle(at(a), at(b), at(c), at(d))
 }
 
+/// The numbers below `count`, each in the middle between two of those before it, and the lower of these (of 0 itself). Points in a row, as
+/// those of a border are, flip few edges in that order.
+fn bisecting(count: usize) -> impl Iterator<Item = (u32, u32)> {
+    let bits = count.next_power_of_two().trailing_zeros();
+    let reversed = move |i: usize| if bits == 0 { 0 } else { i.reverse_bits() >> (usize::BITS - bits) };
+    (0..count.next_power_of_two())
+        .map(reversed)
+        .filter(move |&i| i < count)
+        .map(|i| (i as u32, (i & i.wrapping_sub(1)) as u32))
+}
+
 impl Plane {
     /// The Delaunay triangulation of points, which keep their numbers.
     ///
@@ -71,8 +80,10 @@ impl Plane {
     /// [`Conflict::Equal`] where two are the same, [`Conflict::Lost`] where one is not finite.
     pub fn new(points: &[Point]) -> Result<Self, Conflict> {
         let mut plane = Self::framing(points)?;
-        for &point in points {
-            plane.insert(point)?;
+        for (number, before) in bisecting(points.len()) {
+            let [vertex, near] = [number, before].map(|number| number + FRAME as u32);
+            let from = plane.at[near as usize];
+            plane.insert(vertex, if from == NONE { 0 } else { from })?;
         }
         Ok(plane)
     }
@@ -98,6 +109,9 @@ impl Plane {
         let [x0, y0, x1, y1] = [low[0] - reach, low[1] - reach, high[0] + reach, high[1] + reach];
         let mut all = Vec::with_capacity(points.len() + FRAME);
         all.extend([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]);
+        all.extend(points);
+        let mut at = vec![NONE; all.len()];
+        at[..FRAME].copy_from_slice(&[0, 0, 0, 1]);
         Ok(Self {
             points: all,
             region: Region {
@@ -105,8 +119,7 @@ impl Plane {
                 beside: vec![[NONE, 1, NONE], [NONE, NONE, 0]],
                 fixed: vec![[NONE; 3]; 2],
             },
-            at: vec![0, 0, 0, 1],
-            last: 0,
+            at,
         })
     }
 
