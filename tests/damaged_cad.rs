@@ -111,18 +111,23 @@ fn an_edge_without_a_curve_in_space_has_a_length() {
     ends_well(&run(folder.path(), &["model", "damaged.igs"]), "an arc for a line", None);
 }
 
-/// OpenCASCADE walks to parameters turn by turn, here 1e15 of them.
+/// OpenCASCADE walks to parameters turn by turn, here 1e15 and 1e62 of them: for its box, and to tell what is inside.
 #[test]
 fn a_face_that_goes_round_too_often_is_refused() {
-    let valid = fs::read_to_string(data("torus.brep")).expect("a file of the tests");
-    let line = "3  3 4CN 1 0 0 6.28318530717959";
-    assert!(valid.contains(line), "another file");
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("damaged.brep"), valid.replace(line, &line.replacen("6.", "6", 1)))
-        .expect("the folder is ours");
-    let output = run(folder.path(), &["model", "damaged.brep"]);
-    ends_well(&output, "a torus wound too often", None);
-    assert!(String::from_utf8_lossy(&output.stderr).contains("goes round its surface too often"), "{output:?}");
+    let damages = [
+        ("torus.brep", "brep", "3  3 4CN 1 0 0 6.28318530717959", "3  3 4CN 1 0 0 6628318530717959"),
+        ("vase.brep", "egads", "\n1 6.2831853071795862 0 0 1 \n", "\n1 6.2831853071795e62 0 0 1 \n"),
+    ];
+    for (source, extension, line, damaged) in damages {
+        let valid = fs::read_to_string(data(source)).expect("a file of the tests");
+        assert!(valid.contains(line), "another file");
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let name = format!("damaged.{extension}");
+        fs::write(folder.path().join(&name), valid.replace(line, damaged)).expect("the folder is ours");
+        let output = run(folder.path(), &["model", &name]);
+        ends_well(&output, source, None);
+        assert!(String::from_utf8_lossy(&output.stderr).contains("goes round its surface too often"), "{output:?}");
+    }
 }
 
 #[test]

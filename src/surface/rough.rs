@@ -6,10 +6,14 @@ use crate::geometry::OcctEvaluator;
 use crate::mesh::vector::{Vec3, add, cross, distance, dot, norm, sub, unit};
 use std::collections::BTreeMap;
 
+/// Most corners of a border that are cut off one after another, each after a look at all.
+const CORNERS: usize = 5_000;
+
 /// The triangles of a border without points inside: by the plane that fits it best, else by cutting off corners in space. None where the
-/// border is not closed.
+/// border is not closed, or has too many corners for that.
 pub fn patch(on: &mut OcctEvaluator, face: u32, outline: &Outline, points: &Points) -> Option<Patch> {
-    in_its_plane(on, face, outline, points).or_else(|| cut_off(outline, points))
+    let is_short = outline.corners.len() <= CORNERS;
+    in_its_plane(on, face, outline, points).or_else(|| if is_short { cut_off(outline, points) } else { None })
 }
 
 /// By the plane across the mean normal.

@@ -103,7 +103,7 @@ fn parameters_that_are_skew_do_not_fold() {
 #[test]
 fn chords_are_nearer_to_their_arcs_than_to_what_lies_behind() {
     let surface = check("zoo/bridged-plate.step", 0.05);
-    assert!(proximity::too_near(&surface, &surface.off).is_empty());
+    assert!(proximity::too_near(&surface, &surface.off, &|| true).is_empty());
     // What is no nearer than its neighbours stays as it is.
     assert!(surface.triangles.len() < 4000, "{}", surface.triangles.len());
 }

@@ -12,6 +12,8 @@ const RANGE_MARGIN: f64 = 1e-7;
 /// Lists the entities and copies their shapes.
 pub fn build(occt: cxx::SharedPtr<ffi::Model>) -> Result<OcctModel, Exception> {
     let mut evaluator = ffi::new_evaluator(&occt)?;
+    // First of all: OCCT finds no end in the box of a face that is refused here.
+    let faces = (0..occt.face_count()?).map(|i| occt.face_record(i)).collect::<Result<Vec<_>, _>>()?;
     let mut topology = Topology { bounds: corners(occt.bounds()?), solids: occt.solid_count()?, ..Topology::default() };
     let [low, high] = topology.bounds;
     let size = low.iter().chain(&high).fold(topology.diagonal(), |size, x| size.max(x.abs()));
@@ -26,11 +28,10 @@ pub fn build(occt: cxx::SharedPtr<ffi::Model>) -> Result<OcctModel, Exception> {
         curves.push(Shape::new(curve, [record.spans, 0]));
         topology.edges.push(edge_entity(&record));
     }
-    for i in 0..occt.face_count()? {
-        let record = occt.face_record(i)?;
-        let surface = copy::surface(&occt, &mut evaluator, i, &record, size)?;
+    for (i, record) in (0..).zip(&faces) {
+        let surface = copy::surface(&occt, &mut evaluator, i, record, size)?;
         surfaces.push(Shape::new(surface, record.spans));
-        add_face(&mut topology, i, &record);
+        add_face(&mut topology, i, record);
     }
     connect(&mut topology);
     let rounded = topology.faces.iter().map(|face| is_rounded(&topology, face)).collect();

@@ -85,6 +85,16 @@ fn conflicts_are_told() {
 }
 
 #[test]
+fn each_point_comes_after_the_one_that_it_is_looked_for_from() {
+    for count in [0, 1, 2, 3, 8, 13, 100] {
+        let order: Vec<_> = super::bisecting(count).collect();
+        let place = |number: u32| order.iter().position(|o| o.0 == number).expect("all are there");
+        assert_eq!(order.len(), count);
+        assert!(order.iter().all(|&(number, before)| number == 0 || place(before) < place(number)));
+    }
+}
+
+#[test]
 fn a_slit_and_a_point_inside_stay() {
     let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [1.0, 2.0], [3.0, 2.0], [2.0, 1.0]];
     let mut plane = Plane::new(&points).unwrap();
