@@ -123,9 +123,8 @@ impl<'a> Near<'a> {
     }
 
     /// The metric at a place, limited across the gaps there, and the nearest gap that limits it. `local` has the directions of the entities
-    /// at the place.
-    /// `known` is a metric whose sizes the final one does not exceed: only gaps that limit it too are looked for, and they
-    /// limit it as well.
+    /// at the place. `known` is a metric whose sizes the final one does not exceed: only gaps that limit it too are looked for, and they limit
+    /// it as well.
     ///
     /// The nearest entity limits first; often it leaves nothing to do for those behind it. Closest points cost most, so that of an entity
     /// is found only when its boxes say that it is the next, and that it could still limit the metric.
