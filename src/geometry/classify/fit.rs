@@ -132,7 +132,12 @@ impl Fit<'_> {
             Entity::Face(face) => self.face_borders[face as usize],
             Entity::Vertex(_) | Entity::Interior => 0.0,
         };
-        SLACK * self.usual(entity).max(border)
+        (SLACK * self.usual(entity)).max(2.0 * border)
+    }
+
+    /// How far a vertex may be from a face if none is within reach: edges may be off their faces by more than the model says.
+    pub fn far_reach(&self, face: u32) -> f64 {
+        self.reach(Entity::Face(face)).max(SLACK * self.face_borders[face as usize])
     }
 
     /// A point of the mesh.

@@ -65,9 +65,8 @@ pub(super) fn centroid([a, b, c]: [Vec3; 3]) -> Vec3 {
     scale(add(add(a, b), c), 1.0 / 3.0)
 }
 
-/// Whether a point is within reach of a face's box.
-pub(super) fn box_reaches(fit: &Fit, face: u32, point: Vec3) -> bool {
-    let reach = fit.reach(Entity::Face(face));
+/// Whether a point is within a distance of a face's box.
+pub(super) fn box_reaches(fit: &Fit, face: u32, point: Vec3, reach: f64) -> bool {
     let [low, high] = fit.topology.faces[face as usize].bounds;
     (0..3).all(|i| low[i] - reach <= point[i] && point[i] <= high[i] + reach)
 }

@@ -107,7 +107,7 @@ fn match_patch(fit: &Fit, evaluator: &mut Evaluator, patch: &[u32], on_ridge: &[
 /// Whether vertices are all within reach of a face.
 fn holds(fit: &Fit, evaluator: &mut Evaluator, face: u32, vertices: &[u32]) -> bool {
     let reach = fit.reach(Entity::Face(face));
-    vertices.iter().all(|&v| box_reaches(fit, face, fit.point(v)))
+    vertices.iter().all(|&v| box_reaches(fit, face, fit.point(v), reach))
         && vertices.iter().all(|&v| evaluator.closest_on_face(face, fit.point(v), None).distance <= reach)
 }
 

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 /// Vertices that one task puts on faces.
 const CHUNK: usize = 256;
 
-/// Faces within reach of a vertex, and where it lands on them.
+/// Faces within far reach of a vertex, and where it lands on them.
 type Near = Vec<(u32, OnSurface)>;
 
 /// Finds the faces of the triangles of the patches.
@@ -44,20 +44,26 @@ pub(super) fn match_triangles(fit: &Fit, patches: &[Vec<u32>], faces: &mut Faces
 fn near(fit: &Fit, evaluator: &mut Evaluator, v: u32) -> Near {
     let point = fit.point(v);
     (0..fit.topology.faces.len() as u32)
-        .filter(|&face| box_reaches(fit, face, point))
+        .filter(|&face| box_reaches(fit, face, point, fit.far_reach(face)))
         .map(|face| {
             let guess = fit.hints.parameters(v, Entity::Face(face));
             (face, evaluator.closest_on_face(face, point, guess))
         })
-        .filter(|(face, on)| on.distance <= fit.reach(Entity::Face(*face)))
+        .filter(|(face, on)| on.distance <= fit.far_reach(*face))
         .collect()
 }
 
-/// The face that holds all three vertices, the best fitting one if there are several.
+/// The face that holds all three vertices, the best fitting one if there are several; one in far reach if there is none within reach.
 fn best_common(fit: &Fit, evaluator: &mut Evaluator, t: u32, near: &HashMap<u32, Near>) -> Option<u32> {
     let [a, b, c] = fit.mesh.triangles.nodes[t as usize];
-    let on = |v: u32, face: u32| near[&v].iter().any(|(f, _)| *f == face);
-    let common: Vec<u32> = near[&a].iter().map(|(f, _)| *f).filter(|&f| on(b, f) && on(c, f)).collect();
+    let held = |reach: &dyn Fn(u32) -> f64| -> Vec<u32> {
+        let holds = |v: u32, face: u32| near[&v].iter().any(|&(f, on)| f == face && on.distance <= reach(face));
+        near[&a].iter().map(|(f, _)| *f).filter(|&f| [a, b, c].into_iter().all(|v| holds(v, f))).collect()
+    };
+    let mut common = held(&|face| fit.reach(Entity::Face(face)));
+    if common.is_empty() {
+        common = held(&|face| fit.far_reach(face));
+    }
     if common.len() < 2 {
         return common.first().copied();
     }
