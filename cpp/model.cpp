@@ -28,19 +28,25 @@ std::array<double, 3> coordinates(const gp_Pnt& point)
   return {point.X(), point.Y(), point.Z()};
 }
 
-std::array<double, 6> box(const TopoDS_Shape& shape)
+/// Least and greatest coordinates; zeros where there is nothing.
+std::array<double, 6> corners(const Bnd_Box& bounds)
 {
-  Bnd_Box bounds;
-  BRepBndLib::AddOptimal(shape, bounds, Standard_False, Standard_False);
-  bounds.SetGap(0.0);
   if (bounds.IsVoid()) {
-    return {0, 0, 0, 0, 0, 0};
+    return {};
   }
   if (bounds.IsOpen()) {
     throw std::runtime_error("the model is unbounded; trim its surfaces");
   }
   const gp_Pnt low = bounds.CornerMin(), high = bounds.CornerMax();
   return {low.X(), low.Y(), low.Z(), high.X(), high.Y(), high.Z()};
+}
+
+std::array<double, 6> box(const TopoDS_Shape& shape)
+{
+  Bnd_Box bounds;
+  BRepBndLib::AddOptimal(shape, bounds, Standard_False, Standard_False);
+  bounds.SetGap(0.0);
+  return corners(bounds);
 }
 
 /// Whether OCCT's box of the edge's p-curve is exact rather than a numerical extremum.
@@ -132,11 +138,7 @@ FaceRecord Model::face_record(std::uint32_t index) const
     }
   }
   record.tolerance = BRep_Tool::Tolerance(here);
-  auto& known = boxes.at(index);
-  if (!known) {
-    known = box(here);
-  }
-  record.bounds = *known;
+  record.bounds = bounds_of(index);
   for (TopExp_Explorer it(here, TopAbs_EDGE); it.More(); it.Next()) {
     const TopoDS_Edge edge = TopoDS::Edge(it.Current());
     record.edges.push_back(static_cast<std::uint32_t>(edges.FindIndex(edge) - 1));
@@ -171,9 +173,26 @@ EdgeRecord Model::edge_record(std::uint32_t index) const
 Model::Box Model::bounds() const
 {
   if (!boxes.back()) {
-    boxes.back() = box(shape);
+    // OCCT's box of the whole would measure each face again.
+    Bnd_Box all;
+    for (std::uint32_t index = 0; index < face_count(); ++index) {
+      const Box& one = bounds_of(index);
+      if (one != Box{}) {
+        all.Update(one[0], one[1], one[2], one[3], one[4], one[5]);
+      }
+    }
+    boxes.back() = corners(all);
   }
   return *boxes.back();
+}
+
+const Model::Box& Model::bounds_of(std::uint32_t index) const
+{
+  auto& known = boxes.at(index);
+  if (!known) {
+    known = box(face(index));
+  }
+  return *known;
 }
 
 VertexRecord Model::vertex_record(std::uint32_t index) const

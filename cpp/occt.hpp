@@ -125,6 +125,8 @@ private:
   Labels labels;
   /// Of each face, then of all; found when the records are first read, before threads share the model.
   mutable std::vector<std::optional<Box>> boxes;
+
+  const Box& bounds_of(std::uint32_t face) const;
 };
 
 /// Evaluates the shape of one model for one thread: adaptors and classifiers carry caches, so none is ever shared.

@@ -3,10 +3,13 @@ use crate::geometry::{CurveFrame, Evaluate, Evaluator, OnCurve, OnSurface, Surfa
 use crate::mesh::vector::Vec3;
 use std::time::{Duration, Instant};
 
-/// The evaluator of one thread, with the wall time of its calls. To read the clock twice takes some 50 ns a call; a closest point takes
-/// 0.1 to 2 µs.
+/// One call in so many is measured, for all of them. To read the clock twice takes some 50 ns; a closest point takes 0.1 to 2 µs.
+const MEASURED: u32 = 8;
+
+/// The evaluator of one thread, with the wall time of its calls, as a sample of them tells.
 pub struct TimedEvaluator<'m> {
     inner: Evaluator<'m>,
+    calls: u32,
     /// Time in the model so far.
     pub spent: Duration,
 }
@@ -14,13 +17,17 @@ pub struct TimedEvaluator<'m> {
 impl<'m> TimedEvaluator<'m> {
     /// A clock at zero.
     pub fn new(inner: Evaluator<'m>) -> Self {
-        Self { inner, spent: Duration::ZERO }
+        Self { inner, calls: 0, spent: Duration::ZERO }
     }
 
     fn timed<T>(&mut self, call: impl FnOnce(&mut Evaluator<'m>) -> T) -> T {
+        self.calls = self.calls.wrapping_add(1);
+        if !self.calls.is_multiple_of(MEASURED) {
+            return call(&mut self.inner);
+        }
         let start = Instant::now();
         let answer = call(&mut self.inner);
-        self.spent += start.elapsed();
+        self.spent += start.elapsed() * MEASURED;
         answer
     }
 }

@@ -4,7 +4,7 @@ use crate::adapt::core::access::Access;
 use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::worker::Worker;
-use crate::geometry::{Entity, Evaluate, Geometry};
+use crate::geometry::{Entity, Evaluate, Geometry, OnSurface};
 use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, scale, unit};
 
 /// How far a surface triangle deviates from the model: two angles as cosines, and a distance.
@@ -28,6 +28,9 @@ pub struct WorstDeviation {
     side: f64,
 }
 
+/// A triangle with a greater cosine than this to its model tells from which side a surface is seen.
+const CLEAR: f64 = 0.5;
+
 /// A triangle whose normal has a greater cosine than this with that of another lies as the other does.
 const SAME_PLANE: f64 = 0.97;
 
@@ -37,6 +40,31 @@ fn or_far(distance: f64) -> f64 {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
+    /// n_triangle · n_CAD at the closest point of the centroid.
+    fn cos_deviation(&mut self, triangle: [VertexId; 3], face: u32) -> f64 {
+        let corners = triangle.map(|v| self.store.position(v));
+        let normal = unit(area2(corners[0], corners[1], corners[2]));
+        match self.context.planes[face as usize] {
+            Some(plane) => dot(normal, plane),
+            None => {
+                let known = triangle.map(|v| self.uv_of(v, face));
+                let foot = self.foot_of_centroid(corners, known, face);
+                dot(normal, self.state.evaluator.face_normal(face, foot.uv))
+            }
+        }
+    }
+
+    /// The point of a face that is closest to the centroid of a triangle, whose parameters are known at some corners.
+    fn foot_of_centroid(&mut self, [a, b, c]: [Vec3; 3], known: [Option<[f64; 2]>; 3], face: u32) -> OnSurface {
+        let mut mean = MeanParameters::new(self.context.model.topology().faces[face as usize].period);
+        known.into_iter().flatten().for_each(|uv| mean.add(uv));
+        let centroid = scale(add(a, add(b, c)), 1.0 / 3.0);
+        match mean.get() {
+            Some(uv) => self.state.evaluator.closest_on_surface(face, centroid, uv),
+            None => self.state.evaluator.closest_on_face(face, centroid, None),
+        }
+    }
+
     /// The deviation of a triangle from its face. The `cos_deviation` is negative when the triangle looks to the model's inside.
     pub fn surface_deviation(&mut self, triangle: [VertexId; 3], face: u32) -> SurfaceDeviation {
         let [a, b, c] = triangle.map(|v| self.store.position(v));
@@ -48,14 +76,8 @@ impl<A: Access> Worker<'_, '_, A> {
                 chord: self.chord(triangle, face, 0.0),
             };
         }
-        let mut mean = MeanParameters::new(self.context.model.topology().faces[face as usize].period);
         let known = triangle.map(|v| self.uv_of(v, face));
-        known.into_iter().flatten().for_each(|uv| mean.add(uv));
-        let centroid = scale(add(a, add(b, c)), 1.0 / 3.0);
-        let foot = match mean.get() {
-            Some(uv) => self.state.evaluator.closest_on_surface(face, centroid, uv),
-            None => self.state.evaluator.closest_on_face(face, centroid, None),
-        };
+        let foot = self.foot_of_centroid([a, b, c], known, face);
         let cos_deviation = dot(normal, self.state.evaluator.face_normal(face, foot.uv));
         let ends = [(a, known[0]), (b, known[1]), (c, known[2])].map(|(p, uv)| self.normal_near(face, p, uv, foot.uv));
         let least = dot(ends[0], ends[1]).min(dot(ends[1], ends[2])).min(dot(ends[2], ends[0]));
@@ -124,9 +146,11 @@ impl<A: Access> Worker<'_, '_, A> {
             return Ok(());
         }
         let old = std::mem::take(&mut self.state.star.surface);
-        let before = self.worst_deviation(&old);
+        let new = std::mem::take(&mut self.state.replacement.faces);
+        let result = self.compare_normals(&old, &new, slack);
         self.state.star.surface = old;
-        self.check_star_normals(before, slack)
+        self.state.replacement.faces = new;
+        result
     }
 
     /// Whether each new surface triangle of the star has nearly the normal of an old one on the same face.
@@ -144,13 +168,46 @@ impl<A: Access> Worker<'_, '_, A> {
     /// As [`Worker::check_normals`], with the old triangles measured before.
     pub fn check_star_normals(&mut self, old: WorstDeviation, slack: f64) -> Result<(), Refusal> {
         let new = std::mem::take(&mut self.state.replacement.faces);
-        let result = self.compare_normals(old, &new, slack);
+        let result = self.compare_with(old, &new, slack);
         self.state.replacement.faces = new;
         result
     }
 
     /// Compares new triangles, with their tags, with the old ones. `slack` is for `cos_deviation` alone.
     pub fn compare_normals(
+        &mut self,
+        old: &[([VertexId; 3], u32)],
+        new: &[([VertexId; 3], u32)],
+        slack: f64,
+    ) -> Result<(), Refusal> {
+        // Most are within the limits by themselves, whatever the old ones are.
+        if self.clear_side(old).is_some_and(|side| self.are_within_limits(side, new)) {
+            return Ok(());
+        }
+        let old = self.worst_deviation(old);
+        self.compare_with(old, new, slack)
+    }
+
+    /// The side that triangles are seen from, by the first of them alone; none where that is not clear.
+    pub fn clear_side(&mut self, triangles: &[([VertexId; 3], u32)]) -> Option<f64> {
+        let &(triangle, tag) = triangles.first()?;
+        let cosine = self.cos_deviation(triangle, tag - 1);
+        (cosine.abs() > CLEAR).then(|| cosine.signum())
+    }
+
+    /// Whether triangles are within the limits, seen from this side: then it does not matter what those that they replace are.
+    pub fn are_within_limits(&mut self, side: f64, triangles: &[([VertexId; 3], u32)]) -> bool {
+        let limits = self.context.limits;
+        triangles.iter().all(|&(triangle, tag)| {
+            let deviation = self.surface_deviation(triangle, tag - 1);
+            side * deviation.cos_deviation >= limits.cos_deviation.max(1e-3)
+                && deviation.cos_variation >= limits.cos_variation
+                && deviation.chord <= limits.chord
+        })
+    }
+
+    /// Compares new triangles, with their tags, with old ones that were measured before.
+    pub fn compare_with(
         &mut self,
         old: WorstDeviation,
         new: &[([VertexId; 3], u32)],
@@ -222,6 +279,6 @@ mod tests {
         store.displace(triangle[0], [f64::NAN; 3]);
         let lost = worker.surface_deviation(triangle, tag - 1);
         assert!(lost.chord == f64::INFINITY && worker.deviates(lost), "{lost:?}");
-        assert_eq!(worker.compare_normals(before, &[(triangle, tag)], 0.0), Err(Refusal::Normal));
+        assert_eq!(worker.compare_with(before, &[(triangle, tag)], 0.0), Err(Refusal::Normal));
     }
 }

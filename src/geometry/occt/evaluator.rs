@@ -250,7 +250,10 @@ impl Evaluate for OcctEvaluator<'_> {
 
     fn face_normal(&mut self, face: u32, uv: [f64; 2]) -> Vec3 {
         let (uv, _) = self.placed(face, uv);
-        let jet = self.jet(face, uv);
+        let jet = match self.model.surfaces[face as usize].form.tangents(uv) {
+            Some(jet) => jet,
+            None => self.jet_by_occt(face, uv),
+        };
         let normal = self.normal(face, uv, &jet);
         self.outward(face, normal)
     }

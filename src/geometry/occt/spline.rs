@@ -136,17 +136,32 @@ impl SplineSurface {
 
     /// S and its derivatives to the second.
     pub fn jet(&self, uv: [f64; 2]) -> Jet {
+        self.evaluated::<true>(uv)
+    }
+
+    /// S and its first derivatives; the second ones are zero.
+    pub fn tangents(&self, uv: [f64; 2]) -> Jet {
+        self.evaluated::<false>(uv)
+    }
+
+    #[inline(always)]
+    fn evaluated<const SECOND: bool>(&self, uv: [f64; 2]) -> Jet {
         match (self.u.order(), self.v.order()) {
-            (4, 4) => self.sized::<4, 4>(4, 4, uv),
-            (6, 6) => self.sized::<6, 6>(6, 6, uv),
-            (3, 3) => self.sized::<3, 3>(3, 3, uv),
-            (a @ ..=9, b @ ..=9) => self.sized::<9, 9>(a, b, uv),
-            (a, b) => self.sized::<MAX_ORDER, MAX_ORDER>(a, b, uv),
+            (4, 4) => self.sized::<4, 4, SECOND>(4, 4, uv),
+            (6, 6) => self.sized::<6, 6, SECOND>(6, 6, uv),
+            (3, 3) => self.sized::<3, 3, SECOND>(3, 3, uv),
+            (a @ ..=9, b @ ..=9) => self.sized::<9, 9, SECOND>(a, b, uv),
+            (a, b) => self.sized::<MAX_ORDER, MAX_ORDER, SECOND>(a, b, uv),
         }
     }
 
     #[inline(always)]
-    fn sized<const M: usize, const N: usize>(&self, rows: usize, columns: usize, uv: [f64; 2]) -> Jet {
+    fn sized<const M: usize, const N: usize, const SECOND: bool>(
+        &self,
+        rows: usize,
+        columns: usize,
+        uv: [f64; 2],
+    ) -> Jet {
         let ((u, i), (v, j)) = (self.u.locate(uv[0]), self.v.locate(uv[1]));
         let a: Functions<M> = self.u.functions(rows, i, u);
         let b: Functions<N> = self.v.functions(columns, j, v);
@@ -156,16 +171,18 @@ impl SplineSurface {
         for r in 0..rows {
             let mut line = [[0.0; 4]; 3];
             for (c, pole) in self.poles[start..start + columns].iter().enumerate() {
-                for d in 0..3 {
+                for d in 0..if SECOND { 3 } else { 2 } {
                     gather(&mut line[d], b[d][c], pole);
                 }
             }
             gather(&mut sums[0], a[0][r], &line[0]);
             gather(&mut sums[1], a[1][r], &line[0]);
             gather(&mut sums[2], a[0][r], &line[1]);
-            gather(&mut sums[3], a[2][r], &line[0]);
-            gather(&mut sums[4], a[1][r], &line[1]);
-            gather(&mut sums[5], a[0][r], &line[2]);
+            if SECOND {
+                gather(&mut sums[3], a[2][r], &line[0]);
+                gather(&mut sums[4], a[1][r], &line[1]);
+                gather(&mut sums[5], a[0][r], &line[2]);
+            }
             start += self.columns;
         }
         let [s, su, sv, suu, suv, svv] = sums;
@@ -176,6 +193,9 @@ impl SplineSurface {
         let w = s[3];
         let point = quotient(s, w, []);
         let (du, dv) = (quotient(su, w, [(su[3], point)]), quotient(sv, w, [(sv[3], point)]));
+        if !SECOND {
+            return Jet { point, du, dv, duu: [0.0; 3], duv: [0.0; 3], dvv: [0.0; 3] };
+        }
         Jet {
             point,
             du,

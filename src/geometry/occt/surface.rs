@@ -135,6 +135,15 @@ impl Surface {
         })
     }
 
+    /// The same without what takes longest: second derivatives may be left out, as zeros.
+    #[inline]
+    pub fn tangents(&self, uv: [f64; 2]) -> Option<Jet> {
+        match self {
+            Self::Spline(spline) => Some(spline.tangents(uv)),
+            _ => self.jet(uv),
+        }
+    }
+
     /// Ends of the smooth spans of u (0) or v (1), where they are known.
     pub fn breaks(&self, k: usize) -> &[f64] {
         match self {

@@ -10,6 +10,7 @@ use crate::mesh::triangle_pair::{Corners, way};
 use crate::mesh::vector::{Vec3, add, area2, dot, norm, scale, sub, unit};
 use crate::metric::quality::edge_length;
 use crate::tasks::{GRAIN, Team};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Until voids are looked for again, edges get longer by at most this factor.
 const GROWTH: f64 = 2.5;
@@ -42,7 +43,12 @@ impl Voids {
     /// The narrow voids of a mesh, for edges that get longer by no more than [`GROWTH`]. Between sweeps only.
     pub fn of(team: Team<'_>, context: &Context<'_>) -> Self {
         let walls = Walls::of(team, context);
-        let (boxes, near) = walls.near(team, context, Until::Growth);
+        let reaches = reaches(team, context, &walls, Until::Growth);
+        if reaches.iter().all(|reach| *reach == 0.0) {
+            return Self::default();
+        }
+        let boxes = walls.boxes(&reaches);
+        let near = near_others(team, &walls, &reaches, &boxes, false);
         if near.is_empty() {
             return Self::default();
         }
@@ -62,7 +68,10 @@ impl Voids {
 
     /// Whether there are none even when all edges are as long as the metric allows. Between sweeps only.
     pub fn are_none_to_come(team: Team<'_>, context: &Context<'_>) -> bool {
-        Walls::of(team, context).near(team, context, Until::End).1.is_empty()
+        let walls = Walls::of(team, context);
+        let reaches = reaches(team, context, &walls, Until::End);
+        let boxes = walls.boxes(&reaches);
+        reaches.iter().all(|reach| *reach == 0.0) || near_others(team, &walls, &reaches, &boxes, true).is_empty()
     }
 }
 
@@ -98,16 +107,9 @@ impl Walls {
         Self { all, normals }
     }
 
-    /// Boxes about all triangles with all that they may come to fill, and those that are near others.
-    fn near(&self, team: Team<'_>, context: &Context<'_>, until: Until) -> (Vec<Bounds>, Vec<usize>) {
-        let reaches = reaches(team, context, self, until);
-        if reaches.iter().all(|reach| *reach == 0.0) {
-            return (Vec::new(), Vec::new());
-        }
-        let with_reach = self.all.iter().zip(&reaches);
-        let boxes: Vec<Bounds> = with_reach.map(|(wall, reach)| bounds(&wall.corners, *reach)).collect();
-        let near = near_others(team, self, &reaches, &boxes);
-        (boxes, near)
+    /// Boxes about all triangles with all that they may come to fill.
+    fn boxes(&self, reaches: &[f64]) -> Vec<Bounds> {
+        self.all.iter().zip(reaches).map(|(wall, reach)| bounds(&wall.corners, *reach)).collect()
     }
 }
 
@@ -205,12 +207,13 @@ fn ridge_angle(store: &Store, a: VertexId, b: VertexId) -> f64 {
     2.0 * turn(a).max(turn(b))
 }
 
-/// The triangles that are nearer to another, across a void, than both may move.
+/// The triangles that are nearer to another, across a void, than both may move: all, or (`is_any_enough`) some if there are any.
 fn near_others(
     team: Team<'_>,
     Walls { all: walls, normals: mean_normals }: &Walls,
     reaches: &[f64],
     boxes: &[Bounds],
+    is_any_enough: bool,
 ) -> Vec<usize> {
     let tree = BoxTree::new(walls.len(), |i| boxes[i as usize]);
     let normal = |i: usize| {
@@ -240,7 +243,9 @@ fn near_others(
             }
     };
     let cones = tree.of_nodes(|items| Cone::of(items.iter().map(|&i| normals[i as usize])));
-    let may_face = |leaf: usize, node: usize| cones[leaf].may_face(&cones[node]);
+    let is_over = AtomicBool::new(false);
+    let may_face =
+        |leaf: usize, node: usize| !is_over.load(Ordering::Relaxed) && cones[leaf].may_face(&cones[node]);
     let pairs = tree.overlapping_pairs(
         team,
         |i| boxes[i as usize],
@@ -248,6 +253,7 @@ fn near_others(
         |near: &mut Vec<u32>, i, j| {
             if are_near(i as usize, j as usize) {
                 near.extend([i, j]);
+                is_over.fetch_or(is_any_enough, Ordering::Relaxed);
             }
         },
     );

@@ -40,8 +40,7 @@ impl<A: Access> Worker<'_, '_, A> {
             ([x, z, y], tag)
         };
         let inward = |k: usize| (FACE[k].map(|l| v[l]), tag);
-        let before = self.worst_deviation(&[outward(c), outward(d)]);
-        self.compare_normals(before, &[inward(i), inward(j)], 0.0)?;
+        self.compare_normals(&[outward(c), outward(d)], &[inward(i), inward(j)], 0.0)?;
         self.take_out_tet(t, [(n[i], [b, ends[0], ends[1]]), (n[j], [a, ends[0], ends[1]])], tag)
     }
 }

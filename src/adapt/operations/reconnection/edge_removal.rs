@@ -91,8 +91,7 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Shape);
         }
         if let Some(SurfaceFlip { across, old, new }) = surface {
-            let before = self.worst_deviation(&old);
-            self.compare_normals(before, &new, 0.0)?;
+            self.compare_normals(&old, &new, 0.0)?;
             self.refuse_joined(shell.ring[0], shell.ring[across])?;
             self.state.replacement.faces.extend(new);
         }

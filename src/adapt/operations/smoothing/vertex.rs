@@ -168,11 +168,20 @@ impl<A: Access> Worker<'_, '_, A> {
         if patch.with_lengths(placed.point, &metric) >= limit {
             return Err(Refusal::Shape);
         }
-        let before = (!triangles.is_empty()).then(|| self.worst_deviation(triangles));
         let to = VertexState { placed, log, metric, hint };
-        let moved = self.move_in_ball(v, &to, &ball.tets, patch.mean_ratios(), |worker| {
-            before.is_none_or(|before| worker.compare_normals(before, triangles, 0.0).is_ok())
-        });
+        let mut moved = Err(Refusal::Normal);
+        // Mostly the triangles are within the limits there, whatever they are now.
+        if let Some(side) = if triangles.is_empty() { Some(1.0) } else { self.clear_side(triangles) } {
+            moved = self.move_in_ball(v, &to, &ball.tets, patch.mean_ratios(), |worker| {
+                worker.are_within_limits(side, triangles)
+            });
+        }
+        if moved == Err(Refusal::Normal) {
+            let before = self.worst_deviation(triangles);
+            moved = self.move_in_ball(v, &to, &ball.tets, patch.mean_ratios(), |worker| {
+                worker.compare_with(before, triangles, 0.0).is_ok()
+            });
+        }
         // Where the surface holds it back the shapes get no better: that is how it is counted.
         moved.map_err(|refusal| if refusal == Refusal::Normal { Refusal::Shape } else { refusal })
     }
