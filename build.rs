@@ -39,7 +39,7 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 17] = [
+    const SOURCES: [&str; 16] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
         "cpp/connect.cpp",
@@ -52,7 +52,6 @@ mod occt {
         "cpp/evaluate.cpp",
         "cpp/outline.cpp",
         "cpp/splines.cpp",
-        "cpp/tessellate.cpp",
         "cpp/write.cpp",
         "cpp/save.cpp",
         "cpp/check.cpp",
@@ -60,7 +59,7 @@ mod occt {
     ];
 
     /// Toolkits that the bridge calls, callers first.
-    const LIBRARIES: [&str; 17] = [
+    const LIBRARIES: [&str; 16] = [
         "TKIGES",
         "TKSTEP",
         "TKSTEPBase",
@@ -68,7 +67,6 @@ mod occt {
         "TKBO",
         "TKPrim",
         "TKShHealing",
-        "TKMesh",
         "TKTopAlgo",
         "TKGeomAlgo",
         "TKBRep",

@@ -61,6 +61,29 @@ bool has_exact_box(const TopoDS_Edge& edge, const TopoDS_Face& face)
   return type == GeomAbs_Line || type == GeomAbs_Circle || type == GeomAbs_Ellipse;
 }
 
+/// Greatest coordinate: products of three are to be numbers.
+constexpr double FARTHEST = 1e100;
+
+/// Whether no sample of a surface's range is at infinity.
+bool is_finite(const BRepAdaptor_Surface& surface, const std::array<double, 4>& range)
+{
+  constexpr int SAMPLES = 4;
+  for (int i = 0; i <= SAMPLES; ++i) {
+    for (int j = 0; j <= SAMPLES; ++j) {
+      const double u = range[0] + (range[1] - range[0]) * i / SAMPLES, v = range[2] + (range[3] - range[2]) * j / SAMPLES;
+      try {
+        // A comparison with NaN is false.
+        if (!(surface.Value(u, v).XYZ().Modulus() < FARTHEST)) {
+          return false;
+        }
+      } catch (const Standard_Failure&) {
+        // An offset surface has no point at a pole.
+      }
+    }
+  }
+  return true;
+}
+
 /// Most turns of a face round a periodic surface.
 constexpr double TURNS = 1e5;
 
@@ -136,6 +159,10 @@ FaceRecord Model::face_record(std::uint32_t index) const
       throw std::runtime_error("face " + std::to_string(index + 1)
                                + " goes round its surface too often; its boundary is damaged, export the model again");
     }
+  }
+  if (!is_finite(surface, record.range)) {
+    throw std::runtime_error("face " + std::to_string(index + 1)
+                             + " has points at infinity; its surface is damaged, export the model again");
   }
   record.tolerance = BRep_Tool::Tolerance(here);
   record.bounds = bounds_of(index);

@@ -93,9 +93,6 @@ public:
   rust::Vec<FlawRecord> flaws() const;
   /// Writes all that it is made of in binary form, for `load_saved` of this same program.
   void save(rust::Str path) const;
-  /// Triangles of the faces as MSH 2.2, joined along the edges; within a distance and an angle of the surface.
-  void write_tessellation(rust::Str path, double deflection, double angle) const;
-  rust::Vec<std::uint32_t> solid_faces(std::uint32_t solid) const;
   /// The edges of a face in the order of its wires, as the face with its orientation FORWARD has them.
   rust::Vec<EdgeUse> edge_uses(std::uint32_t face) const;
   /// Vertices that lie in a face and on none of its edges.

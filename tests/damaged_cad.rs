@@ -149,3 +149,18 @@ fn damaged_brep_files_end_well() {
 fn damaged_egads_files_end_well() {
     survives("torus.brep", "egads");
 }
+
+/// A plane that was moved away leaves its edges with tolerances greater than the model: no mesh can lie on both.
+#[test]
+fn tolerances_greater_than_the_model_are_refused() {
+    let valid = fs::read_to_string(data("block-inches.igs")).expect("a file of the tests");
+    let plane = "108,1.,0.,-0.,1.,0,1.,0.,0.,0.;";
+    assert!(valid.contains(plane), "another file");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let damaged = valid.replace(&format!("{plane} "), "108,1.,0.,-0.,18,0,1.,0.,0.,0.; ");
+    fs::write(folder.path().join("damaged.igs"), damaged).expect("the folder is ours");
+    let output = run(folder.path(), &["model", "damaged.igs"]);
+    ends_well(&output, "a plane elsewhere", None);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && told.contains("largest tolerance"), "{output:?}");
+}

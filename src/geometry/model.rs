@@ -148,26 +148,6 @@ impl Model {
         }
     }
 
-    /// Writes triangles of the faces as MSH 2.2: see [`super::occt::OcctModel::write_triangles`].
-    ///
-    /// # Errors
-    /// [`super::Error::Model`] when it is no CAD model, has no triangles, or the file cannot be written.
-    pub fn write_triangles(
-        &self,
-        path: &std::path::Path,
-        deflection: f64,
-        angle: f64,
-    ) -> Result<Vec<Vec<u32>>, super::Error> {
-        match self {
-            #[cfg(feature = "occt")]
-            Model::Occt(model) => model.write_triangles(path, deflection, angle),
-            Model::Discrete(_) => {
-                let _ = (deflection, angle);
-                Err(super::Error::Model { path: path.into(), message: "a mesh's own surface is no CAD model".into() })
-            }
-        }
-    }
-
     /// Area of a face, in the square of the model's unit; none where the backend does not tell.
     pub fn face_area(&self, face: u32) -> Option<f64> {
         match self {

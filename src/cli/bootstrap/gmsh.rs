@@ -2,7 +2,6 @@
 use super::rung::Least;
 use super::wish::Wish;
 use crate::cli::workplace::Workplace;
-use crate::geometry::Model;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
@@ -42,31 +41,4 @@ pub fn run(program: &Path, script: &Path, out: &Path) -> Command {
     let mut command = Command::new(program);
     command.arg(script).args(["-3", "-nt", "1", "-format", "msh41", "-o"]).arg(out);
     command
-}
-
-/// Script that fills OpenCASCADE's triangles.
-pub const TRIANGLES: &str = "triangles.geo";
-
-/// Distance of OpenCASCADE's triangles from the model, of the diagonal: their angle bounds them, that being half of what the metric of the
-/// geometry wants.
-const DEFLECTION: f64 = 0.01;
-
-/// Writes OpenCASCADE's triangles, and the script that fills them.
-pub fn write_triangles(model: &Model, wish: &Wish, place: &Workplace) -> Result<(), String> {
-    let surface = place.file("surface.msh");
-    let angle = 0.5 / wish.segments.max(1.0);
-    let solids =
-        model.write_triangles(&surface, DEFLECTION * wish.diagonal, angle).map_err(|error| error.to_string())?;
-    let mut script = format!("Merge \"{}\";\n", surface.display());
-    for (solid, faces) in (1..).zip(&solids) {
-        let faces: Vec<String> = faces.iter().map(|face| (face + 1).to_string()).collect();
-        let _ = writeln!(script, "Surface Loop({solid}) = {{{}}};\nVolume({solid}) = {{{solid}}};", faces.join(", "));
-    }
-    let greatest = wish.greatest;
-    let _ = write!(
-        script,
-        "General.Terminal = 1;\nMesh.Algorithm3D = 1;\nMesh.MeshSizeMax = {greatest:e};\nMesh.ElementOrder = 1;\nMesh.SaveAll = 1;\n\
-         Mesh.MshFileVersion = 4.1;\nMesh.Binary = 0;\n"
-    );
-    std::fs::write(place.file(TRIANGLES), script).map_err(|error| format!("no file for gmsh: {error}"))
 }

@@ -136,9 +136,6 @@ impl<'a> Ladder<'a> {
         self.begin().map_err(Miss::Failed)?;
         let out = self.place.file("out.msh");
         let _ = std::fs::remove_file(&out);
-        if matches!(rung, Rung::Triangles) {
-            gmsh::write_triangles(self.model, self.wish, self.place).map_err(Miss::Failed)?;
-        }
         start((self.wish, limit), rung, self.place, [&self.brep, &out], self.log)?;
         let failed = |why: String| {
             let told = last_words(self.log);
@@ -229,7 +226,7 @@ fn start(
     log: &Path,
 ) -> Result<(), Miss> {
     let (variable, remedy, places) = match rung {
-        Rung::Own { .. } | Rung::Gmsh { .. } | Rung::Triangles => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
+        Rung::Own { .. } | Rung::Gmsh { .. } => (gmsh::VARIABLE, gmsh::REMEDY, gmsh_places()),
         Rung::Netgen { .. } => (netgen::VARIABLE, netgen::REMEDY, netgen_places()),
     };
     let failed = |error: std::io::Error| Miss::Failed(format!("no file for it: {error}"));
@@ -278,8 +275,8 @@ fn command(
         Rung::Gmsh { surface, volume, finer, least } => {
             gmsh::command(program, (surface, volume, finer, least), wish, place, files)
         }
-        Rung::Own { .. } | Rung::Triangles => Ok(gmsh::run(program, &place.file(gmsh::TRIANGLES), files[1])),
         Rung::Netgen { finer } => netgen::command(program, finer, wish, place, files),
+        Rung::Own { .. } => unreachable!("our own is no other program"),
     }
 }
 

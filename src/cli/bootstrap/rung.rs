@@ -30,8 +30,6 @@ pub enum Rung {
     Own { finer: f64 },
     /// gmsh, with its numbers of the algorithms in two and in three dimensions.
     Gmsh { surface: u32, volume: u32, finer: f64, least: Least },
-    /// gmsh, on OpenCASCADE's own triangles: poor ones, but there are some of any face.
-    Triangles,
     /// netgen.
     Netgen { finer: f64 },
 }
@@ -45,22 +43,16 @@ pub enum Least {
     Large,
 }
 
-/// What is tried in turn. gmsh: 6 is frontal-Delaunay, 5 Delaunay, 1 MeshAdapt; in three dimensions 1 is Delaunay, 10 HXT, 4 frontal.
-const RUNGS: [Rung; 14] = [
+/// What is tried in turn. gmsh: 6 is frontal-Delaunay, 1 MeshAdapt; in three dimensions 1 is Delaunay, 10 HXT.
+const RUNGS: [Rung; 8] = [
     Rung::Own { finer: 1.0 },
     Rung::Own { finer: 2.0 },
     Rung::Gmsh { surface: 6, volume: 1, finer: 1.0, least: Least::Usual },
-    Rung::Gmsh { surface: 5, volume: 1, finer: 1.0, least: Least::Usual },
     Rung::Gmsh { surface: 6, volume: 10, finer: 1.0, least: Least::Usual },
-    Rung::Triangles,
-    Rung::Gmsh { surface: 6, volume: 1, finer: 1.0, least: Least::Large },
     Rung::Gmsh { surface: 1, volume: 1, finer: 1.0, least: Least::Large },
     Rung::Gmsh { surface: 6, volume: 1, finer: 2.0, least: Least::Usual },
-    Rung::Gmsh { surface: 1, volume: 4, finer: 2.0, least: Least::Usual },
-    Rung::Gmsh { surface: 5, volume: 10, finer: 4.0, least: Least::Usual },
     Rung::Netgen { finer: 1.0 },
     Rung::Netgen { finer: 2.0 },
-    Rung::Netgen { finer: 0.5 },
 ];
 
 impl Rung {
@@ -68,7 +60,7 @@ impl Rung {
     pub fn of(choice: Choice) -> impl Iterator<Item = Self> {
         RUNGS.into_iter().filter(move |rung| match rung {
             Self::Own { .. } => matches!(choice, Choice::Auto | Choice::Own),
-            Self::Gmsh { .. } | Self::Triangles => matches!(choice, Choice::Auto | Choice::Gmsh),
+            Self::Gmsh { .. } => matches!(choice, Choice::Auto | Choice::Gmsh),
             Self::Netgen { .. } => matches!(choice, Choice::Auto | Choice::Netgen),
         })
     }
@@ -77,7 +69,7 @@ impl Rung {
     pub fn program(self) -> &'static str {
         match self {
             Self::Own { .. } => OWN,
-            Self::Gmsh { .. } | Self::Triangles => GMSH,
+            Self::Gmsh { .. } => GMSH,
             Self::Netgen { .. } => NETGEN,
         }
     }
@@ -86,7 +78,6 @@ impl Rung {
     pub fn is_light(self) -> bool {
         match self {
             Self::Gmsh { least, .. } => least == Least::Large,
-            Self::Triangles => true,
             Self::Own { finer } => finer < 2.0,
             Self::Netgen { finer } => finer < 1.0,
         }
@@ -107,10 +98,6 @@ impl std::fmt::Display for Rung {
                 }
                 finer
             }
-            Self::Triangles => {
-                write!(f, "gmsh (OpenCASCADE's triangles, Delaunay volumes")?;
-                1.0
-            }
             Self::Netgen { finer } => {
                 write!(f, "netgen (its usual algorithms")?;
                 finer
@@ -127,7 +114,6 @@ impl std::fmt::Display for Rung {
 fn algorithm(number: u32) -> &'static str {
     match number {
         1 => "MeshAdapt",
-        5 => "Delaunay",
         _ => "frontal-Delaunay",
     }
 }
@@ -135,7 +121,6 @@ fn algorithm(number: u32) -> &'static str {
 /// gmsh's name of an algorithm for volumes.
 fn algorithm_3d(number: u32) -> &'static str {
     match number {
-        4 => "frontal",
         10 => "HXT",
         _ => "Delaunay",
     }

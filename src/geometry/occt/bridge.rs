@@ -147,8 +147,6 @@ pub mod ffi {
         fn flaws(self: &Model) -> Result<Vec<FlawRecord>>;
         fn save(self: &Model, path: &str) -> Result<()>;
         fn load_saved(path: &str) -> Result<SharedPtr<Model>>;
-        fn write_tessellation(self: &Model, path: &str, deflection: f64, angle: f64) -> Result<()>;
-        fn solid_faces(self: &Model, solid: u32) -> Result<Vec<u32>>;
         fn edge_uses(self: &Model, face: u32) -> Result<Vec<EdgeUse>>;
         fn loose_vertices(self: &Model, face: u32) -> Result<Vec<u32>>;
         fn edge_parameters(

@@ -34,7 +34,16 @@ pub fn read(path: &Path) -> Result<OcctModel, Error> {
     let name = path.to_str().ok_or_else(|| fail("the file's name is not UTF-8; rename it".into()))?;
     let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
     let occt = ffi::load_model(name, format as u32).map_err(|error| fail(error.what().into()))?;
-    entities::build(occt).map_err(|error| fail(format!("OpenCASCADE cannot use the model: {}", error.what())))
+    let model =
+        entities::build(occt).map_err(|error| fail(format!("OpenCASCADE cannot use the model: {}", error.what())))?;
+    let (tolerance, diagonal) = (model.topology.tolerance, model.topology.diagonal());
+    if tolerance > diagonal {
+        return Err(fail(format!(
+            "its largest tolerance, {tolerance:.3}, is greater than the model itself, whose box has a diagonal of {diagonal:.3}: its faces and \
+             edges do not meet; the file is damaged, export it again"
+        )));
+    }
+    Ok(model)
 }
 
 /// Reads what [`save`] has written.
@@ -63,18 +72,6 @@ pub fn write(occt: &ffi::Model, path: &Path) -> Result<(), Error> {
     let name = path.to_str().ok_or_else(|| fail("the file's name is not UTF-8; rename it".into()))?;
     let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
     occt.write_brep(name).map_err(|error| fail(error.what().into()))
-}
-
-/// Writes triangles of a model: see [`OcctModel::write_triangles`].
-pub fn write_triangles(occt: &ffi::Model, path: &Path, deflection: f64, angle: f64) -> Result<Vec<Vec<u32>>, Error> {
-    let fail = |message: String| Error::Model { path: path.into(), message };
-    let name = path.to_str().ok_or_else(|| fail("the file's name is not UTF-8; rename it".into()))?;
-    let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
-    let written = occt.write_tessellation(name, deflection, angle).and_then(|()| {
-        let solids = occt.solid_count()?;
-        (0..solids).map(|solid| occt.solid_faces(solid)).collect()
-    });
-    written.map_err(|error| fail(error.what().into()))
 }
 
 /// The far field without a body: see [`OcctModel::domain`].

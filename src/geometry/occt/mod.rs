@@ -160,15 +160,6 @@ impl OcctModel {
         (edge < self.topology.edges.len() as u32).then(|| self.occt.edge_length(edge).ok()).flatten()
     }
 
-    /// Writes OpenCASCADE's own triangles of the faces (their numbers from 1 the elementary entities) as MSH 2.2, joined along the edges,
-    /// within `deflection` (model units) and `angle` (radians) of the surface; returns the faces of each solid.
-    ///
-    /// # Errors
-    /// [`Error::Model`] when OpenCASCADE has none or the file cannot be written.
-    pub fn write_triangles(&self, path: &std::path::Path, deflection: f64, angle: f64) -> Result<Vec<Vec<u32>>, Error> {
-        load::write_triangles(&self.occt, path, deflection, angle)
-    }
-
     /// Writes the model in binary form with its names, for [`Self::read_saved`] in another process of this program.
     ///
     /// # Errors
