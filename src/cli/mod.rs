@@ -1,7 +1,8 @@
 //! The command line: one file a subcommand. Parsing, progress and printing; no algorithm lives here.
 use crate::tasks::{self, Pool};
 use crate::{geometry, memory};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
 use std::process::ExitCode;
 use terminal::{note, print, tell};
 
@@ -9,14 +10,18 @@ mod adapt;
 mod bootstrap;
 mod child;
 mod classify;
+mod completions;
 mod convert;
 mod cycle;
+mod examples;
 mod field;
 mod files;
+mod habits;
 mod image_mesh;
 mod inspect;
 mod interrupt;
 mod load;
+mod man;
 mod metric;
 mod model;
 mod names;
@@ -46,6 +51,8 @@ enum Command {
     Bootstrap(bootstrap::Arguments),
     /// Put a mesh's boundary on the entities of a CAD model
     Classify(classify::Arguments),
+    /// Print a script that completes commands and options in a shell
+    Completions(completions::Arguments),
     /// Bring a mesh with its names and fields into the format of another program
     Convert(convert::Arguments),
     /// Adapt and solve in turn, until it is fine enough
@@ -56,6 +63,8 @@ enum Command {
     ImageMesh(image_mesh::Arguments),
     /// Check a mesh and measure it in a metric
     Inspect(inspect::Arguments),
+    /// Write the manual pages
+    Man(man::Arguments),
     /// Make, combine and measure metrics
     Metric(metric::Arguments),
     /// List the entities of a CAD model
@@ -88,7 +97,15 @@ pub fn main() -> ExitCode {
     if let Some(code) = load::child().or_else(bootstrap::domain::child).or_else(bootstrap::heal::child) {
         return code;
     }
-    let arguments = match Arguments::try_parse() {
+    let words = match words() {
+        Ok(words) => words,
+        Err(error) => {
+            tell(format_args!("geo-adapt: error: {error}"));
+            return ExitCode::from(BAD_INPUT);
+        }
+    };
+    let parsed = command().try_get_matches_from(words).and_then(|matches| Arguments::from_arg_matches(&matches));
+    let arguments = match parsed {
         Ok(arguments) => arguments,
         Err(said) => return usage(&said),
     };
@@ -97,11 +114,13 @@ pub fn main() -> ExitCode {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
         Command::Classify(arguments) => classify::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Cycle(arguments) => cycle::run(&arguments),
         Command::Field(arguments) => field::run(&arguments),
         Command::ImageMesh(arguments) => image_mesh::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Man(arguments) => man::run(&arguments),
         Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
         Command::Openfoam(arguments) => openfoam::run(&arguments),
@@ -113,6 +132,26 @@ pub fn main() -> ExitCode {
         tell(format_args!("geo-adapt: error: {error}"));
         ExitCode::from(code_of(&*error))
     })
+}
+
+/// All commands with their help.
+fn command() -> clap::Command {
+    examples::add(Arguments::command())
+}
+
+/// The command line, brought into our spelling where it is one of another adapter.
+fn words() -> Result<Vec<OsString>, String> {
+    let mut given = std::env::args_os();
+    let program = given.next().unwrap_or_default();
+    let mut words: Vec<OsString> = given.collect();
+    if let Some(translated) = habits::translated(&words) {
+        let translated = translated?;
+        note(format_args!("this is `{}`", habits::typed(&translated.words)));
+        translated.notices.iter().for_each(note);
+        words = translated.words;
+    }
+    words.insert(0, program);
+    Ok(words)
 }
 
 /// What is not the input's fault has a code of its own.

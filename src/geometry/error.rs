@@ -5,7 +5,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The file cannot be opened.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}{}", path.display(), crate::mesh::io::meant(path, source))]
     Open {
         /// The model file.
         path: PathBuf,

@@ -70,6 +70,11 @@ impl Outputs {
         Ok(self.batch.add(&to.path, |file| file.write_all(&text).and_then(|()| file.write_all(b"\n")))?)
     }
 
+    /// A text, as it is.
+    pub fn text(&mut self, to: &Target, text: &[u8]) -> Done {
+        Ok(self.batch.add(&to.path, |file| file.write_all(text))?)
+    }
+
     /// A page for the browser.
     pub fn page(&mut self, team: Team<'_>, to: &Target, scene: &Scene<'_>, options: &picture::Options) -> Done {
         Ok(view::add_page(&mut self.batch, team, scene, options, &to.path)?)

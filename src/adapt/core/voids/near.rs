@@ -244,8 +244,7 @@ fn near_others(
     };
     let cones = tree.of_nodes(|items| Cone::of(items.iter().map(|&i| normals[i as usize])));
     let is_over = AtomicBool::new(false);
-    let may_face =
-        |leaf: usize, node: usize| !is_over.load(Ordering::Relaxed) && cones[leaf].may_face(&cones[node]);
+    let may_face = |leaf: usize, node: usize| !is_over.load(Ordering::Relaxed) && cones[leaf].may_face(&cones[node]);
     let pairs = tree.overlapping_pairs(
         team,
         |i| boxes[i as usize],
