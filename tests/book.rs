@@ -1,4 +1,4 @@
-//! What the book says is typed, as it stands: each page's commands in a folder with what a clone has.
+//! What the README and the book say is typed, as it stands: each page's commands in a folder with what a clone has.
 //!
 //! A block that begins with ```console is typed; ```console,long takes minutes and is typed with GEO_ADAPT_LONG=1 (tests/run --long).
 #![cfg(all(feature = "cli", feature = "occt", unix))]
@@ -54,9 +54,10 @@ fn clone() -> tempfile::TempDir {
 }
 
 #[test]
-fn what_the_book_says_is_typed() {
+fn what_the_readme_and_the_book_say_is_typed() {
     let mut all = Vec::new();
     pages(&root().join("docs/book/src"), &mut all);
+    all.push(root().join("README.md"));
     let programs = Path::new(env!("CARGO_BIN_EXE_geo-adapt")).parent().expect("it has a folder");
     let path = format!("{}:{}", programs.display(), std::env::var("PATH").unwrap_or_default());
     let has_fem = root().join(".venv/fem/bin/python").exists();

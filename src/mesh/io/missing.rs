@@ -8,7 +8,9 @@ const ALIKE: f64 = 0.8;
 /// What an error about a file says more, where it is not there: that its folder is not there either, or the file with the most similar
 /// name. Nothing for other errors.
 pub fn meant(path: &Path, error: &io::Error) -> String {
-    let Some(name) = path.file_name().filter(|_| error.kind() == ErrorKind::NotFound) else { return String::new() };
+    // An error of our own says all of it already.
+    let is_missing = error.kind() == ErrorKind::NotFound && error.get_ref().is_none();
+    let Some(name) = path.file_name().filter(|_| is_missing) else { return String::new() };
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return format!("; there is no folder {}", folder.display());
@@ -42,5 +44,6 @@ mod tests {
         assert_eq!(said("qqq"), "");
         assert_eq!(said("no/wing.meshb"), format!("; there is no folder {}", path("no").display()));
         assert_eq!(meant(&path("wign.meshb"), &ErrorKind::PermissionDenied.into()), "");
+        assert_eq!(meant(&path("wign.meshb"), &io::Error::new(ErrorKind::NotFound, "make it first")), "");
     }
 }
