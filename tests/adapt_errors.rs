@@ -159,8 +159,10 @@ fn texts_with_holes_are_named_with_the_line() {
     let sol = |row: &str| format!("{head}SolAtVertices\n64\n1 3\n{}End\n", format!("{row}\n").repeat(64));
     assert_says(&refused("nan.sol", &sol("1 0 nan 0 0 1")), &["nan.sol", "line 6"]);
     assert_says(&refused("short.sol", &sol("1 0 1 0 0")), &["short.sol"]);
-    let scalar = format!("{head}SolAtVertices\n64\n1 1\n{}End\n", "0.1\n".repeat(64));
-    assert_says(&refused("scalar.sol", &scalar), &["scalar.sol", "scalar", "symmetric tensors"]);
+    let vector = format!("{head}SolAtVertices\n64\n1 2\n{}End\n", "1 0 0\n".repeat(64));
+    assert_says(&refused("vector.sol", &vector), &["vector.sol", "vector", "symmetric tensors", "isotropic sizes"]);
+    let sizes = format!("{head}SolAtVertices\n64\n1 1\n{}-1\nEnd\n", "0.1\n".repeat(63));
+    assert_says(&refused("sizes.sol", &sizes), &["sizes.sol", "the size of vertex 64 is -1", "--field"]);
 }
 
 #[test]

@@ -110,3 +110,144 @@ fn sizes_that_cannot_be_are_refused() {
     let field = field(&work, &input);
     refused(&["--field", &field, "--complexity", "500", "--cycles", "2"], &["--cycles", "--field"]);
 }
+
+/// Scalars at the vertices, as mmg3d's users have them.
+fn scalars(work: &Workplace, name: &str, mesh: &TetMesh, at: impl Fn([f64; 3]) -> f64) -> String {
+    let values = mesh.vertices.iter().map(|&p| at(p)).collect();
+    let fields = vec![SolutionField { kind: FieldKind::Scalar, values }];
+    io::write_solution(&work.path(name), &Solution { vertices: mesh.vertices.len(), fields }).unwrap();
+    text(&work.path(name))
+}
+
+#[test]
+fn scalars_of_a_metric_file_and_a_size_give_the_mesh_of_the_same_tensors() {
+    let work = Workplace::new();
+    let input = cube(4, |_| 1);
+    let path = work.mesh(&input);
+    let size = |p: [f64; 3]| 0.1 + 0.2 * p[0];
+    let tensors = work.metric(&input, |p| isotropic(size(p)));
+    let expected = work.adapt(&path, &["--metric", &tensors]).mesh;
+    let sizes = scalars(&work, "sizes.sol", &input, size);
+    assert_eq!(work.adapt(&path, &["--metric", &sizes]).mesh, expected);
+    // The same by way of a file of tensors.
+    let made = text(&work.path("made.solb"));
+    let run = common::program().args(["metric", "isotropic", &text(&path), &sizes, "-o", &made]).output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    assert!(stderr(&run).contains("isotropic sizes, from 0.1000 to 0.3000"), "{}", stderr(&run));
+    let found = geo_adapt::metric::Field::read(&work.path("made.solb"), input.vertices.len()).unwrap().content.metrics;
+    for (metric, &p) in found.iter().zip(&input.vertices) {
+        assert!(metric.sizes().iter().all(|h| (h / size(p) - 1.0).abs() < 1e-12), "{metric:?} at {p:?}");
+    }
+    // One size everywhere.
+    let tensors = work.metric(&input, |_| isotropic(0.2));
+    let expected = work.adapt(&path, &["--metric", &tensors]).mesh;
+    assert_eq!(work.adapt(&path, &["--size", "0.2"]).mesh, expected);
+    let refused = work.command(&path, &["--size", "0.2", "--complexity", "100"]).output().unwrap();
+    assert!(stderr(&refused).contains("--size") && stderr(&refused).contains("cannot be used with"));
+}
+
+#[test]
+fn of_anisotropic_tensors_isotropic_takes_the_least_size() {
+    let work = Workplace::new();
+    let input = cube(1, |_| 1);
+    let tensors = work.metric(&input, |_| geo_adapt::metric::Sym3::diagonal(1.0, 100.0, 4.0));
+    let (path, made) = (text(&work.mesh(&input)), work.path("made.solb"));
+    let run = common::program().args(["metric", "isotropic", &path, &tensors, "-o", &text(&made)]).output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    for metric in geo_adapt::metric::Field::read(&made, input.vertices.len()).unwrap().content.metrics {
+        assert!(metric.sizes().iter().all(|h| (h / 0.1 - 1.0).abs() < 1e-12), "{metric:?}");
+    }
+}
+
+#[test]
+fn a_number_of_vertices_is_met() {
+    let work = Workplace::new();
+    let input = cube(4, |_| 1);
+    let path = work.mesh(&input);
+    let tensors = work.metric(&input, |p| isotropic(0.1 + 0.4 * p[2]));
+    // So few that the boundary is much of the mesh: half of them for the complexity is far off.
+    for (arguments, wanted) in [
+        (vec!["--metric", &tensors, "--vertices", "300"], 300.0),
+        (vec!["--metric", &tensors, "--vertices", "3000", "--local", "6:h=0.1"], 3000.0),
+        (vec!["--analytic", "polar-1", "--vertices", "4000"], 4000.0),
+        (vec!["--field", &field(&work, &input), "--vertices", "1000"], 1000.0),
+    ] {
+        let found = work.adapt(&path, &arguments);
+        let vertices = found.mesh.vertices.len() as f64;
+        assert!((vertices / wanted - 1.0).abs() <= 0.1, "{vertices}, not {wanted}: {arguments:?}");
+        assert_eq!(found.report["vertices_wanted"]["is_met"], true);
+        assert_eq!(found.report["vertices_wanted"]["wanted"], wanted);
+    }
+}
+
+#[test]
+fn a_number_of_vertices_that_cannot_be_met_is_told() {
+    let work = Workplace::new();
+    let path = work.mesh(&cube(6, |_| 1));
+    let report = text(&work.path("report.json"));
+    let arguments = ["--metric", &work.metric(&cube(6, |_| 1), |_| isotropic(0.2)), "--vertices", "60"];
+    let frozen = [&arguments[..], &["--freeze", "1,2,3,4,5,6", "--report", &report]].concat();
+    let run = work.command(&path, &frozen).output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    let out = String::from_utf8_lossy(&run.stdout).into_owned();
+    assert!(out.contains("vertices wanted") && out.contains("not met"), "{out}");
+    assert_eq!(work.result().report["vertices_wanted"]["is_met"], false);
+}
+
+#[test]
+fn a_box_has_its_size_and_a_size_grows_with_the_distance_from_a_surface() {
+    let work = Workplace::new();
+    let input = cube(8, |_| 1);
+    let path = work.mesh(&input);
+    let found = work.adapt(&path, &["--size", "0.25", "--local", "box:0.3,0.3,0.3,0.45,0.45,0.45:h=0.04"]);
+    let (mut inside, mut outside) = (Vec::new(), Vec::new());
+    for edge in geo_adapt::mesh::adjacency::unique_edges(&found.mesh.tets.nodes) {
+        let [a, b] = edge.map(|v| found.mesh.vertices[v as usize]);
+        let within = |low: f64, high: f64| [a, b].iter().flatten().all(|x| (low..high).contains(x));
+        match () {
+            () if within(0.3, 0.45) => inside.push(distance(a, b)),
+            () if within(0.8, 1.1) => outside.push(distance(a, b)),
+            () => {}
+        }
+    }
+    let mean = |lengths: &[f64]| lengths.iter().sum::<f64>() / lengths.len() as f64;
+    assert!((0.032..0.048).contains(&mean(&inside)), "{} of {}", mean(&inside), inside.len());
+    assert!(mean(&outside) > 0.12, "{} of {}", mean(&outside), outside.len());
+    // The metric written has the sizes that are asked for: least at the wall z = 1, a fifth of the distance more away from it. What gradation
+    // or interpolation between the vertices takes off is little here.
+    let found = work.adapt(&path, &["--size", "0.5", "--local", "6:h=0.05,growth=1.2"]);
+    for (metric, p) in found.metrics.iter().zip(&found.mesh.vertices) {
+        let wanted = 0.05 + 0.2 * (1.0 - p[2]);
+        assert!(metric.sizes().iter().all(|h| (0.9..1.001).contains(&(h / wanted))), "{:?} at {p:?}", metric.sizes());
+    }
+    let says = work.command(&path, &["--size", "0.5", "--local", "box:2,2,2,3,3,3:h=0.1"]).output().unwrap();
+    assert!(common::adapting::complaint(&says).contains("reaches from (0.000000, 0.000000, 0.000000)"));
+    let says = work.command(&path, &["--size", "0.5", "--local", "region:1:h=0.1,growth=1.2"]).output().unwrap();
+    assert!(common::adapting::complaint(&says).contains("of a region leave the growth out"));
+}
+
+#[cfg(feature = "occt")]
+#[test]
+fn a_size_grows_with_the_exact_distance_from_a_curved_face() {
+    let work = Workplace::new();
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let model = text(&root.join("geometry/cube-cylinder.step"));
+    let start = root.join("cases/cube-cylinder/start.meshb");
+    let mesh = io::read_mesh(&start).unwrap().content;
+    let on_wall = |p: &[f64; 3]| (p[0].hypot(p[1]) - 0.5).abs() < 1e-3;
+    let round = mesh.triangles.iter().find(|(nodes, _)| nodes.iter().all(|&v| on_wall(&mesh.vertices[v as usize])));
+    let local = format!("{}:h=0.03,growth=1.3", round.unwrap().1);
+    let first = work.adapt(&start, &["--cad", &model, "--size", "0.3", "--local", &local]);
+    // The first mesh is coarse; on its result the sizes are what the distance asks for.
+    let input = work.path("second.meshb");
+    std::fs::rename(&first.path, &input).unwrap();
+    let found = work.adapt(&input, &["--cad", &model, "--size", "0.3", "--local", &local]);
+    let mut farthest: f64 = 0.0;
+    for (metric, p) in found.metrics.iter().zip(&found.mesh.vertices) {
+        let away = (p[0].hypot(p[1]) - 0.5).abs();
+        farthest = farthest.max(away);
+        let wanted = (0.03 + 0.3 * away).min(0.3);
+        assert!(metric.sizes().iter().all(|h| (0.85..1.01).contains(&(h / wanted))), "{:?} at {p:?}", metric.sizes());
+    }
+    assert!(farthest > 0.3, "{farthest}");
+}

@@ -346,6 +346,21 @@ fn a_configuration_that_cannot_be_is_refused_before_anything() {
             ANALYTIC.replace("[solver.analytic]\nfunction = \"sinfun3\"", "[solver.command]\nrun = 's {msh}'"),
             "{msh} is not known",
         ),
+        (ANALYTIC.replace("\"u\"", "\"v\""), "[metric] fields: the solver has no field 'v'; there are u"),
+        (ANALYTIC.replace("\"u\"", "\"u:x\""), "[metric] fields: 'u:x'"),
+        (
+            ANALYTIC.replace("[metric]", "[probes]\nmiddle = { field = 'w', at = [0, 0, 0] }\n[metric]"),
+            "[probes] middle",
+        ),
+        (
+            ANALYTIC.replace("[output]", "converged = { functional = 'eror', change = 0.1 }\n[output]"),
+            "[schedule.converged] functional: the solver tells no 'eror'; it tells error",
+        ),
+        (
+            ANALYTIC.replace("[output]", "[adapt]\noptions = ['--frezze', '1']\n[output]"),
+            "unexpected argument '--frezze'",
+        ),
+        (ANALYTIC.replace("[\"u\"]", "[\"u\"]\nlocal = ['1:0.1']"), "write 3:h=0.01"),
     ];
     for (config, expected) in cases {
         let place = Place::new(&config);
@@ -353,8 +368,48 @@ fn a_configuration_that_cannot_be_is_refused_before_anything() {
         assert!(message.contains(expected) && message.contains("loop.toml"), "{message}");
         assert!(!place.path("out").exists(), "{message}");
     }
-    let place = Place::new(&ANALYTIC.replace("\"u\"", "\"v\""));
+}
+
+#[test]
+fn a_field_that_only_the_solve_tells_is_mended_without_another_solve() {
+    let config = format!(
+        "threads = 1\n[mesh]\ncube = 2\n[solver.command]\nrun = '{} field evaluate {{mesh}} --function sinfun3 -o {{solution_out}} -q && \
+         echo solved >> {{config}}/solves'\nfields = ['u']\n[metric]\nfields = ['v']\n[schedule]\ncomplexity = 20\ncycles = 1\n\
+         [output]\nfolder = 'out'\n",
+        env!("CARGO_BIN_EXE_geo-adapt")
+    );
+    let place = Place::new(&config);
     assert!(place.refusal(&["-q"]).contains("the solver has no field 'v'; there are u"));
+    let solves = || std::fs::read_to_string(place.path("solves")).unwrap().lines().count();
+    assert_eq!(solves(), 1);
+    place.write("loop.toml", &config.replace("['v']", "['u']"));
+    let planned = place.run(&["--dry-run"]);
+    assert!(planned.contains("metric.fields was [\"v\"] and is [\"u\"]"), "{planned}");
+    assert!(planned.contains("2 steps are done, the last is cycle-01/solve"), "{planned}");
+    assert!(planned.lines().any(|line| line.starts_with("next") && line.ends_with("cycle-01/metric")), "{planned}");
+    let run = place.command(&[]).output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    assert!(stderr(&run).contains("taken, for nothing that depends on it is done"), "{}", stderr(&run));
+    // The second solve is that of the second mesh.
+    assert_eq!(solves(), 2);
+    assert!(place.run(&["--dry-run"]).contains("nothing, the loop has ended"));
+    // Now steps depend on it.
+    place.write("loop.toml", &config.replace("['v']", "['u']\nhmax = 0.5"));
+    assert!(place.refusal(&["--dry-run"]).contains("metric.hmax was null and is 0.5"));
+}
+
+#[test]
+fn a_dry_run_does_nothing_and_refuses_what_a_run_would() {
+    let place = Place::new(ANALYTIC);
+    let planned = place.run(&["--dry-run"]);
+    assert!(planned.contains("no step is done") && planned.contains("after 3 adaptations and 4 solves"), "{planned}");
+    for row in ["1 100.0 200", "2 200.0 400", "3 400.0 800"] {
+        let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(planned.lines().any(|line| words(line) == row), "{row}: {planned}");
+    }
+    assert!(!place.path("out").exists());
+    place.write("out", "a file");
+    assert!(place.refusal(&["--dry-run"]).contains("out is no folder"));
 }
 
 #[test]

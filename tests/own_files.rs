@@ -54,6 +54,7 @@ const COMMANDS: &[Case] = &[
     case("metric geometry a.meshb -o new.solb --report OUT", "json", &["a.meshb"]),
     case("metric grade a.meshb a.solb -o OUT", "solb", &["a.meshb", "a.solb"]),
     case("metric implied a.meshb -o OUT", "solb", &["a.meshb"]),
+    case("metric isotropic a.meshb a.solb -o OUT", "solb", &["a.meshb", "a.solb"]),
     case("metric interpolate a.meshb a.solb b.mesh -o OUT", "solb", &["a.meshb", "a.solb", "b.mesh"]),
     case("metric intersect a.meshb a.solb b.sol -o OUT", "solb", &["a.meshb", "a.solb", "b.sol"]),
     case("metric limit a.solb --hmax 1 -o OUT", "solb", &["a.solb"]),

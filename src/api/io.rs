@@ -19,10 +19,12 @@ pub use crate::mesh::io::{
 use crate::metric::{Field, Sym3};
 use std::path::Path;
 
-/// Reads a metric of a mesh of so many vertices: a .sol or .solb file with one field of symmetric tensors, all positive definite.
+/// Reads a metric of a mesh of so many vertices: a .sol or .solb file with one field, of symmetric
+/// tensors, all positive definite, or of scalars, which are isotropic sizes h and become h⁻² I.
 ///
 /// # Errors
-/// When the file cannot be read, has other fields or another number of vertices, or when a tensor is not positive definite.
+/// When the file cannot be read, has other fields or another number of vertices, or when a tensor is not positive definite, or a size
+/// not positive.
 pub fn read_metric(path: &Path, vertices: usize) -> Result<Read<Vec<Sym3>>, crate::metric::Error> {
     let Read { content, notices } = Field::read(path, vertices)?;
     Ok(Read { content: content.metrics, notices })

@@ -1,5 +1,6 @@
 //! What a finished step leaves: `done.json`, written last.
 use super::error::Error;
+use super::layout::DONE;
 use crate::mesh::io::write_beside;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -26,7 +27,7 @@ pub fn finished<T: DeserializeOwned>(folder: &Path) -> Option<Done<T>> {
 /// # Errors
 /// When there is one that cannot be read.
 pub fn read<T: DeserializeOwned>(folder: &Path) -> Result<Option<Done<T>>, String> {
-    match fs::read(folder.join("done.json")) {
+    match fs::read(folder.join(DONE)) {
         Ok(bytes) => serde_json::from_slice(&bytes).map(Some).map_err(|error| error.to_string()),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(error.to_string()),

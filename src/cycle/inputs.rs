@@ -30,14 +30,15 @@ pub fn fingerprints(loaded: &Loaded) -> Result<Fingerprints, Error> {
 }
 
 /// The files that are not as they were, and how they changed.
-pub fn differences(old: &Fingerprints, new: &Fingerprints) -> Vec<String> {
+pub fn differences(old: &Fingerprints, new: &Fingerprints) -> Vec<(String, String)> {
     let changed = new.iter().filter_map(|(path, print)| match old.get(path) {
         Some(before) if before == print => None,
-        Some(_) => Some(format!("{path} has changed")),
-        None => Some(format!("{path} was not there")),
+        Some(_) => Some((path, format!("{path} has changed"))),
+        None => Some((path, format!("{path} was not there"))),
     });
-    let gone = old.keys().filter(|path| !new.contains_key(*path)).map(|path| format!("{path} is not there any more"));
-    changed.chain(gone).collect()
+    let gone = old.keys().filter(|path| !new.contains_key(*path));
+    let gone = gone.map(|path| (path, format!("{path} is not there any more")));
+    changed.chain(gone).map(|(path, text)| (path.clone(), text)).collect()
 }
 
 /// Length and a hash (FNV-1a, 64 bits): against a change by chance or by oversight, not against malice.
@@ -79,6 +80,7 @@ mod tests {
         let old = of(&[("a", "1"), ("b", "2"), ("c", "3")]);
         assert!(differences(&old, &old).is_empty());
         let told = differences(&old, &of(&[("a", "1"), ("b", "0"), ("d", "4")]));
-        assert_eq!(told, ["b has changed", "d was not there", "c is not there any more"]);
+        let texts: Vec<&str> = told.iter().map(|(_, text)| text.as_str()).collect();
+        assert_eq!(texts, ["b has changed", "d was not there", "c is not there any more"]);
     }
 }

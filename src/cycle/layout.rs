@@ -7,6 +7,9 @@ pub struct Layout {
     root: PathBuf,
 }
 
+/// The file that a finished step leaves in its folder.
+pub const DONE: &str = "done.json";
+
 /// The step that draws.
 pub const PICTURE: &str = "picture";
 
@@ -96,6 +99,17 @@ impl Layout {
             STEPS[first..].iter().rev().map(move |step| path.join(step)).collect::<Vec<_>>()
         });
         all.filter(|path| path.is_dir()).collect()
+    }
+
+    /// Whether the step of a folder is done.
+    pub fn is_done(&self, folder: &Path) -> bool {
+        folder.join(DONE).is_file()
+    }
+
+    /// The cycles of which a step is done.
+    pub fn finished(&self, step: &str) -> Vec<u32> {
+        let numbers = self.cycles().into_iter().map(|(cycle, _)| cycle);
+        numbers.filter(|&cycle| self.is_done(&self.step(cycle, step))).collect()
     }
 
     /// All folders of cycles that are there, in their order.

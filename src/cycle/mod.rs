@@ -2,6 +2,7 @@
 //!
 //! Every step has a folder of its own and is a command that the user can type again (`step`). What is there on the disk is the
 //! whole state: a loop that was killed goes on after its last finished step.
+mod changes;
 mod config;
 mod data;
 mod done;
@@ -14,6 +15,7 @@ mod layout;
 mod leftovers;
 mod observer;
 mod pipeline;
+mod plan;
 mod probe;
 mod report;
 mod run;
@@ -26,4 +28,5 @@ pub use error::Error;
 pub use history::{Cycle, History, Seconds};
 pub use layout::Layout;
 pub use observer::{Observer, Options};
+pub use plan::{Plan, plan};
 pub use run::{Ended, run};

@@ -1,5 +1,5 @@
 //! The steps of a cycle, each by the commands that make it.
-use super::config::{FIRST, Loaded, TransferMethod};
+use super::config::{FIRST, Loaded, TransferMethod, option};
 use super::data::{Adapted, Begun, FieldName, SolveResult, text};
 use super::done::Done;
 use super::error::Error;
@@ -46,9 +46,7 @@ impl<'a> Pipeline<'a> {
             if let Some(model) = &mesh.bootstrap {
                 let model = self.loaded.at(model);
                 let mut words = vec!["bootstrap".into(), text(&model), "-o".into(), text(&target)];
-                option(&mut words, "--far-field", mesh.far_field.as_ref());
-                option(&mut words, "--symmetry", mesh.symmetry.as_ref());
-                words.extend(mesh.options.iter().cloned().chain(self.threads.clone()));
+                words.extend(self.loaded.config.bootstrap_words().into_iter().chain(self.threads.clone()));
                 running.geo_adapt(words)?;
                 let domain = target.with_extension("brep");
                 let cad = Some(if mesh.far_field.is_some() { domain } else { model });
@@ -184,26 +182,11 @@ impl<'a> Pipeline<'a> {
             let mut words = vec!["adapt".into(), text(&layout.mesh(cycle))];
             words.extend(["-o".into(), text(&running.file("mesh.meshb"))]);
             words.extend(["--field".into(), text(&layout.step(cycle, "metric").join("sensors.solb"))]);
-            words.extend(["--complexity".into(), complexity.to_string()]);
             words.extend(["--report".into(), text(&running.file("report.json"))]);
             option(&mut words, "--cad", cad.as_deref().map(text).as_ref());
             option(&mut words, "--surface", surface.as_deref().map(text).as_ref());
-            let metric = &config.metric;
-            option(&mut words, "--norm", metric.norm.as_ref());
-            option(&mut words, "--hessian", metric.hessian.map(|word| word.name()).as_ref());
-            option(&mut words, "--gradation", metric.gradation.as_ref());
-            option(&mut words, "--hmin", metric.hmin.as_ref());
-            option(&mut words, "--hmax", metric.hmax.as_ref());
-            option(&mut words, "--aspect-ratio", metric.aspect_ratio.as_ref());
-            if !metric.local.is_empty() {
-                words.extend(["--local".into(), metric.local.join(",")]);
-            }
-            if (cad.is_some() || surface.is_some()) && metric.geometry == Some(false) {
-                words.push("--no-geometry".into());
-            }
-            option(&mut words, "--segments", metric.segments.as_ref());
-            option(&mut words, "--feature-cells", metric.feature_cells.as_ref());
-            words.extend(config.adapt.options.iter().cloned().chain(self.threads.clone()));
+            let has_model = cad.is_some() || surface.is_some();
+            words.extend(config.adapt_words(complexity, has_model).into_iter().chain(self.threads.clone()));
             running.geo_adapt(words)?;
             Ok(Adapted { complexity })
         })
@@ -222,14 +205,6 @@ impl<'a> Pipeline<'a> {
             running.geo_adapt(words)
         })?;
         Ok(())
-    }
-}
-
-/// Adds an option with its value, if there is one.
-fn option(words: &mut Vec<String>, name: &str, value: Option<&impl ToString>) {
-    if let Some(value) = value {
-        // In one word, so that a value may begin with a dash.
-        words.push(format!("{name}={}", value.to_string()));
     }
 }
 

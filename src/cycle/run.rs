@@ -1,5 +1,6 @@
 //! The loop from its beginning, or from where it was left, to its end.
-use super::config::{Config, Loaded, TransferMethod, differences};
+use super::changes::Changes;
+use super::config::{Config, Loaded, TransferMethod};
 use super::data::SolveResult;
 use super::done::write_json;
 use super::error::Error;
@@ -33,10 +34,21 @@ pub struct Ended {
 
 /// What `loop.json` says.
 #[derive(Serialize, Deserialize)]
-struct State {
+pub(super) struct State {
     version: String,
     config: Config,
     inputs: Fingerprints,
+}
+
+impl State {
+    /// Of the loop as it would begin now.
+    ///
+    /// # Errors
+    /// When an input cannot be read.
+    pub(super) fn of(loaded: &Loaded) -> Result<Self, Error> {
+        let (config, inputs) = (loaded.config.clone(), inputs::fingerprints(loaded)?);
+        Ok(Self { version: env!("CARGO_PKG_VERSION").into(), config, inputs })
+    }
 }
 
 /// What of it is known whatever else has changed from a version to the next.
@@ -72,27 +84,37 @@ pub fn run(loaded: &Loaded, options: &Options, observer: &dyn Observer, stop: &S
     outcome
 }
 
-/// Finds what is there: nothing, or a loop of the same configuration.
+/// Begins a loop, or goes on with what is there.
 fn begin(loaded: &Loaded, options: &Options, steps: Steps<'_>) -> Result<(), Error> {
     let layout = steps.layout;
-    let (config, inputs) = (loaded.config.clone(), inputs::fingerprints(loaded)?);
-    let state = State { version: env!("CARGO_PKG_VERSION").into(), config, inputs };
+    let state = State::of(loaded)?;
     leftovers::remove_temporaries(layout);
-    if options.restart {
-        // First what says that there is a loop: a kill on the way leaves one that asks for --restart again.
-        let _ = fs::remove_file(layout.state());
-        for folder in layout.present() {
-            for step in super::layout::STEPS {
-                steps.clear(&folder.join(step))?;
-            }
-            steps.clear(&folder)?;
+    if !options.restart {
+        for change in found(loaded, layout, &state)? {
+            steps.observer.note(&format!("{change}: taken, for nothing that depends on it is done"));
         }
         return write_json(&layout.state(), &state);
     }
+    // First what says that there is a loop: a kill on the way leaves one that asks for --restart again.
+    let _ = fs::remove_file(layout.state());
+    for folder in layout.present() {
+        for step in super::layout::STEPS {
+            steps.clear(&folder.join(step))?;
+        }
+        steps.clear(&folder)?;
+    }
+    write_json(&layout.state(), &state)
+}
+
+/// Finds what is there: nothing, or a loop that goes on with this state. The changes of its configuration that can be taken.
+///
+/// # Errors
+/// When it is another loop, or one that cannot be read.
+pub(super) fn found(loaded: &Loaded, layout: &Layout, state: &State) -> Result<Vec<String>, Error> {
     let place = layout.state().display().to_string();
     let bytes = match fs::read(layout.state()) {
         Ok(bytes) => bytes,
-        Err(_) if layout.present().is_empty() => return write_json(&layout.state(), &state),
+        Err(_) if layout.present().is_empty() => return Ok(Vec::new()),
         Err(error) => {
             return Err(Error::Failed(format!(
                 "{place}: {error}; but there are steps of a loop beside it: --restart removes them and begins anew"
@@ -113,25 +135,33 @@ fn begin(loaded: &Loaded, options: &Options, steps: Steps<'_>) -> Result<(), Err
         )));
     }
     let old: State = serde_json::from_slice(&bytes).map_err(unreadable)?;
-    let changed = differences(&old.config, &loaded.config);
-    let inputs = inputs::differences(&old.inputs, &state.inputs);
-    if changed.is_empty() && inputs.is_empty() {
-        return write_json(&layout.state(), &state);
+    let Changes { refused, taken } = Changes::of(layout, &old.config, &loaded.config);
+    if !refused.is_empty() {
+        return Err(Error::Failed(format!(
+            "{}: the loop in {} was begun with another configuration, and steps are done that depend on it: {}. Change it back to go on, \
+             give another [output] folder, or --restart to throw away what is there",
+            loaded.path.display(),
+            layout.root().display(),
+            refused.join("; ")
+        )));
     }
-    if changed.is_empty() {
+    let mut inputs = inputs::differences(&old.inputs, &state.inputs);
+    // What no finished step has read may change.
+    let of_solver: Vec<String> = [&old.config, &loaded.config]
+        .into_iter()
+        .flat_map(|config| config.solver.solver().inputs(&loaded.base))
+        .map(|path| path.to_string_lossy().into_owned())
+        .collect();
+    let (began, solved) = (layout.is_done(&layout.start()), !layout.finished("solve").is_empty());
+    inputs.retain(|(path, _)| if of_solver.contains(path) { solved } else { began });
+    if !inputs.is_empty() {
         return Err(Error::Failed(format!(
             "{place}: what the loop began with is not the same any more: {}. Put it back to go on, give another [output] folder, or \
              --restart to throw away what is there",
-            inputs.join("; ")
+            inputs.into_iter().map(|(_, text)| text).collect::<Vec<_>>().join("; ")
         )));
     }
-    Err(Error::Failed(format!(
-        "{}: the loop in {} was begun with another configuration: {}. Change it back to go on, give another [output] folder, or \
-         --restart to throw away what is there",
-        loaded.path.display(),
-        layout.root().display(),
-        changed.join("; ")
-    )))
+    Ok(taken)
 }
 
 fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<Ended, Error> {

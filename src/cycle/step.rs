@@ -2,7 +2,7 @@
 use super::data::{Call, text};
 use super::done::{Done, read, write_json};
 use super::error::Error;
-use super::layout::Layout;
+use super::layout::{DONE, Layout};
 use super::leftovers;
 use super::observer::Observer;
 use crate::memory;
@@ -49,7 +49,7 @@ impl<'a> Steps<'a> {
             Ok(None) => {}
             Err(error) => self.observer.note(&format!(
                 "{}: cannot be read ({error}): this step is done again, and all that follow from it",
-                folder.join("done.json").display()
+                folder.join(DONE).display()
             )),
         }
         if self.stop.asked.load(Relaxed) {
@@ -71,7 +71,7 @@ impl<'a> Steps<'a> {
             Error::Interrupted => Error::Interrupted,
         })?;
         let done = Done { seconds: start.elapsed().as_secs_f64(), result };
-        write_json(&folder.join("done.json"), &done)?;
+        write_json(&folder.join(DONE), &done)?;
         self.observer.end(&name, done.seconds);
         Ok(done)
     }

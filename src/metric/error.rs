@@ -23,7 +23,8 @@ pub enum Error {
     },
     /// The file holds no metric, or several.
     #[error(
-        "{}: {found}; a metric file holds one field of symmetric tensors (libMeshb type 3) at the vertices",
+        "{}: {found}; a metric file holds one field at the vertices: symmetric tensors (libMeshb type 3), or scalars (type 1), which are \
+         isotropic sizes",
         path.display()
     )]
     Kind {
@@ -31,6 +32,20 @@ pub enum Error {
         path: PathBuf,
         /// What it holds.
         found: String,
+    },
+    /// A scalar of a metric file is no size.
+    #[error(
+        "{}: the size of vertex {vertex} is {size}: a scalar of a metric file is an isotropic size, a length from {:.0e} to {:.0e}; a \
+         solution goes in by --field",
+        path.display(), SIZES.start(), SIZES.end()
+    )]
+    NotASize {
+        /// The metric file.
+        path: PathBuf,
+        /// Vertex, from 1.
+        vertex: usize,
+        /// What stands there.
+        size: f64,
     },
     /// A tensor is not positive definite.
     #[error(

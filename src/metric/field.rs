@@ -1,4 +1,5 @@
 //! Metric fields at the vertices of a mesh: files, complexity.
+use super::held::SIZES;
 use super::{Error, Sym3};
 use crate::mesh::io::{self, Batch, FieldKind, Read, Solution, SolutionField};
 use crate::mesh::{TetMesh, vector::volume6};
@@ -14,7 +15,8 @@ pub struct Field {
 }
 
 impl Field {
-    /// Reads a .sol or .solb file of a mesh of so many vertices. Every tensor must be positive definite.
+    /// Reads a .sol or .solb file of a mesh of so many vertices: symmetric tensors, each positive definite, or scalars, which are sizes h of
+    /// the metric h⁻² I.
     pub fn read(path: &Path, vertices: usize) -> Result<Read<Self>, Error> {
         let Read { content: metrics, notices } =
             read_each(Team::alone(), path, Some(vertices), |m| m.is_spd().then_some(m))?;
@@ -112,37 +114,60 @@ fn checked_log(m: Sym3) -> Option<Sym3> {
     positive.then(|| Sym3::from_eigen(&eigen))
 }
 
-/// What `convert` makes of the tensors of a file; none for one that is not positive definite.
+/// What `convert` makes of the metrics of a file; none for one that is not positive definite. Of isotropic sizes h they are h⁻² I.
 fn read_each(
     team: Team<'_>,
     path: &Path,
     expected: Option<usize>,
     convert: impl Fn(Sym3) -> Option<Sym3> + Sync,
 ) -> Result<Read<Vec<Sym3>>, Error> {
-    let Read { content, notices } = io::read_solution_on(team, path)?;
-    let tensors = only_tensors(path, &content)?;
+    let Read { content, mut notices } = io::read_solution_on(team, path)?;
+    let field = only_metric(path, &content)?;
     let vertices = content.vertices;
     if let Some(expected) = expected.filter(|&expected| expected != vertices) {
         return Err(Error::Count { path: path.into(), found: vertices, expected });
     }
-    let tensors = tensors.values.as_chunks().0;
+    let is_sizes = field.kind == FieldKind::Scalar;
+    let metric = |vertex: usize| match is_sizes {
+        true => Some(field.values[vertex]).filter(|h| SIZES.contains(h)).map(isotropic),
+        false => Some(Sym3(field.values.as_chunks().0[vertex])),
+    };
     let parts = team.chunks(GRAIN, vertices, |range| {
-        let convert = |vertex: usize| convert(Sym3(tensors[vertex])).ok_or(vertex);
+        let convert = |vertex: usize| metric(vertex).and_then(&convert).ok_or(vertex);
         range.map(convert).collect::<Result<Vec<Sym3>, usize>>()
     });
-    match parts.into_iter().collect() {
-        Ok(converted) => Ok(Read { content: team.join(converted), notices }),
-        Err(vertex) => {
-            let eigenvalues = Sym3(tensors[vertex]).eigen_jacobi().values;
-            Err(Error::NotPositive { path: path.into(), vertex: vertex + 1, eigenvalues })
+    let wrong = |v: usize| match is_sizes {
+        true => Error::NotASize { path: path.into(), vertex: v + 1, size: field.values[v] },
+        false => {
+            let eigenvalues = Sym3(field.values.as_chunks().0[v]).eigen_jacobi().values;
+            Error::NotPositive { path: path.into(), vertex: v + 1, eigenvalues }
         }
+    };
+    let converted = parts.into_iter().collect::<Result<Vec<_>, usize>>().map_err(wrong)?;
+    if is_sizes {
+        let (least, greatest) = extremes(&field.values);
+        notices.push(format!(
+            "{}: one scalar a vertex: isotropic sizes, from {least:.4} to {greatest:.4} (a solution goes in by --field)",
+            path.display()
+        ));
     }
+    Ok(Read { content: team.join(converted), notices })
 }
 
-/// The one tensor field of a solution.
-fn only_tensors<'a>(path: &Path, solution: &'a Solution) -> Result<&'a SolutionField, Error> {
+/// h⁻² I, the metric of the same size h in all directions.
+fn isotropic(h: f64) -> Sym3 {
+    Sym3::IDENTITY.times(1.0 / (h * h))
+}
+
+/// Least and greatest.
+fn extremes(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)))
+}
+
+/// The one field of a metric file: symmetric tensors, or scalars, which are sizes.
+fn only_metric<'a>(path: &Path, solution: &'a Solution) -> Result<&'a SolutionField, Error> {
     if let [field] = &solution.fields[..]
-        && field.kind == FieldKind::SymmetricTensor
+        && matches!(field.kind, FieldKind::SymmetricTensor | FieldKind::Scalar)
     {
         return Ok(field);
     }
@@ -289,10 +314,27 @@ mod tests {
     }
 
     #[test]
+    fn scalars_are_isotropic_sizes() {
+        let (_folder, path) = write("sizes.sol", FieldKind::Scalar, vec![0.5, 2.0]);
+        let Read { content, notices } = Field::read(&path, 2).unwrap();
+        assert_eq!(content.metrics, [Sym3::diagonal(4.0, 4.0, 4.0), Sym3::diagonal(0.25, 0.25, 0.25)]);
+        assert!(notices[0].contains("isotropic sizes, from 0.5000 to 2.0000"), "{notices:?}");
+        let logs = Field::read_logs(Team::alone(), &path, 2).unwrap().content;
+        for (log, h) in logs.iter().zip([0.5, 2.0]) {
+            assert!(log.sizes_of_log().iter().all(|size| (size / h - 1.0).abs() < 1e-14), "{log:?}");
+        }
+    }
+
+    #[test]
     fn errors_name_file_vertex_and_remedy() {
-        let (_folder, path) = write("scalar.sol", FieldKind::Scalar, vec![1.0, 2.0]);
-        let message = Field::read(&path, 2).unwrap_err().to_string();
-        assert!(message.contains("scalar.sol") && message.contains("symmetric tensors"), "{message}");
+        for wrong in [0.0, -2.0, f64::INFINITY, 1e200] {
+            let (_folder, path) = write("scalar.solb", FieldKind::Scalar, vec![1.0, wrong]);
+            let message = Field::read(&path, 2).unwrap_err().to_string();
+            assert!(
+                message.contains("scalar.solb: the size of vertex 2 is ") && message.contains("--field"),
+                "{message}"
+            );
+        }
 
         let values = [[1.0, 0.0, 1.0, 0.0, 0.0, 1.0], [1.0, 2.0, 1.0, 0.0, 0.0, 1.0]].concat();
         let (_folder, path) = write("indefinite.solb", FieldKind::SymmetricTensor, values);

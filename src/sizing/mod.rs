@@ -3,7 +3,8 @@
 //! `curvature` makes the tensor of an entity at a point, `estimate` does where the model is a mesh's own surface; `feature` finds the
 //! entities that come near without touching (`touch`), by boxes over samples of the model (`pieces`, `tree`), where nothing stands between
 //! (`sight`), of the same body (`bodies`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together;
-//! `resolve` adds vertices to a coarse mesh until it resolves the metric.
+//! `resolve` adds vertices to a coarse mesh until it resolves the metric. `around` has the sizes that a user asks for in some places.
+pub mod around;
 mod bodies;
 mod bound;
 mod coarse;

@@ -1,20 +1,23 @@
-//! Where the metric of a run comes from: a file, an analytic field, or a field whose multiscale metric is made.
+//! Where the metric of a run comes from: a file, one size, an analytic field, or a field whose multiscale metric is made.
 use crate::cli::metric::fields;
 use crate::metric::Analytic;
 use std::path::PathBuf;
 
-/// The metric: exactly one of the three.
+/// The metric: exactly one of the four.
 #[derive(clap::Args)]
 #[group(required = true, multiple = false)]
 pub struct FieldArguments {
-    /// The metric at the vertices of the mesh: .sol or .solb
+    /// The metric at the vertices of the mesh, .sol or .solb: symmetric tensors, or scalars, which are isotropic sizes
     #[arg(long, value_name = "FILE")]
     pub metric: Option<PathBuf>,
+    /// The same size everywhere, in all directions, in model units
+    #[arg(long, value_name = "H", value_parser = crate::cli::positive, allow_negative_numbers = true, conflicts_with = "amount")]
+    pub size: Option<f64>,
     /// An analytic metric: linear, polar-1 or polar-2
     #[arg(long, value_name = "NAME")]
     pub analytic: Option<Analytic>,
-    /// A field at the vertices, .sol or .solb, whose multiscale metric is made for --complexity; again for each further step in time
-    #[arg(long, value_name = "FIELD", requires = "complexity")]
+    /// A field at the vertices, .sol or .solb, whose multiscale metric is made for --complexity or --vertices; again for each further step in time
+    #[arg(long, value_name = "FIELD", requires = "amount")]
     pub field: Vec<PathBuf>,
 }
 

@@ -3,8 +3,10 @@ use super::super::files::Files;
 use super::super::load;
 use super::super::names::on_mesh;
 use super::field::FieldArguments;
-use super::parts::{self, Local};
-use crate::adapt;
+use super::local::Locals;
+use super::meet::Meeting;
+use super::source::{On, Raw};
+use crate::cli::metric::common::Amount;
 use crate::cli::metric::fields::{Made, MultiscaleArguments};
 use crate::cli::metric::geometry::GeometryArguments;
 use crate::cli::surface::SurfaceArguments;
@@ -15,19 +17,10 @@ use crate::geometry::{Model, Names, names};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::mesh::{TetMesh, crossing, io};
-use crate::metric::held::GREATEST_RATIO;
-use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
-use crate::metric::{self, Background, Field, Interpolation, Limits, Source, Sym3, field, grade, restrict};
-use crate::sizing;
+use crate::metric::{Field, Source, Sym3};
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
-const GREATEST_COMPLEXITY: f64 = 2e8;
-
-/// The sizes of the geometry take at most this share of the complexity, so that some is left for the field.
-const GEOMETRY_SHARE: f64 = 0.5;
 
 /// What to do where a mesh that was taken apart does not fit its model.
 const APART: &str = "The mesh hangs together in edges or vertices alone, where it was taken apart: on such a model each body needs edges and \
@@ -45,22 +38,26 @@ pub struct InputArguments {
     pub surface: SurfaceArguments,
     #[command(flatten)]
     pub field: FieldArguments,
-    /// Scale the metric to this complexity: about half the number of vertices
-    #[arg(long, value_name = "C", value_parser = crate::cli::positive, allow_negative_numbers = true)]
-    pub complexity: Option<f64>,
+    #[command(flatten)]
+    pub amount: Amount,
     /// How far a vertex of the input may be from the model, in its units
     #[arg(long, value_name = "T", value_parser = crate::cli::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// Greatest size on a surface or in a region, by reference or name: 3:h=0.01, inlet:h=0.02, region:2:h=0.05
-    #[arg(long, value_name = "REF:h=H,…", value_delimiter = ',', allow_negative_numbers = true)]
-    local: Vec<Local>,
-    #[command(flatten, next_help_heading = "The metric of --field (gradation and bounds of sizes: of --metric too)")]
-    multiscale: MultiscaleArguments,
+    /// Greatest size on a surface or in a region, by reference or name, or in a box: 3:h=0.01, inlet:h=0.02, region:2:h=0.05,
+    /// box:X0,Y0,Z0,X1,Y1,Z1:h=0.1. With growth=1.2 behind it, it goes on around the surface or box, a fifth larger from an edge to the next: with
+    /// the distance d the size is h + 0.2 d
+    #[arg(long, value_name = "PLACE:h=H[,growth=G],…", allow_negative_numbers = true)]
+    pub(super) local: Vec<Locals>,
+    #[command(
+        flatten,
+        next_help_heading = "The metric of --field (gradation and bounds of sizes: of --metric and --size too)"
+    )]
+    pub(super) multiscale: MultiscaleArguments,
     #[command(flatten)]
-    geometry: GeometryArguments,
+    pub(super) geometry: GeometryArguments,
     /// Leaves the geometry out, whose sizes are intersected when there is a --cad or a --surface
     #[arg(long, conflicts_with_all = ["segments", "feature_cells"])]
-    no_geometry: bool,
+    pub(super) no_geometry: bool,
 }
 
 /// A mesh, with the metric at its vertices if it comes from a file.
@@ -89,9 +86,13 @@ pub struct Input {
     pub made: Option<Made>,
     /// What the mesh's references are called, by the file beside it or else by the model.
     pub names: Names,
+    /// What the metric was made of, where another may be wanted: with --vertices.
+    pub raw: Option<Raw>,
+    /// How the number of vertices was met that --vertices asks for.
+    pub meeting: Option<Meeting>,
 }
 
-type Error = Box<dyn std::error::Error>;
+pub(super) type Error = Box<dyn std::error::Error>;
 
 impl InputArguments {
     /// Whether the model is given: it is no surface of the mesh itself.
@@ -154,18 +155,11 @@ impl InputArguments {
         if names.is_empty() {
             names = on_mesh(&mesh, &place, &model);
         }
-        let (mut source, made) = self.source(team, (&mesh, faces, &copies), logs, (&place, &model, &names), notices)?;
-        stage("metric ready");
-        if source.cut() > 0 {
-            notices.push(format!(
-                "sizes of more than {GREATEST_RATIO:.0e} times the least at the same vertex were cut to that at {} vertices: a tensor of \
-                 doubles does not hold them",
-                source.cut()
-            ));
-        }
-        self.scale(team, &mesh, &mut source, made.is_some())?;
-        stage("complexity");
-        Ok(Input { mesh, place, model, source, made, names })
+        let raw = Raw { logs, copies };
+        let kept = self.amount.vertices.is_some().then(|| raw.clone());
+        let on = On { place: &place, model: &model, names: &names };
+        let (source, made) = self.source(team, (&mesh, faces), raw, on, (self.amount.complexity(), notices))?;
+        Ok(Input { mesh, place, model, source, made, names, raw: kept, meeting: None })
     }
 
     /// Tells where the boundary of the mesh passes through itself.
@@ -181,6 +175,16 @@ impl InputArguments {
             ));
         }
         stage("boundary held against itself");
+    }
+
+    /// The metric made again, of another complexity.
+    pub fn source_of(&self, team: Team<'_>, input: &Input, complexity: f64) -> Result<(Source, Option<Made>), Error> {
+        let Input { mesh, place, model, names, raw, .. } = input;
+        let faces = MatchedFaces::of(team, &mesh.tets.nodes);
+        let on = On { place, model, names };
+        // What there is to say was said of the first.
+        let wanted = (Some(complexity), &mut Vec::new());
+        self.source(team, (mesh, faces), raw.clone().unwrap_or_default(), on, wanted)
     }
 
     /// Takes the mesh apart where it hangs together in edges or vertices alone: the new vertices' origins.
@@ -204,149 +208,6 @@ impl InputArguments {
             ));
         }
         Ok(copies)
-    }
-
-    /// The metric's source: the analytic field, or the mesh as background with the metric of a file or the one made from a field; and
-    /// what was done to make it.
-    fn source(
-        &self,
-        team: Team<'_>,
-        (mesh, faces, copies): (&Arc<TetMesh>, MatchedFaces, &[u32]),
-        logs: Option<Vec<Sym3>>,
-        on: (&Classification, &Model, &Names),
-        notices: &mut Vec<String>,
-    ) -> Result<(Source, Option<Made>), Error> {
-        if let Some(field) = self.field.analytic {
-            return Ok((Source::Analytic { field, log_scale: 0.0 }, None));
-        }
-        let named = |error: String| format!("{}: {error}", self.mesh.display());
-        if mesh.tets.is_empty() {
-            return Err(named(adapt::Error::Empty.to_string()).into());
-        }
-        let (logs, made) = match logs {
-            Some(logs) if !self.is_bounded() => (logs, None),
-            Some(logs) => (self.bounded(team, mesh, on.2, logs).map_err(named)?, None),
-            None => {
-                let complexity = self.complexity.ok_or("--field needs a --complexity")?;
-                let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
-                let wanted = (complexity, Measure::Between(Interpolation::default()));
-                let (logs, made) =
-                    self.multiscale.make(team, (mesh, copies), &self.field.field, wanted, fixed.as_deref(), notices)?;
-                (logs, Some(made))
-            }
-        };
-        Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), made))
-    }
-
-    /// Whether the metric of a file is to be changed by more than a scale.
-    fn is_bounded(&self) -> bool {
-        !self.local.is_empty() || self.multiscale.bounds_are_given()
-    }
-
-    /// ln of the metric of a file within the bounds that are given, graded, and of the complexity that is asked for.
-    fn bounded(&self, team: Team<'_>, mesh: &TetMesh, names: &Names, mut logs: Vec<Sym3>) -> Result<Vec<Sym3>, String> {
-        let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth());
-        let fixed = self.local_sizes(team, mesh, names)?;
-        let complexity = self.complexity.unwrap_or(1.0);
-        let bounds = Bounds {
-            complexity,
-            measure: Measure::Between(Interpolation::default()),
-            gradation,
-            limits,
-            fixed: fixed.as_deref(),
-        };
-        if self.complexity.is_some() {
-            return bounded(team, mesh, &logs, &bounds).map(|found| found.0).map_err(|error| error.to_string());
-        }
-        bounds.apply(team, &mut logs);
-        if let Some(ratio) = gradation {
-            grade(team, mesh, &mut logs, ratio);
-        }
-        Ok(logs)
-    }
-
-    /// ln of the metric that the local sizes ask for, with very large sizes elsewhere; none without local sizes.
-    fn local_sizes(&self, team: Team<'_>, mesh: &TetMesh, names: &Names) -> Result<Option<Vec<Sym3>>, String> {
-        if self.local.is_empty() {
-            return Ok(None);
-        }
-        let mut logs = vec![Sym3::ZERO.plus_identity(-2.0 * diameter(team, mesh).ln()); mesh.vertices.len()];
-        parts::apply(&self.local, mesh, names, &mut logs)?;
-        Ok(Some(logs))
-    }
-
-    /// ln of the metric that holds whatever the field says: that of the geometry, on a CAD model, and of the local sizes.
-    fn fixed(
-        &self,
-        team: Team<'_>,
-        mesh: &TetMesh,
-        (place, model, names): (&Classification, &Model, &Names),
-        complexity: f64,
-        notices: &mut Vec<String>,
-    ) -> Result<Option<Vec<Sym3>>, String> {
-        if !self.has_model() || self.no_geometry {
-            return self.local_sizes(team, mesh, names);
-        }
-        let gradation = self.multiscale.growth();
-        let options = self.geometry.options(model, self.multiscale.limits()?, None);
-        let (raw, _) = sizing::geometry_metric(team, mesh, place, model, &options);
-        let mut logs = raw.clone();
-        if let Some(ratio) = gradation {
-            grade(team, mesh, &mut logs, ratio);
-            restrict(team, mesh, &mut logs, ratio);
-        }
-        let own = field::complexity_between(team, mesh, &logs);
-        let most = GEOMETRY_SHARE * complexity;
-        if own > most {
-            let limits = Limits::default();
-            let bounds = Bounds {
-                complexity: most,
-                measure: Measure::Between(Interpolation::default()),
-                gradation,
-                limits,
-                fixed: None,
-            };
-            logs = bounded(team, mesh, &raw, &bounds).map_err(|error| format!("the geometry's metric: {error}"))?.0;
-            notices.push(format!(
-                "the geometry alone asks for a complexity of {own:.0}: its sizes are enlarged, to leave half of {complexity} to \
-                 the field (a greater --complexity keeps them, --no-geometry leaves them out)"
-            ));
-        }
-        parts::apply(&self.local, mesh, names, &mut logs)?;
-        stage("geometry");
-        Ok(Some(logs))
-    }
-
-    /// Scales the source to the complexity asked for, unless it was made for that. Refuses a complexity that no mesh can have.
-    fn scale(&self, team: Team<'_>, mesh: &TetMesh, source: &mut Source, is_made: bool) -> Result<(), String> {
-        let named = |error: metric::Error| format!("{}: {error}", self.mesh.display());
-        source.check(team, mesh).map_err(named)?;
-        if self.complexity.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
-            return Ok(());
-        }
-        let own = source.complexity(team, mesh);
-        if !(own > 0.0 && own.is_finite()) {
-            return Err(format!(
-                "{}: the metric's complexity on this mesh is {own}; are mesh and metric in the same units?",
-                self.mesh.display()
-            ));
-        }
-        if let Some(target) = self.complexity.filter(|_| !is_made && !self.is_bounded()) {
-            source.scale(team, field::complexity_factor(own, target).ln());
-        }
-        let complexity = self.complexity.unwrap_or(own);
-        if complexity <= GREATEST_COMPLEXITY {
-            return Ok(());
-        }
-        let remedy = match self.complexity {
-            Some(_) => "give a smaller --complexity",
-            None => "are mesh and metric in the same units? else give a --complexity",
-        };
-        let [vertices, most] = [2.0 * complexity, 2.0 * GREATEST_COMPLEXITY];
-        Err(format!(
-            "{}: the metric asks for about {vertices:.0e} vertices, more than the {most:.0e} of the largest mesh; {remedy}",
-            self.mesh.display()
-        ))
     }
 
     /// The model, and where the mesh lies on it.

@@ -2,9 +2,12 @@
 pub mod field;
 pub mod files;
 pub mod input;
+mod local;
+mod meet;
 pub mod parts;
 pub mod progress;
 pub mod report;
+mod source;
 
 use super::{Outcome, interrupt};
 use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
@@ -104,22 +107,32 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let (mut cad, mut start) = (None, Some(start));
     for cycle in 1..=arguments.cycles {
         let start = start.take().unwrap_or_else(Instant::now);
-        let input = arguments.input.prepare(team, given, cad.take(), &mut notices)?;
+        let mut input = arguments.input.prepare(team, given, cad.take(), &mut notices)?;
         for notice in notices.drain(..).filter(|_| !arguments.quiet) {
             crate::cli::note(notice);
         }
         let prepared = start.elapsed();
         // What comes now is worth to be written.
         let progress = Progress::new(!arguments.quiet, progress::finish_on_interrupt());
-        let Input { mesh, place, model, source, .. } = &input;
         let named = |error| format!("{}: {error}", arguments.input.mesh.display());
-        let options = arguments.options(plan, parts::frozen(&arguments.freeze, mesh, &input.names).map_err(named)?);
+        let freeze = parts::frozen(&arguments.freeze, &input.mesh, &input.names).map_err(named)?;
+        let options = arguments.options(plan, freeze);
         if cycle < arguments.cycles && !options.freeze.surfaces.is_empty() {
             arguments.check_references(&input).map_err(named)?;
         }
-        let adapted = adapt::adapt(mesh, place, model, source, &options, &pool, &progress)
-            .map_err(|error| named(error.to_string()))?;
-        progress.finish();
+        let adapt = |input: &Input| {
+            let Input { mesh, place, model, source, .. } = input;
+            let adapted = adapt::adapt(mesh, place, model, source, &options, &pool, &progress);
+            progress.finish();
+            adapted.map_err(|error| named(error.to_string()))
+        };
+        let told = |text: &str| {
+            if !arguments.quiet && !text.is_empty() && !progress.interrupted() {
+                crate::cli::note(text);
+            }
+            !progress.interrupted()
+        };
+        let adapted = meet::adapted(&arguments.input, team, &mut input, adapt, told)?;
         let finished = start.elapsed();
         let report = Report::new(team, &asked, &input, adapted);
         stage("report");
@@ -149,7 +162,7 @@ impl Arguments {
     /// What the report says was asked for.
     fn asked(&self, threads: usize) -> Asked {
         let (input, output) = (self.input.mesh.clone(), self.output.clone());
-        Asked { input, output, threads, complexity_wanted: self.input.complexity }
+        Asked { input, output, threads, complexity_wanted: self.input.amount.complexity }
     }
 
     /// Refuses references that the next cycle would not find again: on a CAD model they become the numbers of its faces where they do

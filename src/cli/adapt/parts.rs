@@ -1,8 +1,7 @@
-//! Surfaces and regions of a mesh by reference: what the user wants left as it is, or of another size.
+//! Surfaces and regions of a mesh by reference: what the user wants left as it is, or of another size ([`super::local`]).
 use crate::adapt::Freeze;
 use crate::geometry::{Label, Names, called};
 use crate::mesh::TetMesh;
-use crate::metric::Sym3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::str::FromStr;
 
@@ -32,8 +31,10 @@ pub struct Part {
 
 /// Triangles or tetrahedra of a reference.
 #[derive(Clone, Copy)]
-enum Found {
+pub(super) enum Found {
+    /// Triangles.
     Surface(i32),
+    /// Tetrahedra.
     Region(i32),
 }
 
@@ -61,7 +62,7 @@ impl FromStr for Part {
 
 impl Part {
     /// The parts that are meant. Refuses what the mesh does not have, and lists what it has.
-    fn find(&self, mesh: &TetMesh, names: &Names) -> Result<Vec<Found>, String> {
+    pub(super) fn find(&self, mesh: &TetMesh, names: &Names) -> Result<Vec<Found>, String> {
         let name = match &self.key {
             Key::Reference(reference) if self.kind == Kind::Region => {
                 return has("region", *reference, &mesh.tets.refs).map(|()| vec![Found::Region(*reference)]);
@@ -120,7 +121,7 @@ fn has(what: &str, reference: i32, refs: &[i32]) -> Result<(), String> {
 
 impl Found {
     /// Its vertices, some repeatedly.
-    fn vertices(self, mesh: &TetMesh) -> Vec<u32> {
+    pub(super) fn vertices(self, mesh: &TetMesh) -> Vec<u32> {
         match self {
             Self::Surface(wanted) => mesh.triangles.iter().filter(|e| e.1 == wanted).flat_map(|e| e.0).collect(),
             Self::Region(wanted) => mesh.tets.iter().filter(|e| e.1 == wanted).flat_map(|e| e.0).collect(),
@@ -140,35 +141,4 @@ pub fn frozen(parts: &[Part], mesh: &TetMesh, names: &Names) -> Result<Freeze, S
         }
     }
     Ok(freeze)
-}
-
-/// A greatest size on a part.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Local {
-    part: Part,
-    /// In model units.
-    size: f64,
-}
-
-impl FromStr for Local {
-    type Err = String;
-
-    /// `3:h=0.01`, `inlet:h=0.02`, `region:2:h=0.05`.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (part, size) =
-            text.rsplit_once(":h=").ok_or_else(|| format!("`{text}`: write 3:h=0.01 or region:2:h=0.05"))?;
-        Ok(Self { part: part.parse()?, size: crate::cli::positive(size)? })
-    }
-}
-
-/// Bounds the sizes of ln M at the vertices by those of their parts.
-pub fn apply(locals: &[Local], mesh: &TetMesh, names: &Names, logs: &mut [Sym3]) -> Result<(), String> {
-    for local in locals {
-        let size = Sym3::ZERO.plus_identity(-2.0 * local.size.ln());
-        let found = local.part.find(mesh, names)?;
-        for v in found.into_iter().flat_map(|found| found.vertices(mesh)) {
-            logs[v as usize] = logs[v as usize].intersect_logs(&size);
-        }
-    }
-    Ok(())
 }

@@ -1,5 +1,6 @@
 //! What was done: the table on the terminal and the JSON.
 use super::input::Input;
+use super::meet::Meeting;
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
 use crate::cli::table::{Table, place};
@@ -78,6 +79,9 @@ pub struct Report {
     /// How the metric was made, with --field.
     #[serde(skip_serializing_if = "Option::is_none")]
     multiscale: Option<Made>,
+    /// How a number of vertices was met, with --vertices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    vertices_wanted: Option<Meeting>,
     input_vertices: usize,
     input_tets: usize,
     statistics: Statistics,
@@ -128,6 +132,7 @@ impl Report {
             version: env!("CARGO_PKG_VERSION"),
             asked: asked.clone(),
             multiscale: input.made.clone(),
+            vertices_wanted: input.meeting,
             input_vertices: input.mesh.vertices.len(),
             input_tets: input.mesh.tets.len(),
             statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
@@ -156,6 +161,13 @@ impl Report {
         table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
         if let Some(made) = &self.multiscale {
             made.rows(&mut table);
+        }
+        if let Some(Meeting { wanted, complexity, meshes, is_met }) = self.vertices_wanted {
+            let missed =
+                if is_met { "" } else { "; not met: bounds of the sizes, or what must stay, leave no such mesh" };
+            let plural = if meshes == 1 { "mesh" } else { "meshes" };
+            let figures = format_args!("{wanted} ({meshes} {plural} made, the complexity is {complexity:.0}{missed})");
+            table.row("vertices wanted", figures);
         }
         table.statistics(&self.statistics);
         table.fidelity(&self.fidelity);

@@ -142,7 +142,8 @@ impl Refined {
         }
         let names = model.names().clone();
         let place = self.adapted.extracted.classification.clone();
-        let input = Input { mesh: self.start, place, model, source: self.source, made: None, names };
+        let input =
+            Input { mesh: self.start, place, model, source: self.source, made: None, names, raw: None, meeting: None };
         let report = Report::new(team, asked, &input, self.adapted);
         let [prepared, finished] = self.times;
         let report = targets.write(report, [prepared, finished, start.elapsed()])?;

@@ -1,4 +1,6 @@
 //! `geo-adapt cycle`: the loop of solver and adaptation.
+mod check;
+mod plan;
 mod progress;
 
 use super::child::OutOfMemory;
@@ -22,6 +24,9 @@ pub struct Arguments {
     /// Throw away what is in the loop's folder and begin anew
     #[arg(long, requires = "config")]
     restart: bool,
+    /// Say what would be done, and do nothing
+    #[arg(long, requires = "config")]
+    dry_run: bool,
     /// No progress and no table; errors only
     #[arg(short, long)]
     quiet: bool,
@@ -35,6 +40,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let Some(path) = &arguments.config else { return Err("give a configuration".into()) };
     let loaded = Loaded::read(path)?;
+    check::words(&loaded)?;
+    if arguments.dry_run {
+        print(&plan::text(&loaded, arguments.restart)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     interrupt::finish_on("ends after this step (again: ends it at once)");
     let threads = loaded.config.threads.map_or_else(super::cores, usize::from);
     let options = Options { threads, restart: arguments.restart };

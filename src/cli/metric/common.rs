@@ -70,6 +70,43 @@ pub fn write_logs(team: Team<'_>, to: &Target, logs: &[Sym3]) -> Result<(), Fail
     outputs.commit()
 }
 
+/// Vertices of a mesh for a unit of the complexity of its metric, where the boundary is little of it.
+pub const VERTICES_PER_COMPLEXITY: f64 = 2.0;
+
+/// How much the metric is to ask for.
+#[derive(clap::Args)]
+#[group(id = "amount", multiple = false)]
+pub struct Amount {
+    /// Scale the metric to this complexity ∫ √det M, the volume in the metric: about half the number of vertices
+    #[arg(long, value_name = "C", value_parser = super::super::positive, allow_negative_numbers = true)]
+    pub complexity: Option<f64>,
+    /// Scale the metric to so many vertices: a complexity of N/2. `adapt` counts, and tries again where it is off by more than 10 %
+    #[arg(long, value_name = "N", value_parser = super::super::positive, allow_negative_numbers = true)]
+    pub vertices: Option<f64>,
+}
+
+impl Amount {
+    /// The complexity that is asked for, at first.
+    pub fn complexity(&self) -> Option<f64> {
+        self.complexity.or(self.vertices.map(|vertices| vertices / VERTICES_PER_COMPLEXITY))
+    }
+
+    /// The complexity of a command that needs one.
+    pub fn needed(&self) -> Result<f64, Failure> {
+        self.complexity().ok_or_else(|| "give a --complexity or --vertices".into())
+    }
+
+    /// The option that was given.
+    pub fn name(&self) -> &'static str {
+        if self.vertices.is_some() { "--vertices" } else { "--complexity" }
+    }
+}
+
+/// Says that one of the two is needed.
+pub fn needs_amount(command: clap::Command) -> clap::Command {
+    command.mut_group("amount", |group| group.required(true))
+}
+
 /// Bounds of the sizes.
 #[derive(clap::Args)]
 pub struct LimitArguments {

@@ -1,5 +1,5 @@
 //! `geo-adapt metric from-image`.
-use super::common::{self, GradationArgument, LimitArguments, OutputArgument, RunArguments};
+use super::common::{self, Amount, GradationArgument, LimitArguments, OutputArgument, RunArguments};
 use crate::cli::Outcome;
 use crate::cli::files::Files;
 use crate::cli::table::Table;
@@ -14,6 +14,7 @@ use std::process::ExitCode;
 
 /// Arguments of `geo-adapt metric from-image`.
 #[derive(clap::Args)]
+#[command(defer(common::needs_amount))]
 pub struct Arguments {
     /// The image: .nrrd or .nhdr, of 3 axes. Integers are labels: sizes are small at borders between them. Floating-point values are grey:
     /// sizes follow their second derivatives. Without --hmin no size is below half a voxel
@@ -21,9 +22,8 @@ pub struct Arguments {
     /// The mesh, in the image's space: .mesh or .meshb. Its vertices are where the image is looked at: it should resolve what matters
     #[arg(long, value_name = "MESH")]
     mesh: PathBuf,
-    /// The complexity of the metric, with limits and gradation: about half the number of vertices
-    #[arg(long, value_name = "C", value_parser = crate::cli::positive, allow_negative_numbers = true)]
-    complexity: f64,
+    #[command(flatten)]
+    amount: Amount,
     /// Integers are grey values too, not labels
     #[arg(long)]
     grey: bool,
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let half_voxel = 0.5 * image.frame.spacings().into_iter().fold(f64::INFINITY, f64::min);
     // The image has nothing finer.
     let limits = Limits { hmin: Some(limits.hmin.unwrap_or(half_voxel.min(hmax))), hmax: Some(hmax), ..limits };
-    let wish = Wish { complexity: arguments.complexity, limits, gradation: arguments.gradation.ratio() };
+    let wish = Wish { complexity: arguments.amount.needed()?, limits, gradation: arguments.gradation.ratio() };
     let outside = outside(team, &image, &mesh);
     if outside > 0 {
         run.note(&[format!("{outside} vertices lie outside the image and see its border")]);
@@ -123,7 +123,7 @@ fn labels(
 }
 
 fn unreachable(arguments: &Arguments, nearest: f64) -> String {
-    let (name, target) = (arguments.mesh.display(), arguments.complexity);
+    let (name, target) = (arguments.mesh.display(), arguments.amount.complexity().unwrap_or_default());
     format!(
         "{name}: a complexity of {target} cannot be reached, the nearest is {nearest:.4e}; give another --complexity, other limits, or \
          a mesh that is finer where the image has its borders"

@@ -8,6 +8,7 @@ mod grade;
 mod implied;
 mod interpolate;
 mod intersect;
+mod isotropic;
 mod limit;
 mod multiscale;
 mod scale;
@@ -39,6 +40,8 @@ enum Command {
     Interpolate(interpolate::Arguments),
     /// Ask for what each of several metrics of the same mesh asks for
     Intersect(intersect::Arguments),
+    /// Make a metric of sizes, one a vertex, the same in all directions
+    Isotropic(isotropic::Arguments),
     /// Bound sizes and their ratios
     Limit(limit::Arguments),
     /// Make the metric that resolves a field best for its complexity: L^p multiscale
@@ -59,6 +62,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Command::Implied(arguments) => implied::run(arguments),
         Command::Interpolate(arguments) => interpolate::run(arguments),
         Command::Intersect(arguments) => intersect::run(arguments),
+        Command::Isotropic(arguments) => isotropic::run(arguments),
         Command::Limit(arguments) => limit::run(arguments),
         Command::Multiscale(arguments) => multiscale::run(arguments),
         Command::Scale(arguments) => scale::run(arguments),

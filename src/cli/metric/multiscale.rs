@@ -1,5 +1,5 @@
 //! `geo-adapt metric multiscale`.
-use super::common::{self, OutputArgument, RunArguments};
+use super::common::{self, Amount, OutputArgument, RunArguments};
 use super::fields::MultiscaleArguments;
 use crate::cli::Outcome;
 use crate::cli::files::{Files, Outputs};
@@ -13,6 +13,7 @@ use std::process::ExitCode;
 
 /// Arguments of `geo-adapt metric multiscale`.
 #[derive(clap::Args)]
+#[command(defer(common::needs_amount))]
 pub struct Arguments {
     /// The mesh: .mesh or .meshb
     mesh: PathBuf,
@@ -21,9 +22,8 @@ pub struct Arguments {
     fields: Vec<PathBuf>,
     #[command(flatten)]
     output: OutputArgument,
-    /// The complexity of the metric, after limits and gradation: about half the number of vertices
-    #[arg(long, value_name = "C", value_parser = crate::cli::positive, allow_negative_numbers = true)]
-    complexity: f64,
+    #[command(flatten)]
+    amount: Amount,
     #[command(flatten)]
     multiscale: MultiscaleArguments,
     /// Write what was done as JSON
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     stage("start");
     let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
     stage("mesh read");
-    let (mut notices, wanted) = (Vec::new(), (arguments.complexity, Measure::AtVertices));
+    let (mut notices, wanted) = (Vec::new(), (arguments.amount.needed()?, Measure::AtVertices));
     let (logs, made) = arguments.multiscale.make(team, (&mesh, &[]), &arguments.fields, wanted, None, &mut notices)?;
     arguments.run.note(&notices);
     let mut outputs = Outputs::new();

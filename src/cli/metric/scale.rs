@@ -1,5 +1,5 @@
 //! `geo-adapt metric scale`.
-use super::common::{self, OutputArgument, RunArguments};
+use super::common::{self, Amount, OutputArgument, RunArguments};
 use crate::cli::Outcome;
 use crate::cli::files::Files;
 use crate::cli::table::{Table, figure};
@@ -11,14 +11,14 @@ use std::process::ExitCode;
 
 /// Arguments of `geo-adapt metric scale`.
 #[derive(clap::Args)]
+#[command(defer(common::needs_amount))]
 pub struct Arguments {
     /// The mesh: .mesh or .meshb
     mesh: PathBuf,
     /// The metric at its vertices: .sol or .solb
     metric: PathBuf,
-    /// The complexity Σ √det M · V over the vertices
-    #[arg(long, value_name = "C", value_parser = crate::cli::positive, allow_negative_numbers = true)]
-    complexity: f64,
+    #[command(flatten)]
+    amount: Amount,
     #[command(flatten)]
     to: OutputArgument,
     #[command(flatten)]
@@ -34,7 +34,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mesh = common::mesh(run, team, &arguments.mesh)?;
     let mut logs = common::logs(run, team, &arguments.metric, mesh.vertices.len())?;
     let before = common::complexity(team, &arguments.mesh, &mesh, &logs)?;
-    let factor = field::complexity_factor(before, arguments.complexity);
+    let factor = field::complexity_factor(before, arguments.amount.needed()?);
     team.fill(GRAIN, &mut logs, |_, logs| logs.iter_mut().for_each(|log| *log = log.plus_identity(factor.ln())));
     common::write_logs(team, &target, &logs)?;
     let mut table = Table::new();

@@ -1,5 +1,6 @@
 //! Refuses configurations whose keys are each allowed, but not together, before the loop begins.
 use super::{FIRST, Growth, Loaded, NormWord};
+use crate::cycle::field_value::{Value, values_of};
 use crate::metric::multiscale::Norm;
 use crate::view::cut::Plane;
 use std::path::Path;
@@ -10,6 +11,7 @@ impl Loaded {
         self.check_mesh()?;
         self.check_metric()?;
         self.check_schedule()?;
+        self.check_names()?;
         let output = &self.config.output;
         if let Some(cut) = &output.cut {
             cut.parse::<Plane>().map_err(|error| format!("[output] cut: {error}"))?;
@@ -103,6 +105,29 @@ impl Loaded {
             return Err(
                 "[metric] segments and feature_cells belong to the geometry, which geometry = false leaves out".into(),
             );
+        }
+        Ok(())
+    }
+
+    /// Refuses names that the solver does not have, as far as it is known what it has before it runs.
+    fn check_names(&self) -> Result<(), String> {
+        let config = &self.config;
+        let solver = config.solver.solver();
+        if let Some(fields) = solver.fields() {
+            values_of(&config.metric.fields, &fields)?;
+            for (name, probe) in &config.probes {
+                Value::find(&probe.field, &fields).map_err(|error| format!("[probes] {name}: {error}"))?;
+            }
+        }
+        if let (Some(converged), Some(mut known)) = (&config.schedule.converged, solver.functionals()) {
+            known.extend(config.probes.keys().cloned());
+            if !known.contains(&converged.functional) {
+                let (wanted, known) =
+                    (&converged.functional, if known.is_empty() { "none".into() } else { known.join(", ") });
+                return Err(format!(
+                    "[schedule.converged] functional: the solver tells no '{wanted}'; it tells {known}"
+                ));
+            }
         }
         Ok(())
     }

@@ -3,10 +3,12 @@
 //! All relative paths in it begin at the folder of the file.
 mod check;
 mod parts;
+mod words;
 
 pub use parts::{
     Adapt, Converged, FIRST, Growth, Mesh, Metric, NormWord, Output, Probe, Schedule, Transfer, TransferMethod,
 };
+pub use words::option;
 
 use super::solver::Choice;
 use serde::{Deserialize, Serialize};
@@ -91,9 +93,18 @@ pub fn parse(text: &str) -> Result<Config, String> {
     })
 }
 
-/// The keys, as `[table] key`, in which two configurations differ so that finished steps would differ too. Only the end of the loop, what
+/// A key that two configurations differ in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// With its tables: `metric.fields`.
+    pub key: String,
+    /// What it was and is.
+    pub text: String,
+}
+
+/// The keys, as `table.key`, in which two configurations differ so that finished steps would differ too. Only the end of the loop, what
 /// is drawn, and the threads may differ.
-pub fn differences(old: &Config, new: &Config) -> Vec<String> {
+pub fn differences(old: &Config, new: &Config) -> Vec<Difference> {
     let comparable = |config: &Config| {
         let mut config = config.clone();
         config.threads = None;
@@ -108,7 +119,7 @@ pub fn differences(old: &Config, new: &Config) -> Vec<String> {
     found
 }
 
-fn compare(place: &str, old: &serde_json::Value, new: &serde_json::Value, found: &mut Vec<String>) {
+fn compare(place: &str, old: &serde_json::Value, new: &serde_json::Value, found: &mut Vec<Difference>) {
     use serde_json::Value::{Null, Object};
     match (old, new) {
         (Object(a), Object(b)) => {
@@ -119,7 +130,7 @@ fn compare(place: &str, old: &serde_json::Value, new: &serde_json::Value, found:
             }
         }
         _ if old == new => {}
-        _ => found.push(format!("{place} was {old} and is {new}")),
+        _ => found.push(Difference { key: place.into(), text: format!("{place} was {old} and is {new}") }),
     }
 }
 
@@ -156,7 +167,7 @@ mod tests {
         );
         let new = parse(&LEAST.replace("sinfun3", "tanh3").replace("= 100", "= 200")).unwrap();
         assert_eq!(
-            differences(&old, &new),
+            differences(&old, &new).into_iter().map(|difference| difference.text).collect::<Vec<_>>(),
             ["schedule.complexity was 100.0 and is 200.0", "solver.analytic.function was \"sinfun3\" and is \"tanh3\""]
         );
     }

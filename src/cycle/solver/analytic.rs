@@ -1,6 +1,6 @@
 //! An analytic function in place of a solver: nothing to install, and the error is known.
 use super::{Job, Solver};
-use crate::cycle::data::{Call, Solved, text};
+use crate::cycle::data::{Call, FieldName, Solved, text};
 use crate::formats::NamedField;
 use crate::mesh::io::{FieldKind, read_solution};
 use crate::metric::Scalar;
@@ -26,6 +26,14 @@ struct Report {
 impl Solver for Config {
     fn check(&self, _: &Path) -> Result<(), String> {
         Ok(())
+    }
+
+    fn fields(&self) -> Option<Vec<FieldName>> {
+        Some(vec![FieldName { name: "u".into(), values: 1 }])
+    }
+
+    fn functionals(&self) -> Option<Vec<String>> {
+        Some(vec!["error".into()])
     }
 
     fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {

@@ -112,6 +112,11 @@ impl Solver for Config {
         Ok(())
     }
 
+    fn functionals(&self) -> Option<Vec<String>> {
+        // A file may hold any.
+        self.functionals.is_none().then(|| self.printed.keys().cloned().collect())
+    }
+
     fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {
         let data = job.dataset()?;
         handover::write_mesh(&job.folder.join(&self.mesh), &data)?;

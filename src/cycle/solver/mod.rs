@@ -53,6 +53,16 @@ pub trait Solver {
         Vec::new()
     }
 
+    /// The fields that it gives, where that is known before it runs.
+    fn fields(&self) -> Option<Vec<FieldName>> {
+        None
+    }
+
+    /// The functionals that it tells, where that is known before it runs.
+    fn functionals(&self) -> Option<Vec<String>> {
+        None
+    }
+
     /// Writes what the programs need into the folder of the job; which programs to start, in their order.
     ///
     /// # Errors

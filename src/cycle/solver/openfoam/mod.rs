@@ -19,7 +19,7 @@ pub use flow::{Flow, Kind};
 pub use forces::{Coefficients, Walls};
 pub use method::{Method, Scheme, Stage};
 
-use super::{Job, Solver, find_program};
+use super::{FieldName, Job, Solver, find_program};
 use crate::cycle::data::{Call, Solved};
 use crate::formats::foam::{self, CellField};
 use crate::formats::{self, Dataset, NamedField};
@@ -86,6 +86,12 @@ fn courant() -> f64 {
 fn relaxation() -> f64 {
     0.7
 }
+
+/// The fields of a solution, with their values a vertex.
+const FIELDS: [(&str, usize); 5] = [("p", 1), ("T", 1), ("U", 3), ("rho", 1), ("Mach", 1)];
+
+/// What a solve tells besides.
+const FUNCTIONALS: [&str; 4] = ["CL", "CD", "steps", "change"];
 
 /// The folder of the case in that of a step.
 const CASE: &str = "case";
@@ -215,6 +221,14 @@ impl Solver for Config {
         Ok(())
     }
 
+    fn fields(&self) -> Option<Vec<FieldName>> {
+        Some(FIELDS.map(|(name, values)| FieldName { name: name.into(), values }).into())
+    }
+
+    fn functionals(&self) -> Option<Vec<String>> {
+        Some(FUNCTIONALS.map(String::from).into())
+    }
+
     fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {
         let data = job.dataset()?;
         let (kinds, initial) = (self.kinds(&data)?, self.initial(&data)?);
@@ -259,8 +273,8 @@ impl Solver for Config {
         let fields = fields(&self.flow, &data.mesh, &still, &outcome.fields(&case)?)?;
         let Coefficients { lift, drag } = outcome.coefficients;
         let steps = outcome.steps as f64;
-        let functionals = [("CL", lift), ("CD", drag), ("steps", steps), ("change", outcome.change)];
-        Ok(Solved { fields, functionals: functionals.map(|(name, value)| (name.to_owned(), value)).into() })
+        let functionals = FUNCTIONALS.map(String::from).into_iter().zip([lift, drag, steps, outcome.change]);
+        Ok(Solved { fields, functionals: functionals.collect() })
     }
 }
 

@@ -109,6 +109,10 @@ impl Solver for Config {
         self.config.iter().map(|path| base.join(path)).collect()
     }
 
+    fn functionals(&self) -> Option<Vec<String>> {
+        Some(self.functionals.clone())
+    }
+
     fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {
         let data = job.dataset()?;
         handover::write_mesh(&job.folder.join(MESH), &data)?;

@@ -1,0 +1,224 @@
+//! The metric of a run, on the mesh as it was put on its model: bounded, graded, and of its complexity.
+use super::input::{Error, InputArguments};
+use super::local::{self, Places};
+use crate::adapt;
+use crate::cli::metric::fields::Made;
+use crate::geometry::classify::Classification;
+use crate::geometry::{Model, Names};
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::MatchedFaces;
+use crate::metric::held::GREATEST_RATIO;
+use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
+use crate::metric::{self, Background, Interpolation, Limits, Source, Sym3, field, grade, restrict};
+use crate::sizing;
+use crate::tasks::{Team, stage};
+use std::sync::Arc;
+
+/// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
+const GREATEST_COMPLEXITY: f64 = 2e8;
+
+/// The sizes of the geometry take at most this share of the complexity, so that some is left for the field.
+const GEOMETRY_SHARE: f64 = 0.5;
+
+/// What the metric is made of, besides the files of --field.
+#[derive(Clone, Default)]
+pub struct Raw {
+    /// ln M at the vertices, of the file of --metric.
+    pub logs: Option<Vec<Sym3>>,
+    /// The origins of the last vertices, where the mesh was taken apart.
+    pub copies: Vec<u32>,
+}
+
+/// Where the mesh lies.
+#[derive(Clone, Copy)]
+pub(super) struct On<'a> {
+    pub place: &'a Classification,
+    pub model: &'a Model,
+    pub names: &'a Names,
+}
+
+impl On<'_> {
+    /// The places of --local on a mesh.
+    fn places<'a>(&'a self, mesh: &'a TetMesh) -> Places<'a> {
+        Places { mesh, place: self.place, model: self.model, names: self.names }
+    }
+}
+
+impl InputArguments {
+    /// The metric of the complexity that is wanted, and how it was made from a field. Notices are added.
+    pub(super) fn source(
+        &self,
+        team: Team<'_>,
+        (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
+        raw: Raw,
+        on: On<'_>,
+        (complexity, notices): (Option<f64>, &mut Vec<String>),
+    ) -> Result<(Source, Option<Made>), Error> {
+        let (mut source, made) = self.unscaled(team, (mesh, faces), raw, on, (complexity, notices))?;
+        stage("metric ready");
+        if source.cut() > 0 {
+            notices.push(format!(
+                "sizes of more than {GREATEST_RATIO:.0e} times the least at the same vertex were cut to that at {} vertices: a tensor of \
+                 doubles does not hold them",
+                source.cut()
+            ));
+        }
+        self.scale(team, mesh, &mut source, complexity, made.is_some())?;
+        stage("complexity");
+        Ok((source, made))
+    }
+
+    /// The analytic field, or the mesh as background with sizes that are given, or with the metric made from a field; and what was done to
+    /// make it. Of its complexity already, where it is bounded or made.
+    fn unscaled(
+        &self,
+        team: Team<'_>,
+        (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
+        raw: Raw,
+        on: On<'_>,
+        (complexity, notices): (Option<f64>, &mut Vec<String>),
+    ) -> Result<(Source, Option<Made>), Error> {
+        if let Some(field) = self.field.analytic {
+            return Ok((Source::Analytic { field, log_scale: 0.0 }, None));
+        }
+        let named = |error: String| format!("{}: {error}", self.mesh.display());
+        if mesh.tets.is_empty() {
+            return Err(named(adapt::Error::Empty.to_string()).into());
+        }
+        let uniform = self.field.size.map(|h| vec![of_size(h); mesh.vertices.len()]);
+        let (logs, made) = match raw.logs.or(uniform) {
+            Some(logs) if !self.is_bounded() => (logs, None),
+            Some(logs) => (self.bounded(team, mesh, on, logs, complexity).map_err(named)?, None),
+            None => {
+                let complexity = complexity.ok_or("--field needs a --complexity or --vertices")?;
+                let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
+                let wanted = (complexity, Measure::Between(Interpolation::default()));
+                let (mesh, fields) = ((&**mesh, &raw.copies[..]), &self.field.field);
+                let (logs, made) = self.multiscale.make(team, mesh, fields, wanted, fixed.as_deref(), notices)?;
+                (logs, Some(made))
+            }
+        };
+        Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), made))
+    }
+
+    /// Whether sizes that are given are to be changed by more than a scale.
+    fn is_bounded(&self) -> bool {
+        !self.local.is_empty() || self.multiscale.bounds_are_given()
+    }
+
+    /// ln of the metric that is given within the bounds that are given, graded, and of the complexity that is asked for.
+    fn bounded(
+        &self,
+        team: Team<'_>,
+        mesh: &TetMesh,
+        on: On<'_>,
+        mut logs: Vec<Sym3>,
+        wanted: Option<f64>,
+    ) -> Result<Vec<Sym3>, String> {
+        let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth());
+        let fixed = self.local_sizes(team, mesh, on)?;
+        let measure = Measure::Between(Interpolation::default());
+        let complexity = wanted.unwrap_or(1.0);
+        let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref() };
+        if wanted.is_some() {
+            return bounded(team, mesh, &logs, &bounds).map(|found| found.0).map_err(|error| error.to_string());
+        }
+        bounds.apply(team, &mut logs);
+        if let Some(ratio) = gradation {
+            grade(team, mesh, &mut logs, ratio);
+        }
+        Ok(logs)
+    }
+
+    /// ln of the metric that the local sizes ask for, with very large sizes elsewhere; none without local sizes.
+    fn local_sizes(&self, team: Team<'_>, mesh: &TetMesh, on: On<'_>) -> Result<Option<Vec<Sym3>>, String> {
+        if self.local.is_empty() {
+            return Ok(None);
+        }
+        let mut logs = vec![of_size(diameter(team, mesh)); mesh.vertices.len()];
+        local::apply(team, &self.local, &on.places(mesh), &mut logs)?;
+        Ok(Some(logs))
+    }
+
+    /// ln of the metric that holds whatever the field says: that of the geometry, on a CAD model, and of the local sizes.
+    fn fixed(
+        &self,
+        team: Team<'_>,
+        mesh: &TetMesh,
+        on: On<'_>,
+        complexity: f64,
+        notices: &mut Vec<String>,
+    ) -> Result<Option<Vec<Sym3>>, String> {
+        if !self.has_model() || self.no_geometry {
+            return self.local_sizes(team, mesh, on);
+        }
+        let gradation = self.multiscale.growth();
+        let options = self.geometry.options(on.model, self.multiscale.limits()?, None);
+        let (raw, _) = sizing::geometry_metric(team, mesh, on.place, on.model, &options);
+        let mut logs = raw.clone();
+        if let Some(ratio) = gradation {
+            grade(team, mesh, &mut logs, ratio);
+            restrict(team, mesh, &mut logs, ratio);
+        }
+        let own = field::complexity_between(team, mesh, &logs);
+        let most = GEOMETRY_SHARE * complexity;
+        if own > most {
+            let (limits, measure) = (Limits::default(), Measure::Between(Interpolation::default()));
+            let bounds = Bounds { complexity: most, measure, gradation, limits, fixed: None };
+            logs = bounded(team, mesh, &raw, &bounds).map_err(|error| format!("the geometry's metric: {error}"))?.0;
+            let asked = self.amount.name();
+            notices.push(format!(
+                "the geometry alone asks for a complexity of {own:.0}: its sizes are enlarged, to leave half of {complexity} to \
+                 the field (a greater {asked} keeps them, --no-geometry leaves them out)"
+            ));
+        }
+        local::apply(team, &self.local, &on.places(mesh), &mut logs)?;
+        stage("geometry");
+        Ok(Some(logs))
+    }
+
+    /// Scales the source to the complexity asked for, unless it was made for that. Refuses a complexity that no mesh can have.
+    fn scale(
+        &self,
+        team: Team<'_>,
+        mesh: &TetMesh,
+        source: &mut Source,
+        wanted: Option<f64>,
+        is_made: bool,
+    ) -> Result<(), String> {
+        let named = |error: metric::Error| format!("{}: {error}", self.mesh.display());
+        source.check(team, mesh).map_err(named)?;
+        if wanted.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
+            return Ok(());
+        }
+        let own = source.complexity(team, mesh);
+        if !(own > 0.0 && own.is_finite()) {
+            return Err(format!(
+                "{}: the metric's complexity on this mesh is {own}; are mesh and metric in the same units?",
+                self.mesh.display()
+            ));
+        }
+        if let Some(target) = wanted.filter(|_| !is_made && !self.is_bounded()) {
+            source.scale(team, field::complexity_factor(own, target).ln());
+        }
+        let complexity = wanted.unwrap_or(own);
+        if complexity <= GREATEST_COMPLEXITY {
+            return Ok(());
+        }
+        let remedy = match (wanted, self.field.size) {
+            (Some(_), _) => format!("give a smaller {}", self.amount.name()),
+            (None, Some(_)) => "give a larger --size".into(),
+            (None, None) => "are mesh and metric in the same units? else give a --complexity".into(),
+        };
+        let [vertices, most] = [2.0 * complexity, 2.0 * GREATEST_COMPLEXITY];
+        Err(format!(
+            "{}: the metric asks for about {vertices:.0e} vertices, more than the {most:.0e} of the largest mesh; {remedy}",
+            self.mesh.display()
+        ))
+    }
+}
+
+/// ln M of the size h in all directions.
+fn of_size(h: f64) -> Sym3 {
+    Sym3::ZERO.plus_identity(-2.0 * h.ln())
+}
