@@ -238,6 +238,14 @@ double Model::face_area(std::uint32_t index) const
   return properties.Mass();
 }
 
+std::array<double, 3> Model::face_centre(std::uint32_t index) const
+{
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(face(index), properties);
+  const gp_Pnt centre = properties.CentreOfMass();
+  return {centre.X(), centre.Y(), centre.Z()};
+}
+
 double Model::edge_length(std::uint32_t index) const
 {
   const BRepAdaptor_Curve curve(edge(index));

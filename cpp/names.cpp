@@ -162,4 +162,14 @@ LabelRecord Model::label(std::uint32_t dimension, std::uint32_t index) const
   return label == nullptr ? LabelRecord{} : LabelRecord{rust::String::lossy(label->name), rust::String::lossy(label->colour)};
 }
 
+std::shared_ptr<Model> Model::relabelled(rust::Slice<const NamedRecord> named) const
+{
+  auto copy = std::make_shared<Model>(*this);
+  for (const NamedRecord& one : named) {
+    const TopTools_IndexedMapOfShape& shapes = one.dimension == 1 ? edges : one.dimension == 2 ? faces : solids;
+    label_of(copy->labels, shapes(static_cast<int>(one.index) + 1)) = Label{std::string(one.name), std::string(one.colour)};
+  }
+  return copy;
+}
+
 } // namespace geo_adapt

@@ -60,6 +60,7 @@ struct EdgeRecord;
 struct VertexRecord;
 struct Form;
 struct LabelRecord;
+struct NamedRecord;
 struct DomainRecord;
 struct FlawRecord;
 struct HealRecord;
@@ -87,6 +88,7 @@ public:
   VertexRecord vertex_record(std::uint32_t vertex) const;
   Box bounds() const;
   double face_area(std::uint32_t face) const;
+  std::array<double, 3> face_centre(std::uint32_t face) const;
   double edge_length(std::uint32_t edge) const;
   void write_brep(rust::Str path) const;
   /// What OpenCASCADE's own check finds wrong with faces.
@@ -105,6 +107,8 @@ public:
   double solid_volume(std::uint32_t solid) const;
   /// Of an edge (dimension 1), face (2) or solid (3).
   LabelRecord label(std::uint32_t dimension, std::uint32_t index) const;
+  /// The same shape with these labels in place of its own.
+  std::shared_ptr<Model> relabelled(rust::Slice<const NamedRecord> named) const;
   /// The far field without this body.
   std::shared_ptr<Model> domain(const DomainRecord& domain) const;
   /// The model without edges and faces that are narrower than a length, sewn where it is no solid and gaps are narrower; what was done is told.

@@ -238,10 +238,139 @@ fn the_json_is_the_topology() {
     assert_eq!(json["solids"], 1);
     assert_eq!(json["faces"][0]["kind"], "cylinder");
     assert_eq!(json["edges"][1]["seam"], true);
-    assert_eq!(json["edges"][1]["faces"], serde_json::json!([0]));
+    // All counts from 1, as the listing and meshes do.
+    assert_eq!((&json["edges"][1]["number"], &json["faces"][0]["number"]), (&2.into(), &1.into()));
+    assert_eq!(json["edges"][1]["faces"], serde_json::json!([1]));
     let area = json["faces"][0]["area"].as_f64().unwrap();
     assert!((area - 2.0 * std::f64::consts::PI).abs() < 1e-9);
     assert!((json["edges"][0]["length"].as_f64().unwrap() - std::f64::consts::PI).abs() < 1e-9);
+}
+
+/// The listing of a model as JSON.
+fn listing(file: &Path) -> serde_json::Value {
+    let output = program(&["--json"], file);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn vector(value: &serde_json::Value) -> Vec3 {
+    [0, 1, 2].map(|i| value[i].as_f64().unwrap())
+}
+
+#[test]
+fn each_face_has_its_centre_normal_box_and_neighbours() {
+    // A block of 1 by 2 by 3 from the origin.
+    let json = listing(&data("block-inches.igs"));
+    let faces = json["faces"].as_array().unwrap();
+    let middle = [0.5, 1.0, 1.5];
+    for face in faces {
+        let [centre, point, normal] = ["centre", "point", "normal"].map(|key| vector(&face[key]));
+        let axis = (0..3).find(|&i| normal[i].abs() > 0.5).unwrap();
+        let mut expected = middle;
+        expected[axis] *= 1.0 + normal[axis].signum();
+        assert!(distance(centre, expected) < 1e-9 && distance(point, expected) < 1e-9, "{face}");
+        assert!((norm(normal) - 1.0).abs() < 1e-12 && dot(normal, sub(centre, middle)) > 0.0, "{face}");
+        let bounds = [0, 1].map(|end| vector(&face["bounds"][end]));
+        assert!((bounds[1][axis] - bounds[0][axis]).abs() < 1e-6, "{face}");
+        // All but itself and the one opposite.
+        let opposite = faces.iter().find(|other| dot(vector(&other["normal"]), normal) < -0.5).unwrap();
+        let own = [&face["number"], &opposite["number"]].map(|number| number.as_u64().unwrap());
+        let others: Vec<u64> = (1..=6).filter(|number| !own.contains(number)).collect();
+        assert_eq!(face["neighbours"], serde_json::json!(others), "{face}");
+    }
+    // The side of a whole cylinder looks all round; its centre is on the axis.
+    let json = listing(&data("capped-cylinder.step"));
+    let side = &json["faces"][0];
+    let box_of = [0, 1].map(|end| vector(&side["bounds"][end]));
+    let middle = [0, 1, 2].map(|i: usize| 0.5 * (box_of[0][i] + box_of[1][i]));
+    assert!(side["closed"] == true && distance(vector(&side["centre"]), middle) < 1e-6, "{side}");
+    assert!((distance(vector(&side["point"]), middle) - 0.5).abs() < 1e-6, "{side}");
+    let text = String::from_utf8(program(&[], &data("capped-cylinder.step")).stdout).unwrap();
+    assert!(text.contains("all round") && text.contains("neighbours"), "{text}");
+}
+
+/// The program in a folder; what it prints.
+fn run_in(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_geo-adapt")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+#[test]
+fn faces_are_named_beside_the_model_and_keep_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(data("block-inches.igs"), folder.path().join("a.igs")).unwrap();
+    let json = listing(&folder.path().join("a.igs"));
+    let top = json["faces"].as_array().unwrap().iter().find(|face| vector(&face["normal"])[2] > 0.5).unwrap();
+    let top = top["number"].as_u64().unwrap();
+    let others: Vec<u64> = (1..=6).filter(|number| *number != top).collect();
+    let inlet = format!("inlet={},{}", others[0], others[1]);
+    let done = run_in(folder.path(), &["model", "a.igs", "--name", &inlet, "--name", "lid=near:0.5,1,3.5"]);
+    let text = String::from_utf8(done.stdout).unwrap();
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(text.contains(&format!("lid: face {top}\n")) && text.contains("a.igs.names.json"), "{text}");
+    let named = |number: u64| {
+        let json = listing(&folder.path().join("a.igs"));
+        json["faces"][number as usize - 1]["name"].clone()
+    };
+    assert_eq!(
+        (named(top), named(others[1]), named(others[2])),
+        ("lid".into(), "inlet".into(), serde_json::Value::Null)
+    );
+    // Another name is added to those that are there; a mesh of the model has them all.
+    let outlet = format!("outlet={}", others[2]);
+    assert_eq!(run_in(folder.path(), &["model", "a.igs", "--name", &outlet]).status.code(), Some(0));
+    assert_eq!((named(top), named(others[2])), ("lid".into(), "outlet".into()));
+    let made = run_in(folder.path(), &["bootstrap", "a.igs", "-o", "a.meshb", "-q"]);
+    assert_eq!(made.status.code(), Some(0), "{}", String::from_utf8_lossy(&made.stderr));
+    let names = std::fs::read_to_string(folder.path().join("a.names.json")).unwrap();
+    let names: serde_json::Value = serde_json::from_str(&names).unwrap();
+    assert_eq!(names["triangles"][top.to_string()]["name"], "lid");
+    // And the space around it too, whose faces have other numbers.
+    let far = ["bootstrap", "a.igs", "-o", "far.meshb", "--far-field", "box:1", "-q"];
+    assert_eq!(run_in(folder.path(), &far).status.code(), Some(0));
+    let domain = listing(&folder.path().join("far.brep"));
+    let lid = domain["faces"].as_array().unwrap().iter().find(|face| face["name"] == "lid").unwrap();
+    assert!((vector(&lid["centre"])[2] - 3.0).abs() < 1e-6 && lid["number"] != top, "{lid}");
+}
+
+#[test]
+fn names_that_fit_no_face_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(data("block-inches.igs"), folder.path().join("a.igs")).unwrap();
+    let refusal = |arguments: &[&str]| {
+        let output = run_in(folder.path(), &[&["model", "a.igs"], arguments].concat());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        message
+    };
+    assert!(refusal(&["--name", "inlet=7"]).contains("a.igs: --name inlet: there is no face 7; the faces are 1 to 6"));
+    assert!(refusal(&["--name", "inlet=0"]).contains("there is no face 0"));
+    assert!(refusal(&["--name", "a=1", "--name", "b=2,1"]).contains("face 1 would be a and b"));
+    assert!(refusal(&["--name", "a=near:0,1,3"]).contains("equally near"));
+    for wrong in ["a", "a=", "=1", "a=x", "a=near:1,2", "a=near:1,2,inf"] {
+        assert!(refusal(&["--name", wrong]).contains("inlet=3,7"), "{wrong}");
+    }
+    assert!(!folder.path().join("a.igs.names.json").exists());
+    // The names file may be another name of the model: that is never written over.
+    std::fs::hard_link(folder.path().join("a.igs"), folder.path().join("a.igs.names.json")).unwrap();
+    assert!(refusal(&["--name", "inlet=1"]).contains("would be overwritten"));
+    std::fs::remove_file(folder.path().join("a.igs.names.json")).unwrap();
+    std::fs::write(folder.path().join("a.igs.names.json"), r#"{"triangles": {"9": {"name": "lid"}}}"#).unwrap();
+    let message = refusal(&[]);
+    assert!(message.contains("a.igs.names.json: names face 9, but a.igs has 6"), "{message}");
+}
+
+#[test]
+fn names_and_colours_of_cadquery_are_read() {
+    // tests/data/cadquery_names.py
+    let json = listing(&data("cadquery-names.step"));
+    let faces = json["faces"].as_array().unwrap();
+    let looks = |axis: usize, sign: f64| {
+        faces.iter().find(|face| face["closed"] == false && sign * vector(&face["normal"])[axis] > 0.9).unwrap()
+    };
+    assert_eq!((&looks(0, -1.0)["name"], &looks(0, -1.0)["colour"]), (&"inlet".into(), &"#FF0000".into()));
+    assert_eq!(looks(0, 1.0)["name"], "outlet");
+    assert_eq!(looks(1, -1.0)["colour"], "#00FF00");
+    assert_eq!(json["names"]["tetrahedra"]["1"]["name"], "body");
 }
 
 /// Bad input: exit 2, one message that names the file and holds `part`, and nothing else.

@@ -2,7 +2,7 @@
 //! of its own: to join the solids of an assembly takes seconds, so it is done once.
 use super::child::{self, Answer, Task};
 use super::workplace::Workplace;
-use crate::geometry::{Error, Model, names};
+use crate::geometry::{Error, Geometry, Model, names};
 use std::error;
 use std::ffi::OsString;
 use std::path::Path;
@@ -40,13 +40,35 @@ pub fn model(path: &Path) -> Result<Model, Box<dyn error::Error>> {
         Some(model) => model,
         None => Model::read(path)?,
     };
-    // BREP files have no names of their own.
-    let is_brep = path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("brep"));
-    if is_brep && model.names().is_empty() {
-        model
-            .rename(names::read(path).map_err(|error| Error::Model { path: path.into(), message: error.to_string() })?);
-    }
+    give_names(&mut model, path)?;
     Ok(model)
+}
+
+/// Gives a model the names and colours of the file beside it ([`names::beside_model`]), which come before those in the model itself.
+///
+/// # Errors
+/// When that file is no names file, or names a face, edge or solid that is not there.
+pub fn give_names(model: &mut Model, path: &Path) -> Result<(), Box<dyn error::Error>> {
+    let given = names::read_of_model(path)?;
+    let topology = model.topology();
+    let counts = [topology.faces.len(), topology.edges.len(), topology.solids as usize];
+    for ((labels, count), what) in
+        [&given.triangles, &given.edges, &given.tetrahedra].into_iter().zip(counts).zip(["face", "edge", "solid"])
+    {
+        if let Some(number) = labels.keys().find(|&&number| number < 1 || number as usize > count) {
+            let file = names::beside_model(path);
+            return Err(format!(
+                "{}: names {what} {number}, but {} has {count}; take that name out, or move the file away",
+                file.display(),
+                path.display()
+            )
+            .into());
+        }
+    }
+    let mut all = model.names().clone();
+    all.update(given);
+    model.rename(all);
+    Ok(())
 }
 
 /// What a child has read; none where there is no child to be had, or nothing to read.

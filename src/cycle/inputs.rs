@@ -19,7 +19,8 @@ pub fn fingerprints(loaded: &Loaded) -> Result<Fingerprints, Error> {
     let mesh = &loaded.config.mesh;
     let given =
         [&mesh.file, &mesh.bootstrap, &mesh.cad, &mesh.surface].into_iter().flatten().map(|path| loaded.at(path));
-    let mut files: Vec<PathBuf> = given.flat_map(|path| [names::beside(&path), path]).collect();
+    let mut files: Vec<PathBuf> =
+        given.flat_map(|path| [names::beside(&path), names::beside_model(&path), path]).collect();
     files.retain(|path| path.is_file());
     files.extend(loaded.config.solver.solver().inputs(&loaded.base));
     let of = |path: &PathBuf| {

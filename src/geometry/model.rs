@@ -160,6 +160,18 @@ impl Model {
         }
     }
 
+    /// Centre of a face's area, which on a curved face lies beside it; none where the backend does not tell.
+    pub fn face_centre(&self, face: u32) -> Option<Vec3> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.face_centre(face),
+            Model::Discrete(_) => {
+                let _ = face;
+                None
+            }
+        }
+    }
+
     /// Faces whose surface has no copy in Rust: OpenCASCADE evaluates them point by point, which is slower.
     pub fn faces_on_bridge(&self) -> Vec<u32> {
         match self {

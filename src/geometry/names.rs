@@ -1,7 +1,7 @@
 //! Names and colours of the parts of a model, and of a mesh of it; and the names file beside a mesh or a BREP model.
 //!
 //! MESH.names.json (or MESH.meshb.names.json, which is looked for first) says for triangles, edges and tetrahedra what each reference is
-//! called, and its colour; `fields` are the names of the fields of the solution file beside:
+//! called, and its colour; part.step.names.json says it for the faces, edges and solids of a model; `fields` are the names of the fields of the solution file beside:
 //! `{"triangles": {"3": {"name": "inlet", "colour": "#FF0000"}}, "tetrahedra": {"1": {"name": "fluid"}}, "fields": ["Mach"]}`.
 use crate::mesh::io::{self, Batch, Error};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -32,6 +32,20 @@ pub struct Names {
 }
 
 impl Names {
+    /// Takes over the labels of others: their names and colours come before its own.
+    pub fn update(&mut self, others: Names) {
+        let update = |own: &mut BTreeMap<i32, Label>, others: BTreeMap<i32, Label>| {
+            for (number, Label { name, colour }) in others {
+                let label = own.entry(number).or_default();
+                label.name = name.or(label.name.take());
+                label.colour = colour.or(label.colour.take());
+            }
+        };
+        update(&mut self.triangles, others.triangles);
+        update(&mut self.edges, others.edges);
+        update(&mut self.tetrahedra, others.tetrahedra);
+    }
+
     /// Whether nothing has a label.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty() && self.edges.is_empty() && self.tetrahedra.is_empty()
@@ -57,12 +71,32 @@ fn colour<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error
     }
 }
 
-/// The path of the names file of a mesh or model, whether it exists or not. It is the one that is read, and so the one that is written.
+/// The path of the names file of a mesh or solution, whether it exists or not. It is the one that is read, and so the one that is written.
 pub fn beside(of: &Path) -> PathBuf {
-    let mut long = of.as_os_str().to_owned();
-    long.push(".names.json");
-    let long = PathBuf::from(long);
+    let long = of_model(of);
     if long.exists() { long } else { of.with_extension("names.json") }
+}
+
+/// The path of the names file of a CAD model that is written: part.step.names.json, since part.names.json is that of a mesh beside it.
+pub fn of_model(model: &Path) -> PathBuf {
+    let mut long = model.as_os_str().to_owned();
+    long.push(".names.json");
+    long.into()
+}
+
+/// The path of the names file of a CAD model that is read. A BREP file is written with its mesh, and shares the names of that.
+pub fn beside_model(model: &Path) -> PathBuf {
+    let is_brep = model.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("brep"));
+    if is_brep { beside(model) } else { of_model(model) }
+}
+
+/// Reads the names file of a CAD model; none where there is none.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_of_model(model: &Path) -> Result<Names, Error> {
+    let path = beside_model(model);
+    if matches!(path.try_exists(), Ok(false)) { Ok(Names::default()) } else { read_file(&path) }
 }
 
 /// The names of the fields in a names file.
@@ -127,7 +161,15 @@ pub fn add(batch: &mut Batch, of: &Path, names: &Names, fields: &[String]) -> Re
     if names.is_empty() && fields.is_empty() && !path.exists() {
         return Ok(());
     }
-    batch.add(&path, |file| {
+    add_file(batch, &path, names, fields)
+}
+
+/// Adds a names file by its own path.
+///
+/// # Errors
+/// As [`write`].
+pub fn add_file(batch: &mut Batch, path: &Path, names: &Names, fields: &[String]) -> Result<(), Error> {
+    batch.add(path, |file| {
         serde_json::to_writer_pretty(&mut *file, &File { names, fields })?;
         file.write_all(b"\n")
     })

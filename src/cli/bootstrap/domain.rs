@@ -1,6 +1,7 @@
 //! `--far-field`: the domain around a body, built by a child process, since OpenCASCADE can crash on a shape that it cannot cut.
 use super::solids::check_solids;
 use crate::cli::child::{self, Answer, Task};
+use crate::cli::load;
 use crate::cli::workplace::Workplace;
 use crate::geometry::{Evaluate, FaceEntity, FarField, Geometry, Model, SurfaceKind, Topology, names};
 use crate::mesh::vector::{Vec3, distance};
@@ -104,7 +105,8 @@ pub fn child() -> Option<ExitCode> {
 }
 
 fn write(body: &Path, file: &Path, spec: &str, axis: &str) -> Result<(), Box<dyn Error>> {
-    let model = Model::read(body)?;
+    let mut model = Model::read(body)?;
+    load::give_names(&mut model, body)?;
     check_solids(body, &model)?;
     let symmetry = Axis::ALL.iter().find(|(_, name)| *name == axis).map(|(axis, _)| *axis);
     let named = |error: String| format!("{}: {error}", body.display());

@@ -1,8 +1,8 @@
 //! `--heal`: the model without what is too small to mesh, made by a child process, since OpenCASCADE can crash on a faulty shape.
 use super::solids::check_solids;
 use crate::cli::child::{self, Answer, Task};
-use crate::cli::table;
 use crate::cli::workplace::Workplace;
+use crate::cli::{load, table};
 use crate::geometry::{Geometry, Healed, Model, Remedy, names};
 use std::error::Error;
 use std::ffi::OsString;
@@ -71,9 +71,7 @@ pub fn child() -> Option<ExitCode> {
 fn write([path, file, told]: [&OsString; 3], length: &str) -> Result<(), Box<dyn Error>> {
     let path = Path::new(path);
     let mut model = Model::read(path)?;
-    if path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("brep")) && model.names().is_empty() {
-        model.rename(names::read(path)?);
-    }
+    load::give_names(&mut model, path)?;
     let length = match length.parse()? {
         Length::Default => SHARE * model.topology().diagonal(),
         Length::Given(length) => length,

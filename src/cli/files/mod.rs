@@ -71,9 +71,13 @@ impl Files {
         self
     }
 
-    /// Reads CAD models; BREP has its names beside.
-    pub fn reads_models(self, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Self {
-        self.reads_meshes(paths)
+    /// Reads CAD models, with the names beside them.
+    pub fn reads_models(mut self, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Self {
+        for path in paths {
+            self.read(path.as_ref());
+            self.read(&geometry::names::beside_model(path.as_ref()));
+        }
+        self
     }
 
     /// Reads images, whose voxels may be in another file.

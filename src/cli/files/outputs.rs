@@ -42,6 +42,11 @@ impl Outputs {
         formats::add(&mut self.batch, team, &to.path, data, options)
     }
 
+    /// Names alone.
+    pub fn names(&mut self, to: &Target, called: &Names) -> Done {
+        Ok(names::add_file(&mut self.batch, &to.path, called, &[])?)
+    }
+
     /// Fields at vertices.
     pub fn solution(&mut self, team: Team<'_>, to: &Target, solution: &Solution) -> Done {
         Ok(io::add_solution(&mut self.batch, team, &to.path, solution)?)

@@ -61,6 +61,14 @@ pub mod ffi {
         colour: String,
     }
 
+    /// A label of an edge (dimension 1), face (2) or solid (3).
+    struct NamedRecord {
+        dimension: u32,
+        index: u32,
+        name: String,
+        colour: String,
+    }
+
     /// What is wrong with a face.
     struct FlawRecord {
         face: u32,
@@ -141,7 +149,9 @@ pub mod ffi {
         fn vertex_record(self: &Model, vertex: u32) -> Result<VertexRecord>;
         fn bounds(self: &Model) -> Result<[f64; 6]>;
         fn face_area(self: &Model, face: u32) -> Result<f64>;
+        fn face_centre(self: &Model, face: u32) -> Result<[f64; 3]>;
         fn edge_length(self: &Model, edge: u32) -> Result<f64>;
+        fn relabelled(self: &Model, named: &[NamedRecord]) -> Result<SharedPtr<Model>>;
         fn write_brep(self: &Model, path: &str) -> Result<()>;
         /// What OpenCASCADE's own check finds.
         fn flaws(self: &Model) -> Result<Vec<FlawRecord>>;

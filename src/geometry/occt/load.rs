@@ -2,7 +2,7 @@
 use super::OcctModel;
 use super::bridge::ffi;
 use super::entities;
-use crate::geometry::{Error, FarField, Healed, Remedy};
+use crate::geometry::{Error, FarField, Healed, Names, Remedy};
 use crate::mesh::io::{self, check_regular};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -74,24 +74,41 @@ pub fn write(occt: &ffi::Model, path: &Path) -> Result<(), Error> {
     occt.write_brep(name).map_err(|error| fail(error.what().into()))
 }
 
+/// The same model with these names: OpenCASCADE hands them on to what becomes of its faces.
+fn named(occt: &ffi::Model, names: &Names) -> Result<cxx::SharedPtr<ffi::Model>, cxx::Exception> {
+    let counts = [occt.edge_count()?, occt.face_count()?, occt.solid_count()?];
+    let kinds = [&names.edges, &names.triangles, &names.tetrahedra].into_iter().zip(counts).zip(1..);
+    let records = kinds.flat_map(|((labels, count), dimension)| {
+        labels.range(1..=count as i32).map(move |(&number, label)| ffi::NamedRecord {
+            dimension,
+            index: number as u32 - 1,
+            name: label.name.clone().unwrap_or_default(),
+            colour: label.colour.clone().unwrap_or_default(),
+        })
+    });
+    occt.relabelled(&records.collect::<Vec<_>>())
+}
+
 /// The far field without a body: see [`OcctModel::domain`].
-pub fn domain(occt: &ffi::Model, far: &FarField) -> Result<OcctModel, Error> {
+pub fn domain(occt: &ffi::Model, names: &Names, far: &FarField) -> Result<OcctModel, Error> {
     let fail = |message: String| Error::Model { path: "the far field".into(), message };
     let (centre, radius) = far.sphere.unwrap_or_default();
     let (axis, at) = far.symmetry.map_or((-1, 0.0), |(axis, at)| (axis as i32, at));
     let [low, high] = far.bounds;
     let record = ffi::DomainRecord { low, high, centre, radius, axis, at };
     let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
-    let domain = occt.domain(&record).map_err(|error| fail(error.what().into()))?;
+    let domain = named(occt, names).and_then(|occt| occt.domain(&record)).map_err(|error| fail(error.what().into()))?;
     entities::build(domain).map_err(|error| fail(format!("OpenCASCADE cannot use it: {}", error.what())))
 }
 
 /// A model without what is smaller than a length: see [`OcctModel::healed`].
-pub fn healed(occt: &ffi::Model, length: f64) -> Result<(OcctModel, Vec<Healed>), Error> {
+pub fn healed(occt: &ffi::Model, names: &Names, length: f64) -> Result<(OcctModel, Vec<Healed>), Error> {
     let fail = |message: String| Error::Model { path: "the healed model".into(), message };
     let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
     let mut done = Vec::new();
-    let healed = occt.healed(length, &mut done).map_err(|error| fail(error.what().into()))?;
+    let healed = named(occt, names)
+        .and_then(|occt| occt.healed(length, &mut done))
+        .map_err(|error| fail(error.what().into()))?;
     let model =
         entities::build(healed).map_err(|error| fail(format!("OpenCASCADE cannot use it: {}", error.what())))?;
     let what = |what: u32| match what {

@@ -101,7 +101,7 @@ impl OcctModel {
     /// # Errors
     /// [`Error::Model`] when OpenCASCADE cannot subtract the body.
     pub fn domain(&self, far: &FarField) -> Result<Self, Error> {
-        load::domain(&self.occt, far)
+        load::domain(&self.occt, &self.names, far)
     }
 
     /// The model without what is smaller than a length (model units): shorter edges are collapsed, narrower faces merged into their neighbours,
@@ -110,12 +110,18 @@ impl OcctModel {
     /// # Errors
     /// [`Error::Model`] when OpenCASCADE makes no valid shape of it.
     pub fn healed(&self, length: f64) -> Result<(Self, Vec<Healed>), Error> {
-        load::healed(&self.occt, length)
+        load::healed(&self.occt, &self.names, length)
     }
 
     /// Area of a face, in the square of the model's unit; none where OCCT finds none.
     pub fn face_area(&self, face: u32) -> Option<f64> {
         (face < self.topology.faces.len() as u32).then(|| self.occt.face_area(face).ok()).flatten()
+    }
+
+    /// Centre of a face's area; none where OCCT finds none.
+    pub fn face_centre(&self, face: u32) -> Option<[f64; 3]> {
+        let centre = (face < self.topology.faces.len() as u32).then(|| self.occt.face_centre(face).ok()).flatten();
+        centre.filter(|centre| centre.iter().all(|x| x.is_finite()))
     }
 
     /// Whether a face has no copy, so that OCCT evaluates it point by point.

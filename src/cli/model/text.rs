@@ -1,83 +1,20 @@
-//! `geo-adapt model`.
-use super::{Outcome, load};
-use crate::geometry::{EdgeEntity, FaceEntity, Geometry, Label, Model, Names, Topology, VertexEntity};
+//! The listing of a model for people: entities count from 1.
+use super::listing::Face;
+use crate::geometry::{EdgeEntity, Geometry, Label, Model, Topology, VertexEntity};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::PathBuf;
-use std::process::ExitCode;
 
-/// Arguments of `geo-adapt model`.
-#[derive(clap::Args)]
-pub struct Arguments {
-    /// The model: .step, .stp, .iges, .igs, .brep or .egads
-    file: PathBuf,
-    /// Print JSON; there the indices count from 0
-    #[arg(long)]
-    json: bool,
-}
-
-/// Runs the subcommand.
-pub fn run(arguments: &Arguments) -> Outcome {
-    let model = load::model(&arguments.file)?;
-    let text =
-        if arguments.json { serde_json::to_string_pretty(&Listing::new(&model))? + "\n" } else { describe(&model) };
-    super::print(&text)?;
-    Ok(ExitCode::SUCCESS)
-}
-
-/// What --json prints.
-#[derive(Serialize)]
-struct Listing<'a> {
-    solids: u32,
-    bounds: [[f64; 3]; 2],
-    diagonal: f64,
-    tolerance: f64,
-    faces: Vec<Face<'a>>,
-    edges: Vec<Edge<'a>>,
-    vertices: &'a [VertexEntity],
-    /// By numbers from 1, as references of a mesh are.
-    names: &'a Names,
-}
-
-#[derive(Serialize)]
-struct Face<'a> {
-    #[serde(flatten)]
-    entity: &'a FaceEntity,
-    area: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct Edge<'a> {
-    #[serde(flatten)]
-    entity: &'a EdgeEntity,
-    length: Option<f64>,
-}
-
-impl<'a> Listing<'a> {
-    fn new(model: &'a Model) -> Self {
-        let topology = model.topology();
-        let faces = topology.faces.iter().zip(0..).map(|(entity, i)| Face { entity, area: model.face_area(i) });
-        let edges = topology.edges.iter().zip(0..).map(|(entity, i)| Edge { entity, length: model.edge_length(i) });
-        Self {
-            solids: topology.solids,
-            bounds: topology.bounds,
-            diagonal: topology.diagonal(),
-            tolerance: topology.tolerance,
-            faces: faces.collect(),
-            edges: edges.collect(),
-            vertices: &topology.vertices,
-            names: model.names(),
-        }
-    }
-}
-
-/// The listing for people: entities count from 1.
-fn describe(model: &Model) -> String {
+/// The listing.
+pub fn describe(model: &Model) -> String {
     let topology = model.topology();
     let mut text = String::new();
-    let rows: Vec<_> = topology.faces.iter().zip(0..).map(|(face, i)| face_row(i, face, model)).collect();
-    table(&mut text, "Faces", &["", "surface", "area", "u", "v", "tolerance", "edges"], &rows);
+    let faces = Face::all(model);
+    let rows: Vec<_> = faces.iter().map(|face| face_row(face, model)).collect();
+    let head = ["", "surface", "name", "area", "centre", "normal", "neighbours", "edges"];
+    table(&mut text, "Faces", &head, &rows);
+    let rows: Vec<_> = faces.iter().map(|face| shape_row(face, topology.diagonal())).collect();
+    table(&mut text, "Their boxes and parameters", &["", "from", "to", "u", "v", "tolerance"], &rows);
     let rows: Vec<_> = topology.edges.iter().zip(0..).map(|(edge, i)| edge_row(i, edge, model)).collect();
     table(&mut text, "Edges", &["", "curve", "length", "t", "vertices", "tolerance", "faces", ""], &rows);
     let row = |(vertex, i): (&VertexEntity, u32)| {
@@ -106,15 +43,35 @@ fn describe(model: &Model) -> String {
     text
 }
 
-fn face_row(index: u32, face: &FaceEntity, model: &Model) -> Vec<String> {
+fn face_row(face: &Face<'_>, model: &Model) -> Vec<String> {
+    let size = model.topology().diagonal();
+    let label = model.names().triangles.get(&(face.number as i32));
+    let normal = match face.normal {
+        _ if face.closed => "all round".into(),
+        None => "-".into(),
+        Some(normal) => triple(normal, 1.0),
+    };
     vec![
-        (index + 1).to_string(),
-        name(&face.kind),
-        model.face_area(index).map_or("-".into(), number),
-        interval(face.range[0], face.period[0]),
-        interval(face.range[1], face.period[1]),
-        format!("{:.1e}", face.tolerance),
-        list(&face.edges),
+        face.number.to_string(),
+        name(&face.entity.kind),
+        label.and_then(|label| label.name.clone()).unwrap_or_else(|| "-".into()),
+        face.area.map_or("-".into(), number),
+        face.centre.map_or("-".into(), |centre| triple(centre, size)),
+        normal,
+        numbers(&face.neighbours),
+        list(&face.entity.edges),
+    ]
+}
+
+fn shape_row(face: &Face<'_>, size: f64) -> Vec<String> {
+    let entity = face.entity;
+    vec![
+        face.number.to_string(),
+        triple(entity.bounds[0], size),
+        triple(entity.bounds[1], size),
+        interval(entity.range[0], entity.period[0]),
+        interval(entity.range[1], entity.period[1]),
+        format!("{:.1e}", entity.tolerance),
     ]
 }
 
@@ -141,19 +98,41 @@ fn label_rows(labels: &BTreeMap<i32, Label>) -> Vec<Vec<String>> {
     labels.iter().map(|(number, label)| vec![number.to_string(), cell(&label.name), cell(&label.colour)]).collect()
 }
 
-fn summarize(text: &mut String, topology: &Topology) {
+/// How many entities of each kind there are.
+pub fn counts(topology: &Topology) -> [String; 4] {
     let count = |n: usize, one: &str, more: &str| format!("{n} {}", if n == 1 { one } else { more });
-    let seams = topology.edges.iter().filter(|edge| edge.seam).count();
-    let degenerate = topology.edges.iter().filter(|edge| edge.degenerate).count();
-    let parts = [
+    [
         count(topology.solids as usize, "solid", "solids"),
         count(topology.faces.len(), "face", "faces"),
-        count(topology.edges.len(), "edge", "edges") + &format!(" ({seams} seam, {degenerate} degenerate)"),
+        count(topology.edges.len(), "edge", "edges"),
         count(topology.vertices.len(), "vertex", "vertices"),
-    ];
+    ]
+}
+
+/// What tells each face from others, in a line, by its number.
+pub fn about(model: &Model) -> BTreeMap<i32, String> {
+    let size = model.topology().diagonal();
+    let line = |face: Face<'_>| {
+        let mut parts = vec![name(&face.entity.kind)];
+        parts.extend(face.area.map(|area| format!("area {}", number(area))));
+        parts.extend(face.centre.map(|centre| format!("centre {}", triple(centre, size))));
+        parts.extend(match face.normal {
+            Some(normal) if !face.closed => Some(format!("normal {}", triple(normal, 1.0))),
+            _ => None,
+        });
+        parts.push(format!("neighbours {}", numbers(&face.neighbours)));
+        (face.number as i32, parts.join("  ·  "))
+    };
+    Face::all(model).into_iter().map(line).collect()
+}
+
+fn summarize(text: &mut String, topology: &Topology) {
     let corner = |point: [f64; 3]| point.map(|x| number_beside(x, topology.diagonal())).join(" ");
     let [low, high] = topology.bounds;
-    let _ = writeln!(text, "{}", parts.join(", "));
+    let seams = topology.edges.iter().filter(|edge| edge.seam).count();
+    let degenerate = topology.edges.iter().filter(|edge| edge.degenerate).count();
+    let [solids, faces, edges, vertices] = counts(topology);
+    let _ = writeln!(text, "{solids}, {faces}, {edges} ({seams} seam, {degenerate} degenerate), {vertices}");
     let _ = writeln!(text, "box                {}  to  {}", corner(low), corner(high));
     let _ = writeln!(text, "diagonal           {}", number(topology.diagonal()));
     let _ = writeln!(text, "largest tolerance  {:.1e}", topology.tolerance);
@@ -184,6 +163,15 @@ fn number(x: f64) -> String {
     let digits = if x == 0.0 { 0 } else { (5 - x.abs().log10().floor() as i32).clamp(0, 9) as usize };
     let text = format!("{x:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+}
+
+/// Three numbers, without blanks: a cell, and an argument of `--name NAME=near:`.
+fn triple(vector: [f64; 3], size: f64) -> String {
+    vector.map(|x| number_beside(x, size)).join(",")
+}
+
+fn numbers(numbers: &[u32]) -> String {
+    numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(" ")
 }
 
 /// Indices from 1.
