@@ -7,13 +7,14 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[group(required = true, multiple = false)]
 pub struct FieldArguments {
-    /// The metric at the vertices of the mesh: .sol or .solb
+    /// The metric at the vertices of the mesh: .sol or .solb, or the name of one in the mesh's file
     #[arg(long, value_name = "FILE")]
     pub metric: Option<PathBuf>,
     /// An analytic metric: linear, polar-1 or polar-2
     #[arg(long, value_name = "NAME")]
     pub analytic: Option<Analytic>,
-    /// A field at the vertices, .sol or .solb, whose multiscale metric is made for --complexity; again for each further step in time
+    /// A field at the vertices whose multiscale metric is made for --complexity: .sol, .solb, a restart of SU2 (.csv, .dat), or the name of a
+    /// field in the mesh's file; again for each further step in time
     #[arg(long, value_name = "FIELD", requires = "complexity")]
     pub field: Vec<PathBuf>,
 }

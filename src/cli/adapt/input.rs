@@ -1,5 +1,6 @@
 //! What a run begins with: the mesh, where it lies on its model, and the metric.
 use super::super::files::Files;
+use super::super::files::reading::{self, Carrier};
 use super::super::load;
 use super::super::names::on_mesh;
 use super::field::FieldArguments;
@@ -9,15 +10,17 @@ use crate::cli::metric::fields::{Made, MultiscaleArguments};
 use crate::cli::metric::geometry::GeometryArguments;
 use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::place;
+use crate::formats::{Dataset, NamedField};
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::complete_matched;
-use crate::geometry::{Model, Names, names};
+use crate::geometry::{Model, Names};
 use crate::mesh::adjacency::MatchedFaces;
+use crate::mesh::io::Read;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
-use crate::mesh::{TetMesh, crossing, io};
+use crate::mesh::{TetMesh, crossing};
 use crate::metric::held::GREATEST_RATIO;
 use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
-use crate::metric::{self, Background, Field, Interpolation, Limits, Source, Sym3, field, grade, restrict};
+use crate::metric::{self, Background, Interpolation, Limits, Source, Sym3, field, grade, restrict};
 use crate::sizing;
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
@@ -36,7 +39,7 @@ const APART: &str = "The mesh hangs together in edges or vertices alone, where i
 /// The inputs of a run.
 #[derive(clap::Args)]
 pub struct InputArguments {
-    /// The mesh: .mesh or .meshb
+    /// The mesh, in any format that `convert` reads
     pub mesh: PathBuf,
     /// The CAD model the boundary lies on: .step, .stp, .iges, .igs, .brep or .egads. Without it the surface of the input mesh
     #[arg(long, value_name = "MODEL")]
@@ -69,8 +72,10 @@ pub struct Given {
     pub mesh: TetMesh,
     /// ln M at its vertices.
     pub logs: Option<Vec<Sym3>>,
-    /// What its references are called, by the file beside it.
+    /// What its references are called, by its file or the one beside it.
     pub names: Names,
+    /// The fields of its file.
+    pub fields: Vec<NamedField>,
     /// Whether it is the result of a cycle: manifold, and with a report that tells where its boundary crosses itself.
     pub is_result: bool,
 }
@@ -106,22 +111,25 @@ impl InputArguments {
             .reads_meshes([mesh])
             .reads_models(cad)
             .reads_any(&surface.surface)
-            .reads(&field.metric)
-            .reads(&field.field)
+            .reads_fields(&field.metric, mesh)
+            .reads_fields(&field.field, mesh)
     }
 
     /// Reads the mesh and, if it comes from a file, its metric. What the user should know is added to `notices`.
     pub fn read(&self, team: Team<'_>, notices: &mut Vec<String>) -> Result<Given, Error> {
-        let read = io::read_mesh_on(team, &self.mesh)?;
+        let Read { content, notices: found } = reading::mesh(team, &self.mesh)?;
         stage("mesh read");
-        notices.extend(read.notices);
-        let mesh = read.content;
-        let names = names::read(&self.mesh)?;
-        let Some(path) = &self.field.metric else { return Ok(Given { mesh, logs: None, names, is_result: false }) };
-        let read = Field::read_logs(team, path, mesh.vertices.len())?;
-        notices.extend(read.notices);
-        stage("metric read");
-        Ok(Given { mesh, logs: Some(read.content), names, is_result: false })
+        notices.extend(found);
+        let mut logs = None;
+        if let Some(asked) = &self.field.metric {
+            let vertices = Some(content.mesh.vertices.len());
+            let (read, _) = reading::logs(team, asked, Carrier::of(&self.mesh, &content), vertices)?;
+            notices.extend(read.notices);
+            logs = Some(read.content);
+            stage("metric read");
+        }
+        let Dataset { mesh, names, fields } = content;
+        Ok(Given { mesh, logs, names, fields, is_result: false })
     }
 
     /// Completes the boundary, puts the mesh on its model, and brings the metric to its complexity.
@@ -133,7 +141,7 @@ impl InputArguments {
         cad: Option<Model>,
         notices: &mut Vec<String>,
     ) -> Result<Input, Error> {
-        let Given { mut mesh, mut logs, mut names, is_result } = given;
+        let Given { mut mesh, mut logs, mut names, fields, is_result } = given;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let added = complete_matched(team, &mut mesh, &faces);
         stage("boundary complete");
@@ -154,7 +162,8 @@ impl InputArguments {
         if names.is_empty() {
             names = on_mesh(&mesh, &place, &model);
         }
-        let (mut source, made) = self.source(team, (&mesh, faces, &copies), logs, (&place, &model, &names), notices)?;
+        let (mut source, made) =
+            self.source(team, (&mesh, faces, &copies), (logs, &fields), (&place, &model, &names), notices)?;
         stage("metric ready");
         if source.cut() > 0 {
             notices.push(format!(
@@ -212,7 +221,7 @@ impl InputArguments {
         &self,
         team: Team<'_>,
         (mesh, faces, copies): (&Arc<TetMesh>, MatchedFaces, &[u32]),
-        logs: Option<Vec<Sym3>>,
+        (logs, fields): (Option<Vec<Sym3>>, &[NamedField]),
         on: (&Classification, &Model, &Names),
         notices: &mut Vec<String>,
     ) -> Result<(Source, Option<Made>), Error> {
@@ -230,8 +239,10 @@ impl InputArguments {
                 let complexity = self.complexity.ok_or("--field needs a --complexity")?;
                 let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
                 let wanted = (complexity, Measure::Between(Interpolation::default()));
+                let vertices = &mesh.vertices[..mesh.vertices.len() - copies.len()];
+                let asked = (&self.field.field[..], Carrier { path: &self.mesh, vertices, fields });
                 let (logs, made) =
-                    self.multiscale.make(team, (mesh, copies), &self.field.field, wanted, fixed.as_deref(), notices)?;
+                    self.multiscale.make(team, (mesh, copies), asked, wanted, fixed.as_deref(), notices)?;
                 (logs, Some(made))
             }
         };

@@ -3,7 +3,7 @@ use super::super::NamedField;
 use super::super::cells::cells_to_vertices;
 use super::super::error;
 use super::source::Source;
-use super::tags::Tags;
+use super::super::tags::Tags;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, FieldKind};
 use crate::tasks::Team;
