@@ -70,9 +70,10 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
     assert_says(&refused_output(&input, &missing, &field), &["out.meshb", "no/where", "make it first"]);
     let report = text(&work.path("no/report.json"));
     assert_says(&work.refusal(&input, &["--metric", &metric, "--report", &report]), &["report.json", "make it first"]);
-    for name in ["out.vtk", "out", "out.msh"] {
-        assert_says(&refused_output(&input, &work.path(name), &field), &[name, ".mesh or .meshb"]);
+    for name in ["out.xyz", "out"] {
+        assert_says(&refused_output(&input, &work.path(name), &field), &[name, "these are: .mesh, .meshb"]);
     }
+    assert_says(&refused_output(&input, &work.path("out.sol"), &field), &["out.sol", "holds fields and no mesh"]);
     let folder = work.path("folder.meshb");
     std::fs::create_dir(&folder).unwrap();
     assert_says(&refused_output(&input, &folder, &field), &["folder.meshb", "folder"]);
@@ -83,14 +84,14 @@ fn missing_and_foreign_files_are_named() {
     let (work, _, input, metric) = prepared();
     assert_says(&work.refusal(&work.path("none.meshb"), &["--metric", &metric]), &["none.meshb", "No such file"]);
     assert_says(&work.refusal(&input, &["--metric", &text(&work.path("none.solb"))]), &["none.solb", "No such file"]);
-    let foreign = work.path("mesh.vtk");
-    std::fs::write(&foreign, "# vtk DataFile Version 2.0\n").unwrap();
-    assert_says(&work.refusal(&foreign, &["--metric", &metric]), &["mesh.vtk", "no mesh or solution file"]);
-    assert_says(&work.refusal(&input, &["--metric", &text(&foreign)]), &["mesh.vtk", "no mesh or solution file"]);
+    let foreign = work.path("mesh.xyz");
+    std::fs::write(&foreign, "# a file of some other program\n").unwrap();
+    assert_says(&work.refusal(&foreign, &["--metric", &metric]), &["mesh.xyz", "the format is not known"]);
+    assert_says(&work.refusal(&input, &["--metric", &text(&foreign)]), &["mesh.xyz", "the format is not known"]);
     let cad = text(&work.path("none.step"));
     assert_says(&work.refusal(&input, &["--metric", &metric, "--cad", &cad]), &["none.step"]);
     let cad = text(&foreign);
-    assert_says(&work.refusal(&input, &["--metric", &metric, "--cad", &cad]), &["mesh.vtk"]);
+    assert_says(&work.refusal(&input, &["--metric", &metric, "--cad", &cad]), &["mesh.xyz"]);
     // A mesh where the metric should be, and the other way round.
     assert_says(&work.refusal(&input, &["--metric", &text(&input)]), &["in.meshb"]);
     assert_says(&work.refusal(Path::new(&metric), &["--metric", &metric]), &["size.solb"]);

@@ -245,7 +245,7 @@ fn outputs_are_looked_at_before_the_work() {
     let run = |output: &Path, arguments: &[&str]| {
         complaint(&program().arg("image-mesh").arg(&path).arg("-o").arg(output).args(arguments).output().unwrap())
     };
-    says(&run(&work.path("out.vtk"), &[]), &["out.vtk", ".mesh or .meshb"]);
+    says(&run(&work.path("out.xyz"), &[]), &["out.xyz", "these are: .mesh, .meshb"]);
     says(&run(&work.path("no/out.mesh"), &[]), &["there is no folder"]);
     let image = path.to_str().unwrap();
     says(&run(&work.path("out.mesh"), &["--report", image]), &["would be overwritten"]);

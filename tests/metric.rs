@@ -222,8 +222,8 @@ fn limit_bounds_sizes_and_their_ratio() {
     says(&bench.refusal(&["limit", &a, "--hmin", "-1"]), &["--hmin", "positive"]);
     says(&bench.refusal(&["limit", &a, "--hmin", "2", "--hmax", "1"]), &["--hmin 2", "--hmax 1"]);
     says(&bench.refusal(&["limit", &a, "--aspect-ratio", "0.5"]), &["--aspect-ratio", "1 or more"]);
-    let wrong = bench.path("out.vtk");
-    says(&complaint(&metric(&["limit", &a, "--hmin", "1", "-o", &wrong])), &["out.vtk", ".solb"]);
+    let wrong = bench.path("out.xyz");
+    says(&complaint(&metric(&["limit", &a, "--hmin", "1", "-o", &wrong])), &["out.xyz", ".solb"]);
 }
 
 #[test]

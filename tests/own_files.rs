@@ -30,6 +30,9 @@ const COMMANDS: &[Case] = &[
     ),
     case("adapt a.meshb --field f.solb --complexity 9 -o OUT", "mesh", &["a.meshb", "f.solb"]),
     case("adapt a.meshb --metric a.solb -o new.meshb --report OUT", "json", &["a.meshb", "a.solb", "a.names.json"]),
+    case("adapt a.vtu --field Mach --complexity 9 -o OUT", "vtu", &["a.vtu"]),
+    case("adapt a.meshb --field Mach --complexity 9 -o OUT", "msh", &["a.meshb", "a.solb", "a.names.json"]),
+    case("metric multiscale a.b8.ugrid a.vtu --complexity 9 -o OUT", "vtu", &["a.b8.ugrid", "a.mapbc", "a.vtu"]),
     case("bootstrap a.brep -o OUT", "meshb", &["a.brep", "a.names.json"]),
     case("bootstrap a.brep -o new.meshb --report OUT", "json", &["a.brep", "a.names.json"]),
     case("classify a.meshb --cad a.brep -o OUT", "meshb", &["a.meshb", "a.brep", "a.names.json"]),
@@ -70,7 +73,8 @@ const COMMANDS: &[Case] = &[
 ];
 
 /// The files, whose content no command gets to see.
-const FILES: [&str; 16] = [
+const FILES: [&str; 17] = [
+    "a.vtu",
     "a.meshb",
     "a.solb",
     "a.names.json",

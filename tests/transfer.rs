@@ -251,7 +251,7 @@ fn bad_input_is_told() {
         pair.refusal(["new.meshb", "old.solb", "old.meshb"], &[]),
         &["old.solb", "343 vertices", "512", "mesh they belong to"],
     );
-    says(pair.refusal(["old.meshb", "new.meshb", "old.meshb"], &[]), &["new.meshb", "SolAtVertices"]);
+    says(pair.refusal(["old.meshb", "new.meshb", "old.meshb"], &[]), &["new.meshb", "no field at the vertices"]);
     says(pair.refusal(good, &["--metric"]), &["old.solb", "symmetric tensors"]);
     says(pair.refusal(good, &["--metric", "--conservative"]), &["--conservative"]);
     says(pair.refusal(good, &["-o", &pair.path("old.solb")]), &["old.solb", "is an input"]);

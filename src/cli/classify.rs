@@ -1,12 +1,10 @@
 //! `geo-adapt classify`.
-use super::files::{Files, Outputs};
+use super::files::{Files, Outputs, reading};
 use super::names::on_mesh;
 use super::surface::SurfaceArguments;
 use super::{Outcome, load};
 use crate::geometry::classify::{Associated, Options, Report, associate, classify};
 use crate::geometry::discrete::complete_boundary;
-use crate::geometry::names;
-use crate::mesh::io;
 use crate::tasks::{Plan, Team};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -15,14 +13,14 @@ use std::process::ExitCode;
 /// Arguments of `geo-adapt classify`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb
+    /// The mesh, in any format that `convert` reads
     mesh: PathBuf,
     /// The model: .step, .stp, .iges, .igs, .brep or .egads
     #[arg(long, value_name = "MODEL", required_unless_present = "surface")]
     cad: Option<PathBuf>,
     #[command(flatten)]
     surface: SurfaceArguments,
-    /// Where the mesh with its association goes
+    /// Where the mesh with its association goes: .mesh or .meshb; other formats that `convert` writes hold no association
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     output: PathBuf,
     /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model
@@ -38,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let target = files.writes_mesh(&arguments.output, "-o")?;
     let pool = super::pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mut read = io::read_mesh_on(team, &arguments.mesh)?;
+    let mut read = reading::mesh(team, &arguments.mesh)?;
     let (model, path) = match (&arguments.cad, &arguments.surface.surface) {
         (Some(path), _) => (load::model(path)?, path),
         (None, Some(path)) => {
@@ -47,7 +45,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
         (None, None) => return Err("give a model: --cad, or --surface".into()),
     };
-    let mesh = &mut read.content;
+    let mesh = &mut read.content.mesh;
     let added = complete_boundary(team, mesh);
     if added > 0 {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
@@ -55,14 +53,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let options = Options { tolerance: arguments.tolerance, ..Options::default() };
     let (classification, report) = classify(team, mesh, &model, &options)
         .map_err(|error| format!("{} on {}: {error}", arguments.mesh.display(), path.display()))?;
-    let given = names::read(&arguments.mesh)?;
+    let given = std::mem::take(&mut read.content.names);
     let associated = associate(mesh, &classification);
     let known = !given.is_empty() && !associated.references_replaced;
-    let names = if known { given } else { on_mesh(mesh, &classification, &model) };
+    read.content.names = if known { given } else { on_mesh(mesh, &classification, &model) };
     let mut outputs = Outputs::new();
-    outputs.mesh(&target, mesh, &names)?;
+    let lost = outputs.mesh(team, &target, &read.content)?;
     outputs.commit()?;
-    for notice in read.notices.iter().chain(&report.notices) {
+    for notice in read.notices.iter().chain(&report.notices).chain(&lost) {
         crate::cli::note(notice);
     }
     super::print(&table(&report, associated))?;

@@ -2,10 +2,10 @@
 use super::Outcome;
 use super::files::{Files, Outputs};
 use super::table::{Table, figure};
-use crate::geometry::Names;
+use crate::formats::Dataset;
 use crate::image::{self, Counts, Domain, Extracted, Limits, Wish};
 use crate::mesh::vector::volume6;
-use crate::tasks::{Backend, Pool, stage};
+use crate::tasks::{Backend, Plan, Pool, Team, stage};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ use std::time::Instant;
 pub struct Arguments {
     /// The image: .nrrd or .nhdr, of 3 axes. Integers are labels: 0 is outside, every other a region with that reference
     image: PathBuf,
-    /// Where the mesh goes: .mesh or .meshb
+    /// Where the mesh goes, in any format that `convert` writes
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Greatest circumradius of a tetrahedron, in the image's units [default: 4 voxels]
@@ -128,10 +128,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
         seconds,
     };
     let mut outputs = Outputs::new();
-    outputs.mesh(&target, &mesh, &Names::default())?;
+    let team = Team::new(&pool, Plan::default());
+    let lost = outputs.mesh(team, &target, &Dataset { mesh, ..Dataset::default() })?;
     outputs.json(json.as_ref(), &report)?;
     outputs.commit()?;
     if !arguments.quiet {
+        lost.iter().for_each(super::note);
         super::print(&describe(&report))?;
     }
     Ok(ExitCode::SUCCESS)

@@ -1,11 +1,13 @@
 //! `geo-adapt inspect`.
 use super::Outcome;
+use super::files::reading::{self, Carrier};
 use super::surface::SurfaceArguments;
 use super::table::{Table, place};
+use crate::formats::Dataset;
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Model, classify};
 use crate::mesh::TetMesh;
-use crate::mesh::io::read_mesh;
+use crate::mesh::io::Read;
 use crate::mesh::validity::{self, Validity};
 use crate::mesh::vector::{Vec3, add, scale};
 use crate::metric::{Analytic, Field, Statistics, Sym3};
@@ -17,9 +19,9 @@ use std::process::ExitCode;
 /// Arguments of `geo-adapt inspect`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb
+    /// The mesh, in any format that `convert` reads
     mesh: PathBuf,
-    /// The metric at the mesh's vertices: .sol or .solb
+    /// The metric at the mesh's vertices: .sol or .solb, or the name of one in the mesh's file
     #[arg(long, value_name = "FILE", conflicts_with = "analytic")]
     metric: Option<PathBuf>,
     /// An analytic metric field
@@ -71,16 +73,17 @@ struct Inspection {
 pub fn run(arguments: &Arguments) -> Outcome {
     let pool = super::pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = read(&arguments.mesh)?;
+    let data = read(team, &arguments.mesh)?;
+    let mesh = &data.mesh;
     let model = arguments.surface.model_or(team, arguments.cad.as_deref())?;
-    let statistics = match metrics(arguments, &mesh)? {
-        Some(metrics) => Statistics::in_metric(team, &mesh, &metrics),
-        None => Statistics::in_space(team, &mesh),
+    let statistics = match metrics(team, arguments, &data)? {
+        Some(metrics) => Statistics::in_metric(team, mesh, &metrics),
+        None => Statistics::in_space(team, mesh),
     };
-    let validity = validity::check_on(team, &mesh);
-    let cad = model.map(|model| on_model(team, &mesh, &model));
+    let validity = validity::check_on(team, mesh);
+    let cad = model.map(|model| on_model(team, mesh, &model));
     let valid = validity.is_valid() && !matches!(cad, Some(Cad::Off { .. }));
-    let worst_tet = worst(&mesh, &statistics);
+    let worst_tet = worst(mesh, &statistics);
     let inspection = Inspection { valid, validity, statistics, worst_tet, cad };
     let text = if arguments.json { serde_json::to_string_pretty(&inspection)? + "\n" } else { describe(&inspection) };
     super::print(&text)?;
@@ -88,10 +91,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 /// Reads the mesh and shows the notices.
-fn read(path: &Path) -> Result<TetMesh, Box<dyn std::error::Error>> {
-    let read = read_mesh(path)?;
+fn read(team: Team<'_>, path: &Path) -> Result<Dataset, Box<dyn std::error::Error>> {
+    let read = reading::mesh(team, path)?;
     show(&read.notices);
-    if read.content.tets.is_empty() {
+    if read.content.mesh.tets.is_empty() {
         return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
     }
     Ok(read.content)
@@ -104,13 +107,17 @@ fn show(notices: &[String]) {
 }
 
 /// The metric at the vertices, when one is given.
-fn metrics(arguments: &Arguments, mesh: &TetMesh) -> Result<Option<Vec<Sym3>>, crate::metric::Error> {
-    if let Some(path) = &arguments.metric {
-        let read = Field::read(path, mesh.vertices.len())?;
-        show(&read.notices);
-        return Ok(Some(read.content.metrics));
+fn metrics(
+    team: Team<'_>,
+    arguments: &Arguments,
+    data: &Dataset,
+) -> Result<Option<Vec<Sym3>>, Box<dyn std::error::Error>> {
+    if let Some(asked) = &arguments.metric {
+        let Read { content, notices } = reading::metric(team, asked, Carrier::of(&arguments.mesh, data))?;
+        show(&notices);
+        return Ok(Some(Field::of_solution(asked, &content.solution, data.mesh.vertices.len())?.metrics));
     }
-    Ok(arguments.analytic.map(|field| mesh.vertices.iter().map(|&p| field.at(p)).collect()))
+    Ok(arguments.analytic.map(|field| data.mesh.vertices.iter().map(|&p| field.at(p)).collect()))
 }
 
 fn on_model(team: Team<'_>, mesh: &TetMesh, model: &Model) -> Cad {

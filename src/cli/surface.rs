@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[group(skip)]
 pub struct SurfaceArguments {
-    /// Instead of --cad, the surface that the boundary lies on: .stl, .obj, .ply, or the boundary of a mesh, .mesh, .meshb, .vtu, .msh. In a
+    /// Instead of --cad, the surface that the boundary lies on: .stl, .obj, .ply, or the boundary of a mesh of any format. In a
     /// loop: the first mesh, so that nothing drifts
     #[arg(long, value_name = "FILE", conflicts_with = "cad")]
     pub surface: Option<PathBuf>,

@@ -1,8 +1,10 @@
 //! `geo-adapt transfer`.
 use super::Outcome;
+use super::files::reading::{self, Carrier, Fields};
 use super::files::{Files, Outputs};
 use super::metric::common::{self, Failure, OutputArgument, RunArguments};
 use super::table::{Table, figure};
+use crate::formats::Dataset;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::io::{Solution, SolutionField};
 use crate::mesh::locate::Locator;
@@ -19,11 +21,12 @@ use std::time::Instant;
 /// Arguments of `geo-adapt transfer`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The mesh that has the fields: .mesh or .meshb
+    /// The mesh that has the fields, in any format that `convert` reads
     old_mesh: PathBuf,
-    /// The fields at its vertices: .sol or .solb
+    /// The fields at its vertices: .sol, .solb, a restart of SU2 (.csv, .dat), the mesh again where its file holds them, or the name of one of
+    /// these
     old_fields: PathBuf,
-    /// The mesh that gets them: .mesh or .meshb
+    /// The mesh that gets them
     new_mesh: PathBuf,
     #[command(flatten)]
     to: OutputArgument,
@@ -103,15 +106,17 @@ struct Seconds {
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     let Arguments { run, to, .. } = arguments;
-    let mut files =
-        Files::new().reads_meshes([&arguments.old_mesh, &arguments.new_mesh]).reads([&arguments.old_fields]);
+    let mut files = Files::new().reads_meshes([&arguments.old_mesh, &arguments.new_mesh]);
+    files = files.reads_fields([&arguments.old_fields], &arguments.old_mesh);
     let target = to.target(&mut files)?;
     let json = common::report(&mut files, arguments.report.as_ref())?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let old = common::mesh(run, team, &arguments.old_mesh)?;
-    let fields = arguments.fields(team, old.vertices.len())?;
-    let new = common::mesh(run, team, &arguments.new_mesh)?;
+    let fields = arguments.fields(team, &old)?;
+    let (old, fields, called) = (old.mesh, fields.solution, fields.names);
+    let to_mesh = common::mesh(run, team, &arguments.new_mesh)?;
+    let new = &to_mesh.mesh;
     let read = start.elapsed().as_secs_f64();
     stage("read");
     let faces = MatchedFaces::of(team, &old.tets.nodes);
@@ -123,7 +128,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let (found, conserved) = match arguments.conservative {
         Some(kept) => {
             let keep = if kept == Kept::Mean { Keep::Mean } else { Keep::Mass };
-            let found = conservative(team, &locator, &new, &places, width, &rows, keep);
+            let found = conservative(team, &locator, new, &places, width, &rows, keep);
             let Conserved { values, .. } = found.as_ref().map_err(|error| arguments.named(error))?;
             (values.clone(), found.ok())
         }
@@ -133,10 +138,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let transferred = start.elapsed().as_secs_f64();
     stage("transferred");
     let mut outputs = Outputs::new();
-    outputs.solution(team, &target, &solution(team, &fields, width, &found))?;
+    let transferred_fields = Fields { solution: solution(team, &fields, width, &found), names: called, mesh: None };
+    run.note(&outputs.fields(team, &target, transferred_fields, common::on(&to_mesh))?);
     stage("written");
     let (old_volume, before) = measure(team, locator.mesh(), width, &rows);
-    let (new_volume, after) = measure(team, &new, width, &found);
+    let (new_volume, after) = measure(team, new, width, &found);
     let value = |(c, (field, component)): (usize, (usize, usize))| Value {
         field,
         component,
@@ -166,13 +172,17 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
-    /// Reads the fields, of a mesh of so many vertices.
-    fn fields(&self, team: Team<'_>, vertices: usize) -> Result<Solution, Failure> {
-        if self.metric {
-            // Read as a metric, so that other files are refused with the same message as in all commands; the notices come below.
-            Field::read_logs(team, &self.old_fields, vertices)?;
+    /// Reads the fields of the old mesh.
+    fn fields(&self, team: Team<'_>, old: &Dataset) -> Result<Fields, Failure> {
+        let of = Carrier::of(&self.old_mesh, old);
+        if !self.metric {
+            return common::fields(&self.run, team, &self.old_fields, of);
         }
-        common::fields(&self.run, team, &self.old_fields, &self.old_mesh, vertices)
+        // Read as a metric, so that other files are refused with the same message as in all commands.
+        let solution = reading::metric(team, &self.old_fields, of)?;
+        self.run.note(&solution.notices);
+        Field::logs_of_solution(team, &self.old_fields, &solution.content.solution, Some(of.vertices.len()))?;
+        Ok(solution.content)
     }
 
     fn method(&self) -> &'static str {

@@ -1,7 +1,7 @@
 //! Which format a file has.
 use super::ugrid::Encoding;
 use super::{error, foam};
-use crate::mesh::io::Error;
+use crate::mesh::io::{Error, read_head};
 use std::path::Path;
 
 /// A format of files.
@@ -13,6 +13,8 @@ pub enum Format {
     Su2,
     /// VTK's unstructured grids: .vtu.
     Vtu,
+    /// VTK's legacy files: .vtk.
+    LegacyVtk,
     /// gmsh's meshes: .msh, .msh2, .msh4; written as version 4.1, or 2.2.
     Msh {
         /// Whether version 4.1 is written.
@@ -31,23 +33,31 @@ pub enum Format {
 }
 
 /// What can be read and written.
-const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .msh, .msh2, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
+const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .msh, .msh2, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
      a new one is named with a / at its end); fields alone .sol, .solb, .csv, .dat";
 
+/// Bytes of a file by which its format is known.
+const HEAD: usize = 1 << 12;
+
 impl Format {
-    /// The format by the extension; a folder is a case of OpenFOAM.
+    /// The format by the extension; a folder without one that is known, or with a / at its end, is a case of OpenFOAM.
     ///
     /// # Errors
     /// When it is none that is known.
     pub fn of(path: &Path) -> Result<Self, Error> {
-        if foam::is_folder(path) {
-            return Ok(Self::Foam);
-        }
+        let found = Self::of_extension(path);
+        let is_folder =
+            foam::is_folder(path) && (found.is_err() || path.as_os_str().as_encoded_bytes().ends_with(b"/"));
+        if is_folder { Ok(Self::Foam) } else { found }
+    }
+
+    fn of_extension(path: &Path) -> Result<Self, Error> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
         Ok(match extension.as_str() {
             "mesh" | "meshb" => Self::Libmeshb,
             "su2" => Self::Su2,
             "vtu" => Self::Vtu,
+            "vtk" => Self::LegacyVtk,
             "msh" | "msh4" => Self::Msh { is_new: true },
             "msh2" => Self::Msh { is_new: false },
             "ugrid" => {
@@ -73,16 +83,34 @@ impl Format {
     /// When neither tells.
     pub fn of_input(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
         Self::of(path).or_else(|error| {
-            let head = &bytes[..bytes.len().min(1 << 12)];
+            let head = &bytes[..bytes.len().min(HEAD)];
             let holds = |word: &[u8]| head.windows(word.len()).any(|part| part == word);
             match () {
-                () if holds(b"MeshVersionFormatted") || head.starts_with(&[1, 0, 0, 0]) => Ok(Self::Libmeshb),
+                () if holds(b"MeshVersionFormatted")
+                    || [[1, 0, 0, 0], [0, 0, 0, 1]].iter().any(|one| head.starts_with(one)) =>
+                {
+                    Ok(Self::Libmeshb)
+                }
                 () if holds(b"$MeshFormat") => Ok(Self::Msh { is_new: true }),
                 () if holds(b"<VTKFile") => Ok(Self::Vtu),
+                () if head.starts_with(b"# vtk DataFile") => Ok(Self::LegacyVtk),
                 () if holds(b"NDIME=") => Ok(Self::Su2),
                 () => Err(error),
             }
         })
+    }
+
+    /// As [`Format::of_input`], of a file that is there.
+    ///
+    /// # Errors
+    /// When neither tells, and when the file cannot be read.
+    pub fn of_file(path: &Path) -> Result<Self, Error> {
+        Self::of(path).or_else(|_| Self::of_input(path, &read_head(path, HEAD)?))
+    }
+
+    /// Whether fields stand in the file of the mesh itself, at its vertices.
+    pub fn holds_fields(self) -> bool {
+        matches!(self, Self::Vtu | Self::LegacyVtk | Self::Msh { .. })
     }
 
     /// Whether files of the format hold fields and no mesh.

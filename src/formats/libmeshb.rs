@@ -11,24 +11,30 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     Ok(Read { content: Dataset { mesh, ..Dataset::default() }, notices })
 }
 
-/// Reads the names and the fields that lie beside a mesh; a solution of another number of vertices is not its own.
+/// Reads the names and the fields that lie beside a mesh.
 pub(super) fn read_beside(path: &Path, read: &mut Read<Dataset>) -> Result<(), Error> {
     read.content.names = names::read(path)?;
+    let Read { content, notices } = fields_beside(path, read.content.mesh.vertices.len())?;
+    read.content.fields = content;
+    read.notices.extend(notices);
+    Ok(())
+}
+
+/// Reads the fields that lie beside a mesh of so many vertices; a solution of another number of vertices is not its own.
+pub(super) fn fields_beside(path: &Path, vertices: usize) -> Result<Read<Vec<NamedField>>, Error> {
     let Some(beside) = ["solb", "sol"].map(|end| path.with_extension(end)).into_iter().find(|path| path.exists())
     else {
-        return Ok(());
+        return Ok(Read { content: Vec::new(), notices: Vec::new() });
     };
     let bytes = error::read(&beside)?;
     let solution = io::solution_of_bytes(&beside, &bytes)?;
-    let (found, vertices) = (solution.content.vertices, read.content.mesh.vertices.len());
+    let found = solution.content.vertices;
     if found != vertices {
         let (beside, mesh) = (beside.display(), path.display());
-        read.notices.push(format!("{beside}: values at {found} vertices, and {mesh} has {vertices}: it is left out"));
-        return Ok(());
+        let notice = format!("{beside}: values at {found} vertices, and {mesh} has {vertices}: it is left out");
+        return Ok(Read { content: Vec::new(), notices: vec![notice] });
     }
-    read.notices.extend(solution.notices);
-    read.content.fields = named(&beside, solution.content)?;
-    Ok(())
+    Ok(Read { content: named(&beside, solution.content)?, notices: solution.notices })
 }
 
 /// Reads a solution for so many vertices, with the names that lie beside.

@@ -12,6 +12,7 @@ mod dataset;
 mod error;
 pub mod foam;
 mod format;
+mod legacy_vtk;
 mod libmeshb;
 mod markers;
 mod msh;
@@ -19,6 +20,7 @@ mod orientation;
 mod scan;
 mod su2;
 mod surfaces;
+mod tags;
 mod text;
 pub mod ugrid;
 mod unsupported;
@@ -49,7 +51,7 @@ pub struct Options {
 /// # Errors
 /// [`Error::System`] when a file cannot be read, [`Error::Content`] when what it says cannot be true, or is not for us.
 pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
-    if foam::is_folder(path) {
+    if matches!(Format::of(path), Ok(Format::Foam)) {
         let read = foam::read(path)?;
         check::check(path, &read.content)?;
         return Ok(read);
@@ -74,6 +76,7 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
         Format::Libmeshb => libmeshb::read(path, bytes)?,
         Format::Su2 => su2::read(path, bytes)?,
         Format::Vtu => vtu::read(path, bytes)?,
+        Format::LegacyVtk => legacy_vtk::read(path, bytes)?,
         Format::Msh { .. } => msh::read(path, bytes)?,
         Format::Ugrid(encoding) => ugrid::read(path, bytes, encoding)?,
         Format::Foam => return Err(error::at(path, "format", "a case of OpenFOAM is a folder of several files")),
@@ -87,6 +90,14 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
     read.notices
         .extend(orientation::unify(&mut read.content.mesh).map(|notice| format!("{}: {notice}", path.display())));
     Ok(read)
+}
+
+/// Reads the fields that lie beside .mesh or .meshb of so many vertices; none where there are none.
+///
+/// # Errors
+/// As [`read`].
+pub fn fields_beside(path: &Path, vertices: usize) -> Result<Read<Vec<NamedField>>, Error> {
+    libmeshb::fields_beside(path, vertices)
 }
 
 /// The files that [`read`] reads: the mesh and what belongs to it, whether it is there or not.
@@ -170,6 +181,7 @@ pub fn add(
         Format::Libmeshb => libmeshb::write(batch, team, path, data)?,
         Format::Su2 => su2::write(batch, path, data)?,
         Format::Vtu => vtu::write(batch, team, path, data, options.text)?,
+        Format::LegacyVtk => legacy_vtk::write(batch, path, data, options.text)?,
         Format::Foam => foam::add(batch, team, path, data, options.text)?,
         Format::Msh { is_new } => msh::write(batch, path, data, is_new, options.text)?,
         Format::Ugrid(encoding) => ugrid::write(batch, path, data, encoding)?,

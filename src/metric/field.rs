@@ -42,6 +42,45 @@ impl Field {
         read_each(team, path, None, checked_log)
     }
 
+    /// As [`Field::read`], from the fields of a file of whatever format; `path` is what errors say.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of_solution(path: &Path, solution: &Solution, vertices: usize) -> Result<Self, Error> {
+        let read = of_each(Team::alone(), path, solution, Some(vertices), |m| m.is_spd().then_some(m))?;
+        Ok(Self { metrics: read.content })
+    }
+
+    /// ln M of the fields of a file of whatever format, with the checks of [`Field::read`]; `path` is what errors say.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn logs_of_solution(
+        team: Team<'_>,
+        path: &Path,
+        solution: &Solution,
+        vertices: Option<usize>,
+    ) -> Result<Read<Vec<Sym3>>, Error> {
+        of_each(team, path, solution, vertices, checked_log)
+    }
+
+    /// The metric as a file holds it; `path` is what errors say.
+    ///
+    /// # Errors
+    /// [`Error::NotHeld`] when a tensor is not positive definite in doubles.
+    pub fn solution(&self, path: &Path) -> Result<Solution, Error> {
+        let held = |m: Sym3| if m.is_held() { Ok(m) } else { Err(m.sizes()) };
+        tensors(Team::alone(), path, self.metrics.len(), |v| held(self.metrics[v]))
+    }
+
+    /// M = exp of these logarithms as a file holds it; `path` is what errors say.
+    ///
+    /// # Errors
+    /// As of [`Field::solution`].
+    pub fn solution_of_logs(team: Team<'_>, path: &Path, logs: &[Sym3]) -> Result<Solution, Error> {
+        tensors(team, path, logs.len(), |v| logs[v].held_exp().ok_or_else(|| logs[v].sizes_of_log()))
+    }
+
     /// Writes .sol or .solb by the extension.
     ///
     /// # Errors
@@ -67,7 +106,7 @@ impl Field {
     /// # Errors
     /// As there.
     pub fn add_logs(batch: &mut Batch, team: Team<'_>, path: &Path, logs: &[Sym3]) -> Result<(), Error> {
-        Self::add_each(batch, team, path, logs.len(), |v| logs[v].held_exp().ok_or_else(|| logs[v].sizes_of_log()))
+        Ok(io::add_solution(batch, team, path, &Self::solution_of_logs(team, path, logs)?)?)
     }
 
     /// Adds .sol or .solb, as [`Field::write`] writes it, to files that belong together.
@@ -75,35 +114,32 @@ impl Field {
     /// # Errors
     /// As there.
     pub fn add(&self, batch: &mut Batch, path: &Path) -> Result<(), Error> {
-        let held = |m: Sym3| if m.is_held() { Ok(m) } else { Err(m.sizes()) };
-        Self::add_each(batch, Team::alone(), path, self.metrics.len(), |v| held(self.metrics[v]))
+        Ok(io::add_solution(batch, Team::alone(), path, &self.solution(path)?)?)
     }
+}
 
-    /// Adds what `metric` gives for each vertex, or else its sizes, if it cannot be written.
-    fn add_each(
-        batch: &mut Batch,
-        team: Team<'_>,
-        path: &Path,
-        count: usize,
-        metric: impl Fn(usize) -> Result<Sym3, [f64; 3]> + Sync,
-    ) -> Result<(), Error> {
-        let kind = FieldKind::SymmetricTensor;
-        let mut values = vec![0.0; kind.values() * count];
-        let first = AtomicUsize::new(usize::MAX);
-        team.fill(kind.values() * GRAIN, &mut values, |start, chunk| {
-            let rows = chunk.as_chunks_mut().0;
-            rows.iter_mut().zip(start / kind.values()..).for_each(|(row, v)| match metric(v) {
-                Ok(metric) => *row = metric.0,
-                Err(_) => _ = first.fetch_min(v, Relaxed),
-            });
+/// What `metric` gives for each vertex, or else the error with its sizes, if it cannot be written.
+fn tensors(
+    team: Team<'_>,
+    path: &Path,
+    count: usize,
+    metric: impl Fn(usize) -> Result<Sym3, [f64; 3]> + Sync,
+) -> Result<Solution, Error> {
+    let kind = FieldKind::SymmetricTensor;
+    let mut values = vec![0.0; kind.values() * count];
+    let first = AtomicUsize::new(usize::MAX);
+    team.fill(kind.values() * GRAIN, &mut values, |start, chunk| {
+        let rows = chunk.as_chunks_mut().0;
+        rows.iter_mut().zip(start / kind.values()..).for_each(|(row, v)| match metric(v) {
+            Ok(metric) => *row = metric.0,
+            Err(_) => _ = first.fetch_min(v, Relaxed),
         });
-        let first = first.into_inner();
-        if let Some(Err(sizes)) = (first < count).then(|| metric(first)) {
-            return Err(Error::NotHeld { path: path.into(), vertex: first + 1, sizes });
-        }
-        let solution = Solution { vertices: count, fields: vec![SolutionField { kind, values }] };
-        Ok(io::add_solution(batch, team, path, &solution)?)
+    });
+    let first = first.into_inner();
+    if let Some(Err(sizes)) = (first < count).then(|| metric(first)) {
+        return Err(Error::NotHeld { path: path.into(), vertex: first + 1, sizes });
     }
+    Ok(Solution { vertices: count, fields: vec![SolutionField { kind, values }] })
 }
 
 /// ln M; none when M is not positive definite.
@@ -122,8 +158,21 @@ fn read_each(
     convert: impl Fn(Sym3) -> Option<Sym3> + Sync,
 ) -> Result<Read<Vec<Sym3>>, Error> {
     let Read { content, mut notices } = io::read_solution_on(team, path)?;
-    let field = only_metric(path, &content)?;
-    let vertices = content.vertices;
+    let found = of_each(team, path, &content, expected, convert)?;
+    notices.extend(found.notices);
+    Ok(Read { content: found.content, notices })
+}
+
+/// The same of fields that were read.
+fn of_each(
+    team: Team<'_>,
+    path: &Path,
+    solution: &Solution,
+    expected: Option<usize>,
+    convert: impl Fn(Sym3) -> Option<Sym3> + Sync,
+) -> Result<Read<Vec<Sym3>>, Error> {
+    let field = only_metric(path, solution)?;
+    let vertices = solution.vertices;
     if let Some(expected) = expected.filter(|&expected| expected != vertices) {
         return Err(Error::Count { path: path.into(), found: vertices, expected });
     }
@@ -144,6 +193,7 @@ fn read_each(
         }
     };
     let converted = parts.into_iter().collect::<Result<Vec<_>, usize>>().map_err(wrong)?;
+    let mut notices = Vec::new();
     if is_sizes {
         let (least, greatest) = extremes(&field.values);
         notices.push(format!(

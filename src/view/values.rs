@@ -1,5 +1,5 @@
 //! Numbers to colour by: qualities of elements, fields at vertices.
-use crate::mesh::io::{FieldKind, Solution};
+use crate::mesh::io::{FieldKind, Solution, SolutionField};
 use crate::mesh::vector::{area2, dot, norm, scale, sub};
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::{Sym3, mean_ratios};
@@ -38,25 +38,32 @@ impl ScalarField {
     /// The fields of a solution: scalars as they are, lengths of vectors, Frobenius norms of tensors.
     pub fn of_solution(team: Team<'_>, name: &str, solution: &Solution) -> Vec<Self> {
         let several = solution.fields.len() > 1;
-        let fields = solution.fields.iter().enumerate();
-        let one = |(number, field): (usize, &crate::mesh::io::SolutionField)| {
-            let width = field.kind.values();
-            let values = team.map(GRAIN, solution.vertices, |v| {
-                let row = &field.values[v * width..(v + 1) * width];
-                let length = match (field.kind, row) {
-                    (FieldKind::Scalar, row) => row[0],
-                    // Off the diagonal each stands for two.
-                    (FieldKind::SymmetricTensor, &[xx, xy, yy, xz, yz, zz]) => {
-                        (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz)).sqrt()
-                    }
-                    (_, row) => row.iter().map(|x| x * x).sum::<f64>().sqrt(),
-                };
-                length as f32
-            });
-            let name = if field.kind == FieldKind::Scalar { name.to_owned() } else { format!("|{name}|") };
-            Self::new(team, if several { format!("{name} {}", number + 1) } else { name }, values)
+        let one = |(field, number): (&SolutionField, usize)| {
+            let mut found = Self::of_values(team, name, field.kind, &field.values);
+            if several {
+                found.name += &format!(" {number}");
+            }
+            found
         };
-        fields.map(one).collect()
+        solution.fields.iter().zip(1..).map(one).collect()
+    }
+
+    /// A field of such a kind, shape (vertices, values of the kind).
+    pub fn of_values(team: Team<'_>, name: &str, kind: FieldKind, values: &[f64]) -> Self {
+        let width = kind.values();
+        let lengths = team.map(GRAIN, values.len() / width, |v| {
+            let length = match (kind, &values[v * width..][..width]) {
+                (FieldKind::Scalar, row) => row[0],
+                // Off the diagonal each stands for two.
+                (FieldKind::SymmetricTensor, &[xx, xy, yy, xz, yz, zz]) => {
+                    (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz)).sqrt()
+                }
+                (_, row) => row.iter().map(|x| x * x).sum::<f64>().sqrt(),
+            };
+            length as f32
+        });
+        let name = if kind == FieldKind::Scalar { name.to_owned() } else { format!("|{name}|") };
+        Self::new(team, name, lengths)
     }
 
     /// What a metric asks for: the mean size det(M)^(−1/6), and the ratio of the greatest size to the least.

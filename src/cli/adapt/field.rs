@@ -7,7 +7,8 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[group(required = true, multiple = false)]
 pub struct FieldArguments {
-    /// The metric at the vertices of the mesh, .sol or .solb: symmetric tensors, or scalars, which are isotropic sizes
+    /// The metric at the vertices of the mesh, .sol or .solb, or the name of one in the mesh's file: symmetric tensors, or scalars, which are
+    /// isotropic sizes
     #[arg(long, value_name = "FILE")]
     pub metric: Option<PathBuf>,
     /// The same size everywhere, in all directions, in model units
@@ -16,7 +17,8 @@ pub struct FieldArguments {
     /// An analytic metric: linear, polar-1 or polar-2
     #[arg(long, value_name = "NAME")]
     pub analytic: Option<Analytic>,
-    /// A field at the vertices, .sol or .solb, whose multiscale metric is made for --complexity or --vertices; again for each further step in time
+    /// A field at the vertices whose multiscale metric is made for --complexity or --vertices: .sol, .solb, a restart of SU2 (.csv, .dat), or
+    /// the name of a field in the mesh's file; again for each further step in time
     #[arg(long, value_name = "FIELD", requires = "amount")]
     pub field: Vec<PathBuf>,
 }

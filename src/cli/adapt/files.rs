@@ -1,16 +1,21 @@
 //! The files of a run: checked before it, written after it.
 use super::report::Report;
+use crate::cli::files::reading::METRIC;
 use crate::cli::files::{Files, Outputs, Target};
-use crate::geometry::Names;
-use crate::mesh::TetMesh;
+use crate::formats::{Dataset, NamedField};
+use crate::mesh::io::FieldKind;
 use crate::metric::Field;
+use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Where a run writes: the mesh with its names, its metric beside it, and the report, where it is asked for.
+type Failure = Box<dyn std::error::Error>;
+
+/// Where a run writes: the mesh with its names, its metric in the same file or beside it, and the report, where it is asked for.
 pub struct Targets {
     mesh: Target,
-    metric: Target,
+    /// None where the mesh's format holds the metric too.
+    metric: Option<Target>,
     report: Option<Target>,
     /// A model that was made by the run, and where it goes.
     model: Option<(PathBuf, Target)>,
@@ -20,7 +25,9 @@ impl Targets {
     /// Refuses before the work what would fail after it; `endings` of the report.
     pub fn of(files: &mut Files, output: &Path, report: Option<&PathBuf>, endings: &[&str]) -> Result<Self, String> {
         let mesh = files.writes_mesh(output, "-o")?;
-        let metric = files.writes(&super::report::metric_path(output), "the metric beside -o", &[])?;
+        let metric = super::report::metric_path(output)
+            .map(|path| files.writes(&path, "the metric beside -o", &[]))
+            .transpose()?;
         let report = report.map(|report| files.writes(report, "--report", endings)).transpose()?;
         Ok(Self { mesh, metric, report, model: None })
     }
@@ -30,14 +37,15 @@ impl Targets {
         self.model = Some((made, to));
     }
 
-    /// Writes a mesh without a metric.
-    pub fn write_mesh(&self, mesh: &TetMesh, names: &Names) -> Result<(), Box<dyn std::error::Error>> {
+    /// Writes a mesh without a metric. Returns what its format cannot carry.
+    pub fn mesh_alone(&self, team: Team<'_>, data: &Dataset) -> Result<Vec<String>, Failure> {
         let mut outputs = self.outputs()?;
-        outputs.mesh(&self.mesh, mesh, names)?;
-        outputs.commit()
+        let lost = outputs.mesh(team, &self.mesh, data)?;
+        outputs.commit()?;
+        Ok(lost)
     }
 
-    fn outputs(&self) -> Result<Outputs, Box<dyn std::error::Error>> {
+    fn outputs(&self) -> Result<Outputs, Failure> {
         let mut outputs = Outputs::new();
         if let Some((made, to)) = &self.model {
             outputs.copy(made, to)?;
@@ -45,12 +53,27 @@ impl Targets {
         Ok(outputs)
     }
 
-    /// Writes mesh, metric and report together; `times` since the start: when the work began, when it ended, now.
-    pub fn write(&self, mut report: Report, times: [Duration; 3]) -> Result<Report, Box<dyn std::error::Error>> {
+    /// Writes mesh, metric and report together; `times` since the start: when the work began, when it ended, now. Returns with the report
+    /// what the mesh's format cannot carry.
+    pub fn write(
+        &self,
+        team: Team<'_>,
+        mut report: Report,
+        times: [Duration; 3],
+    ) -> Result<(Report, Vec<String>), Failure> {
         let mut outputs = self.outputs()?;
-        outputs.mesh(&self.mesh, &report.mesh, &report.names)?;
         let field = Field { metrics: std::mem::take(&mut report.metrics) };
-        outputs.metric(&self.metric, &field)?;
+        let mut data = Dataset { mesh: std::mem::take(&mut report.mesh), names: report.names.clone(), fields: vec![] };
+        match &self.metric {
+            Some(target) => outputs.metric(target, &field)?,
+            None => {
+                let values = field.solution(self.mesh.path())?.fields.into_iter().flat_map(|field| field.values);
+                let (name, kind) = (METRIC.into(), FieldKind::SymmetricTensor);
+                data.fields.push(NamedField { name, kind, values: values.collect() });
+            }
+        }
+        let lost = outputs.mesh(team, &self.mesh, &data)?;
+        report.mesh = data.mesh;
         report.metrics = field.metrics;
         let [prepared, finished, measured] = times.map(|time| time.as_secs_f64());
         report.seconds.read_and_classify = prepared;
@@ -58,6 +81,6 @@ impl Targets {
         report.seconds.total = measured;
         outputs.json(self.report.as_ref(), &report)?;
         outputs.commit()?;
-        Ok(report)
+        Ok((report, lost))
     }
 }

@@ -1,5 +1,6 @@
 //! What a run begins with: the mesh, where it lies on its model, and the metric.
 use super::super::files::Files;
+use super::super::files::reading::{self, Carrier};
 use super::super::load;
 use super::super::names::on_mesh;
 use super::field::FieldArguments;
@@ -11,13 +12,15 @@ use crate::cli::metric::fields::{Made, MultiscaleArguments};
 use crate::cli::metric::geometry::GeometryArguments;
 use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::place;
+use crate::formats::{Dataset, NamedField};
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::complete_matched;
-use crate::geometry::{Model, Names, names};
+use crate::geometry::{Model, Names};
 use crate::mesh::adjacency::MatchedFaces;
+use crate::mesh::io::Read;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
-use crate::mesh::{TetMesh, crossing, io};
-use crate::metric::{Field, Source, Sym3};
+use crate::mesh::{TetMesh, crossing};
+use crate::metric::{Source, Sym3};
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -29,7 +32,7 @@ const APART: &str = "The mesh hangs together in edges or vertices alone, where i
 /// The inputs of a run.
 #[derive(clap::Args)]
 pub struct InputArguments {
-    /// The mesh: .mesh or .meshb
+    /// The mesh, in any format that `convert` reads
     pub mesh: PathBuf,
     /// The CAD model the boundary lies on: .step, .stp, .iges, .igs, .brep or .egads. Without it the surface of the input mesh
     #[arg(long, value_name = "MODEL")]
@@ -66,8 +69,10 @@ pub struct Given {
     pub mesh: TetMesh,
     /// ln M at its vertices.
     pub logs: Option<Vec<Sym3>>,
-    /// What its references are called, by the file beside it.
+    /// What its references are called, by its file or the one beside it.
     pub names: Names,
+    /// The fields of its file.
+    pub fields: Vec<NamedField>,
     /// Whether it is the result of a cycle: manifold, and with a report that tells where its boundary crosses itself.
     pub is_result: bool,
 }
@@ -107,22 +112,25 @@ impl InputArguments {
             .reads_meshes([mesh])
             .reads_models(cad)
             .reads_any(&surface.surface)
-            .reads(&field.metric)
-            .reads(&field.field)
+            .reads_fields(&field.metric, mesh)
+            .reads_fields(&field.field, mesh)
     }
 
     /// Reads the mesh and, if it comes from a file, its metric. What the user should know is added to `notices`.
     pub fn read(&self, team: Team<'_>, notices: &mut Vec<String>) -> Result<Given, Error> {
-        let read = io::read_mesh_on(team, &self.mesh)?;
+        let Read { content, notices: found } = reading::mesh(team, &self.mesh)?;
         stage("mesh read");
-        notices.extend(read.notices);
-        let mesh = read.content;
-        let names = names::read(&self.mesh)?;
-        let Some(path) = &self.field.metric else { return Ok(Given { mesh, logs: None, names, is_result: false }) };
-        let read = Field::read_logs(team, path, mesh.vertices.len())?;
-        notices.extend(read.notices);
-        stage("metric read");
-        Ok(Given { mesh, logs: Some(read.content), names, is_result: false })
+        notices.extend(found);
+        let mut logs = None;
+        if let Some(asked) = &self.field.metric {
+            let vertices = Some(content.mesh.vertices.len());
+            let (read, _) = reading::logs(team, asked, Carrier::of(&self.mesh, &content), vertices)?;
+            notices.extend(read.notices);
+            logs = Some(read.content);
+            stage("metric read");
+        }
+        let Dataset { mesh, names, fields } = content;
+        Ok(Given { mesh, logs, names, fields, is_result: false })
     }
 
     /// Completes the boundary, puts the mesh on its model, and brings the metric to its complexity.
@@ -134,7 +142,7 @@ impl InputArguments {
         cad: Option<Model>,
         notices: &mut Vec<String>,
     ) -> Result<Input, Error> {
-        let Given { mut mesh, mut logs, mut names, is_result } = given;
+        let Given { mut mesh, mut logs, mut names, fields, is_result } = given;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let added = complete_matched(team, &mut mesh, &faces);
         stage("boundary complete");
@@ -155,7 +163,7 @@ impl InputArguments {
         if names.is_empty() {
             names = on_mesh(&mesh, &place, &model);
         }
-        let raw = Raw { logs, copies };
+        let raw = Raw { logs, copies, fields };
         let kept = self.amount.vertices.is_some().then(|| raw.clone());
         let on = On { place: &place, model: &model, names: &names };
         let (source, made) = self.source(team, (&mesh, faces), raw, on, (self.amount.complexity(), notices))?;

@@ -28,7 +28,8 @@ use std::time::Instant;
 pub struct Arguments {
     #[command(flatten)]
     input: InputArguments,
-    /// Where the adapted mesh goes; its metric is written beside it as .solb
+    /// Where the adapted mesh goes, in any format that `convert` writes; its metric is the field `metric` of the file, or where that holds no
+    /// fields (.mesh, .meshb, .su2, .ugrid, OpenFOAM) beside it as .solb
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     output: PathBuf,
     /// Threads [default: all cores]
@@ -136,9 +137,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let finished = start.elapsed();
         let report = Report::new(team, &asked, &input, adapted);
         stage("report");
-        let mut report = targets.write(report, [prepared, finished, start.elapsed()])?;
+        let (mut report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
         stage("written");
         if !arguments.quiet {
+            lost.iter().for_each(crate::cli::note);
             if arguments.cycles > 1 {
                 super::print(&format!("cycle {cycle} of {}\n", arguments.cycles))?;
             }
@@ -152,7 +154,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
             return Ok(ExitCode::from(super::INVALID));
         }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
-        given = Given { mesh: std::mem::take(&mut report.mesh), logs, names: report.names.clone(), is_result: true };
+        let (mesh, names) = (std::mem::take(&mut report.mesh), report.names.clone());
+        given = Given { mesh, logs, names, fields: Vec::new(), is_result: true };
         cad = arguments.input.has_model().then_some(input.model);
     }
     Ok(ExitCode::SUCCESS)

@@ -4,6 +4,7 @@ use super::meet::Meeting;
 use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
 use crate::cli::table::{Table, place};
+use crate::formats::Format;
 #[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
 use crate::geometry::fidelity::{self, Fidelity};
@@ -55,9 +56,10 @@ pub struct Asked {
     pub complexity_wanted: Option<f64>,
 }
 
-/// The metric of an adapted mesh goes beside it.
-pub fn metric_path(mesh: &Path) -> PathBuf {
-    mesh.with_extension("solb")
+/// Where the metric of an adapted mesh goes beside it; none where its own file holds it.
+pub fn metric_path(mesh: &Path) -> Option<PathBuf> {
+    let is_inside = Format::of(mesh).is_ok_and(Format::holds_fields);
+    (!is_inside).then(|| mesh.with_extension("solb"))
 }
 
 /// Why a mesh stopped growing, and what helps.
@@ -226,8 +228,8 @@ impl Report {
                 self.asked.threads
             ),
         );
-        let metric = metric_path(&self.asked.output);
-        table.row("written", format_args!("{}, {}", self.asked.output.display(), metric.display()));
+        let metric = metric_path(&self.asked.output).map_or(String::new(), |path| format!(", {}", path.display()));
+        table.row("written", format_args!("{}{metric}", self.asked.output.display()));
         table.text().to_owned()
     }
 }

@@ -2,7 +2,9 @@
 use super::input::{Error, InputArguments};
 use super::local::{self, Places};
 use crate::adapt;
+use crate::cli::files::reading::Carrier;
 use crate::cli::metric::fields::Made;
+use crate::formats::NamedField;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
@@ -27,6 +29,8 @@ pub struct Raw {
     pub logs: Option<Vec<Sym3>>,
     /// The origins of the last vertices, where the mesh was taken apart.
     pub copies: Vec<u32>,
+    /// The fields of the mesh's file.
+    pub fields: Vec<NamedField>,
 }
 
 /// Where the mesh lies.
@@ -93,8 +97,10 @@ impl InputArguments {
                 let complexity = complexity.ok_or("--field needs a --complexity or --vertices")?;
                 let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
                 let wanted = (complexity, Measure::Between(Interpolation::default()));
-                let (mesh, fields) = ((&**mesh, &raw.copies[..]), &self.field.field);
-                let (logs, made) = self.multiscale.make(team, mesh, fields, wanted, fixed.as_deref(), notices)?;
+                let vertices = &mesh.vertices[..mesh.vertices.len() - raw.copies.len()];
+                let carrier = Carrier { path: &self.mesh, vertices, fields: &raw.fields };
+                let (mesh, asked) = ((&**mesh, &raw.copies[..]), (&self.field.field[..], carrier));
+                let (logs, made) = self.multiscale.make(team, mesh, asked, wanted, fixed.as_deref(), notices)?;
                 (logs, Some(made))
             }
         };

@@ -32,7 +32,8 @@ pub struct Arguments {
     /// The model, of one or several solids: .step, .stp, .iges, .igs, .brep or .egads; or a closed surface of triangles: .stl, .obj, .ply, or
     /// the boundary of a mesh, .mesh, .meshb, .vtu, .msh
     pub model: PathBuf,
-    /// Where the mesh goes: .mesh or .meshb; its metric is written beside it as .solb, what the mesher said as .log
+    /// Where the mesh goes, in any format that `convert` writes; its metric is in the file or beside it as .solb, what the mesher said beside it
+    /// as .log
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     pub output: PathBuf,
     /// Greatest size, in model units [default: a tenth of the diagonal of the model's box]

@@ -29,6 +29,7 @@ use super::adapt::report::Asked;
 use super::interrupt::{self, Interrupted};
 use super::workplace::Workplace;
 use super::{Outcome, load};
+use crate::formats::Dataset;
 use crate::geometry::{Geometry, Model};
 use crate::tasks::{Plan, Pool, Team, stage};
 use arguments::{DOMAIN, HEALED};
@@ -81,7 +82,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     if arguments.no_adapt {
         return match ladder.climb() {
-            Ok(meshed) => write_as_it_is(arguments, &meshed, &model, &targets),
+            Ok(meshed) => write_as_it_is(arguments, team, &meshed, &model, &targets),
             Err(why) => stopped(why),
         };
     }
@@ -149,7 +150,7 @@ fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Target
     drop(line);
     stage("meshed");
     if arguments.no_adapt {
-        return write_as_it_is(arguments, &meshed, &model, targets);
+        return write_as_it_is(arguments, team, &meshed, &model, targets);
     }
     let asked =
         Asked { input: arguments.model.clone(), output: arguments.output.clone(), threads, complexity_wanted: None };
@@ -166,7 +167,7 @@ const TRIALS: usize = 3;
 const LEAST: f64 = 1e-3;
 
 /// Writes the mesher's own mesh, on the model.
-fn write_as_it_is(arguments: &Arguments, meshed: &Meshed, model: &Model, targets: &Targets) -> Outcome {
+fn write_as_it_is(arguments: &Arguments, team: Team<'_>, meshed: &Meshed, model: &Model, targets: &Targets) -> Outcome {
     let mut mesh = meshed.mesh.clone();
     match model {
         Model::Discrete(surface) => surface.restore(&mut mesh, &meshed.place),
@@ -175,8 +176,10 @@ fn write_as_it_is(arguments: &Arguments, meshed: &Meshed, model: &Model, targets
             crate::geometry::classify::associate(&mut mesh, &meshed.place);
         }
     }
-    targets.write_mesh(&mesh, model.names())?;
+    let data = Dataset { mesh, names: model.names().clone(), fields: Vec::new() };
+    let (lost, mesh) = (targets.mesh_alone(team, &data)?, data.mesh);
     if !arguments.quiet {
+        lost.iter().for_each(super::note);
         let solids = model.topology().solids;
         super::print(&format!(
             "{}: {} vertices, {} tetrahedra in {solids} solid{}; written: {}\n",

@@ -146,8 +146,9 @@ impl Refined {
             Input { mesh: self.start, place, model, source: self.source, made: None, names, raw: None, meeting: None };
         let report = Report::new(team, asked, &input, self.adapted);
         let [prepared, finished] = self.times;
-        let report = targets.write(report, [prepared, finished, start.elapsed()])?;
+        let (report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
         if !arguments.quiet {
+            lost.iter().for_each(crate::cli::note);
             crate::cli::print(&format!("{:<26} {}\n{}", "mesher", self.by, report.text()))?;
         }
         Ok(if self.interrupted {

@@ -5,7 +5,7 @@ use super::rung::Rung;
 use super::unused::{drop_unused, keep_used};
 use crate::cli::table::place;
 use crate::delaunay::{self, FlatWhile, PointError, Tetrahedra, tetrahedralise};
-use crate::formats::read_surface;
+use crate::formats::{Format, read_surface};
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::DiscreteOptions;
 use crate::geometry::{Discrete, Model};
@@ -17,13 +17,14 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Files whose triangles are the model.
-const KINDS: [&str; 7] = ["stl", "obj", "ply", "mesh", "meshb", "vtu", "msh"];
+/// Files of triangles alone that are the model; meshes of all formats are too.
+const KINDS: [&str; 3] = ["stl", "obj", "ply"];
 
 /// Whether a file is a surface of triangles, by its extension.
 pub fn is_surface(path: &Path) -> bool {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     ending.is_some_and(|ending| KINDS.contains(&ending.as_str()))
+        || Format::of(path).is_ok_and(|format| !format.is_fields())
 }
 
 /// The surface as a model, and its mesh.

@@ -1,5 +1,6 @@
 //! `geo-adapt field error`.
 use super::super::Outcome;
+use super::super::files::reading::Carrier;
 use super::super::files::{Files, Outputs};
 use super::super::metric::common::{self, RunArguments};
 use super::super::table::{Table, figure};
@@ -19,9 +20,9 @@ use std::sync::Arc;
 /// The field is interpolated at the vertices of the truth's mesh, as the error is measured in the community's benchmarks.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The mesh of the field: .mesh or .meshb
+    /// The mesh of the field, in any format that `convert` reads
     mesh: PathBuf,
-    /// The field at its vertices: .sol or .solb
+    /// The field at its vertices: .sol, .solb, .csv or .dat, the mesh again where its file holds fields, or the name of one of these
     field: PathBuf,
     /// The mesh and the field that are taken as the truth, a mesh that is finer all over the same domain
     #[arg(long, num_args = 2, value_names = ["MESH", "FIELD"], required = true)]
@@ -65,14 +66,16 @@ struct Value {
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, mesh, field, truth, .. } = arguments;
     let [truth, true_field] = [&truth[0], &truth[1]];
-    let mut files = Files::new().reads_meshes([mesh, truth]).reads([field, true_field]);
+    let mut files =
+        Files::new().reads_meshes([mesh, truth]).reads_fields([field], mesh).reads_fields([true_field], truth);
     let json = common::report(&mut files, arguments.report.as_ref())?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let coarse = common::mesh(run, team, mesh)?;
-    let fields = common::fields(run, team, field, mesh, coarse.vertices.len())?;
+    let fields = common::fields(run, team, field, Carrier::of(mesh, &coarse))?.solution;
     let fine = common::mesh(run, team, truth)?;
-    let true_fields = common::fields(run, team, true_field, truth, fine.vertices.len())?;
+    let true_fields = common::fields(run, team, true_field, Carrier::of(truth, &fine))?.solution;
+    let (coarse, fine) = (coarse.mesh, fine.mesh);
     let kinds = |solution: &crate::mesh::io::Solution| solution.fields.iter().map(|f| f.kind).collect::<Vec<_>>();
     if kinds(&fields) != kinds(&true_fields) {
         let (a, b) = (field.display(), true_field.display());

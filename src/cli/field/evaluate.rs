@@ -1,11 +1,13 @@
 //! `geo-adapt field evaluate`.
 use super::super::Outcome;
-use super::super::files::{Files, Outputs, SOLUTION};
+use super::super::files::reading::Fields;
+use super::super::files::{Files, Outputs};
 use super::super::metric::common::{self, RunArguments};
 use super::super::table::{Table, figure};
 use crate::mesh::io::{FieldKind, Solution, SolutionField};
 use crate::metric::Scalar;
 use crate::tasks::{Plan, Team};
+use clap::ValueEnum;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -13,12 +15,12 @@ use std::process::ExitCode;
 /// Arguments of `geo-adapt field evaluate`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb
+    /// The mesh, in any format that `convert` reads
     mesh: PathBuf,
     /// The function, on the unit cube (Tsolakis 2021, equations 21 to 23)
     #[arg(long, value_enum, value_name = "NAME")]
     function: Scalar,
-    /// Where the field goes: .sol or .solb
+    /// Where the field goes: .sol or .solb; or with the mesh: .vtu, or another format that `convert` knows and that holds fields
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     output: PathBuf,
     /// Write the error as JSON
@@ -44,13 +46,14 @@ struct Report {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let mut files = Files::new().reads_meshes([&arguments.mesh]);
-    let target = files.writes(&arguments.output, "-o", SOLUTION)?;
+    let target = files.writes_fields(&arguments.output, "-o")?;
     let json = common::report(&mut files, arguments.report.as_ref())?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
-    let values = arguments.function.on(team, &mesh);
-    let error = arguments.function.error(team, &mesh, &values);
+    let data = common::mesh(&arguments.run, team, &arguments.mesh)?;
+    let mesh = &data.mesh;
+    let values = arguments.function.on(team, mesh);
+    let error = arguments.function.error(team, mesh, &values);
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {
         let name = arguments.mesh.display();
         return Err(
@@ -59,7 +62,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let solution = Solution { vertices: values.len(), fields: vec![SolutionField { kind: FieldKind::Scalar, values }] };
     let mut outputs = Outputs::new();
-    outputs.solution(team, &target, &solution)?;
+    let names = arguments.function.to_possible_value().map(|value| value.get_name().to_owned()).into_iter().collect();
+    let fields = Fields { solution, names, mesh: None };
+    arguments.run.note(&outputs.fields(team, &target, fields, common::on(&data))?);
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         mesh: arguments.mesh.clone(),

@@ -1,8 +1,9 @@
 //! `geo-adapt field pick`.
-use super::super::files::{Files, Outputs, SOLUTION};
+use super::super::files::reading::{self, Carrier, Fields};
+use super::super::files::{Files, Outputs};
 use super::super::metric::common::Failure;
 use super::super::print;
-use crate::mesh::io::{FieldKind, Solution, SolutionField, read_solution};
+use crate::mesh::io::{FieldKind, Solution, SolutionField};
 use crate::tasks::Team;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,12 +11,12 @@ use std::process::ExitCode;
 /// Arguments of `geo-adapt field pick`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Fields at vertices: .sol or .solb
+    /// Fields at vertices: .sol or .solb, or a mesh of a format that holds them
     input: PathBuf,
     /// Values of each vertex, counted from 1 through all fields of the file: 5, or norm:2-4, the length of the vector of three
     #[arg(long, value_name = "K,norm:A-B,…", value_delimiter = ',', required = true)]
     take: Vec<Take>,
-    /// Where they go, a scalar field each: .sol or .solb
+    /// Where they go, a scalar field each: .sol or .solb; of a mesh with fields also another of such formats
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     output: PathBuf,
 }
@@ -44,12 +45,26 @@ impl std::str::FromStr for Take {
     }
 }
 
+impl Take {
+    /// What the values are called, from a column of a field with such a name.
+    fn name(self, solution: &Solution, names: &[String], (field, value): (usize, usize)) -> String {
+        let of = names.get(field).cloned().unwrap_or_else(|| format!("field {}", field + 1));
+        match (self.norm, solution.fields[field].kind) {
+            (true, _) => format!("norm of {of}"),
+            (false, FieldKind::Scalar) => of,
+            (false, _) => format!("{of} {}", value + 1),
+        }
+    }
+}
+
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let target = Files::new().reads([&arguments.input]).writes(&arguments.output, "-o", SOLUTION)?;
-    let read = read_solution(&arguments.input)?;
+    let target =
+        Files::new().reads_fields([&arguments.input], &arguments.input).writes_fields(&arguments.output, "-o")?;
+    let none = Carrier { path: &arguments.input, vertices: &[], fields: &[] };
+    let read = reading::fields(Team::alone(), &arguments.input, none)?;
     read.notices.iter().for_each(crate::cli::note);
-    let solution = read.content;
+    let Fields { solution, names, mesh } = read.content;
     // The values of a vertex by field.
     let columns: Vec<(usize, usize)> = solution
         .fields
@@ -57,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .enumerate()
         .flat_map(|(field, content)| (0..content.kind.values()).map(move |value| (field, value)))
         .collect();
-    let mut fields = Vec::new();
+    let (mut fields, mut called) = (Vec::new(), Vec::new());
     for take in &arguments.take {
         if take.last >= columns.len() {
             let (name, count) = (arguments.input.display(), columns.len());
@@ -74,16 +89,19 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             }
         });
         fields.push(SolutionField { kind: FieldKind::Scalar, values: values.collect() });
+        called.push(take.name(&solution, &names, columns[take.first]));
     }
     let picked = Solution { vertices: solution.vertices, fields };
     let mut outputs = Outputs::new();
-    outputs.solution(Team::alone(), &target, &picked)?;
+    let found = Fields { solution: picked, names: called, mesh: None };
+    let on = mesh.as_ref().map(|(mesh, names)| (mesh, names));
+    outputs.fields(Team::alone(), &target, found, on)?.iter().for_each(crate::cli::note);
     outputs.commit()?;
     print(&format!(
         "{}: {} scalars at {} vertices\n",
         arguments.output.display(),
-        picked.fields.len(),
-        picked.vertices
+        arguments.take.len(),
+        solution.vertices
     ))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -5,10 +5,12 @@
 //! writes files: [`Outputs`] takes a [`Target`], and only [`Files`] makes one.
 mod identity;
 mod outputs;
+pub mod reading;
 pub mod text;
 
-pub use outputs::Outputs;
+pub use outputs::{On, Outputs};
 
+use crate::formats::Format;
 use crate::mesh::io::check_writable;
 use crate::{formats, geometry, image};
 use identity::Identity;
@@ -16,10 +18,6 @@ use std::path::{Path, PathBuf};
 
 /// Endings of reports.
 pub const JSON: &[&str] = &["json"];
-/// Endings of meshes.
-pub const MESH: &[&str] = &["mesh", "meshb"];
-/// Endings of solutions and metrics.
-pub const SOLUTION: &[&str] = &["sol", "solb"];
 
 /// What a command reads and writes.
 #[derive(Default)]
@@ -62,11 +60,34 @@ impl Files {
         self
     }
 
-    /// Reads .mesh or .meshb, with the names of their references.
+    /// Reads meshes of any format with their names, as [`reading::mesh`] does: not what lies beside .mesh and .meshb.
     pub fn reads_meshes(mut self, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Self {
         for path in paths {
-            self.read(path.as_ref());
-            self.read(&geometry::names::beside(path.as_ref()));
+            let path = path.as_ref();
+            match Format::of(path) {
+                Ok(Format::Libmeshb) | Err(_) => {
+                    self.read(path);
+                    self.read(&geometry::names::beside(path));
+                }
+                Ok(_) => self.read_all_of(path),
+            }
+        }
+        self
+    }
+
+    /// Reads fields of a mesh, as [`reading::fields`] does.
+    pub fn reads_fields(mut self, asked: impl IntoIterator<Item = impl AsRef<Path>>, of: &Path) -> Self {
+        for path in asked {
+            let path = path.as_ref();
+            match Format::of(path) {
+                // It may be the name of a field that lies beside the mesh.
+                Err(_) => {
+                    self.read(path);
+                    self.read_all_of(of);
+                }
+                Ok(format) if format.is_fields() => self.read(path),
+                Ok(_) => self.read_all_of(path),
+            }
         }
         self
     }
@@ -92,9 +113,13 @@ impl Files {
     /// Reads meshes of any format, with all that belongs to them.
     pub fn reads_any(mut self, paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Self {
         for path in paths {
-            formats::read_files(path.as_ref()).iter().for_each(|file| self.read(file));
+            self.read_all_of(path.as_ref());
         }
         self
+    }
+
+    fn read_all_of(&mut self, path: &Path) {
+        formats::read_files(path).iter().for_each(|file| self.read(file));
     }
 
     fn read(&mut self, path: &Path) {
@@ -117,14 +142,36 @@ impl Files {
         Ok(Target { path: path.to_owned() })
     }
 
-    /// The command writes .mesh or .meshb, and the names of its references beside it.
+    /// The command writes a mesh of any format with the names of its references, as [`Outputs::mesh`] does.
     ///
     /// # Errors
     /// As [`Files::writes`].
     pub fn writes_mesh(&mut self, path: &Path, by: &str) -> Result<Target, String> {
-        let target = self.writes(path, by, MESH)?;
-        self.writes(&geometry::names::beside(path), &format!("the names beside {by}"), &[])?;
-        Ok(target)
+        match Format::of(path).map_err(|error| error.to_string())? {
+            Format::Libmeshb => {
+                let target = self.writes(path, by, &[])?;
+                self.writes(&geometry::names::beside(path), &format!("the names beside {by}"), &[])?;
+                Ok(target)
+            }
+            format if format.is_fields() => Err(format!(
+                "{}: holds fields and no mesh; give {by} a format of meshes, such as .meshb",
+                path.display()
+            )),
+            _ => self.writes_any(path, by),
+        }
+    }
+
+    /// The command writes fields of a mesh, as [`Outputs::fields`] does: .sol or .solb, or a format that `convert` knows and that holds them.
+    ///
+    /// # Errors
+    /// As [`Files::writes`].
+    pub fn writes_fields(&mut self, path: &Path, by: &str) -> Result<Target, String> {
+        let format = Format::of(path).map_err(|error| error.to_string())?;
+        if format.is_fields() || format.holds_fields() || format == Format::Foam {
+            return self.writes_any(path, by);
+        }
+        let message = "holds no fields: the output must end in .sol or .solb, or in .vtu for mesh and fields";
+        Err(format!("{}: {message}", path.display()))
     }
 
     /// The command writes a mesh of any format, with all that belongs to it.

@@ -1,9 +1,10 @@
 //! Writing the files of a result: all or none.
 use super::Target;
-use crate::formats::{self, Dataset, Options};
+use super::reading::{Fields, METRIC};
+use crate::formats::{self, Dataset, Format, Options};
 use crate::geometry::{Names, names};
 use crate::mesh::TetMesh;
-use crate::mesh::io::{self, Batch, Solution};
+use crate::mesh::io::{self, Batch};
 use crate::metric::{Field, Sym3};
 use crate::tasks::Team;
 use crate::view::{self, Scene, picture};
@@ -11,7 +12,16 @@ use serde::Serialize;
 use std::fs::File;
 use std::path::Path;
 
-type Done = Result<(), Box<dyn std::error::Error>>;
+type Failure = Box<dyn std::error::Error>;
+type Done = Result<(), Failure>;
+
+/// The mesh that fields are of, with its names, where the command has it.
+pub type On<'m> = Option<(&'m TetMesh, &'m Names)>;
+
+/// Notices with the file that they are of.
+fn named(to: &Target, notices: Vec<String>) -> Vec<String> {
+    notices.into_iter().map(|notice| format!("{}: {notice}", to.path.display())).collect()
+}
 
 /// The files of a result. Each is written beside its target; [`Outputs::commit`] renames them together, a mesh last.
 #[derive(Default)]
@@ -25,10 +35,16 @@ impl Outputs {
         Self::default()
     }
 
-    /// A mesh, and what its references are called.
-    pub fn mesh(&mut self, to: &Target, mesh: &TetMesh, called: &Names) -> Done {
-        io::add_mesh(&mut self.batch, &to.path, mesh)?;
-        Ok(names::add(&mut self.batch, &to.path, called, &[])?)
+    /// A mesh, what its references are called, and its fields where they stand in the same file; beside .mesh and .meshb no fields are
+    /// written. Returns what the format cannot carry.
+    pub fn mesh(&mut self, team: Team<'_>, to: &Target, data: &Dataset) -> Result<Vec<String>, io::Error> {
+        if Format::of(&to.path)? != Format::Libmeshb {
+            let lost = self.dataset(team, to, data, Options::default())?;
+            return Ok(named(to, lost));
+        }
+        io::add_mesh(&mut self.batch, &to.path, &data.mesh)?;
+        names::add(&mut self.batch, &to.path, &data.names, &[])?;
+        Ok(Vec::new())
     }
 
     /// A mesh with all that belongs to it, in the format that its ending tells. Returns what that cannot carry.
@@ -47,19 +63,33 @@ impl Outputs {
         Ok(names::add_file(&mut self.batch, &to.path, called, &[])?)
     }
 
-    /// Fields at vertices.
-    pub fn solution(&mut self, team: Team<'_>, to: &Target, solution: &Solution) -> Done {
-        Ok(io::add_solution(&mut self.batch, team, &to.path, solution)?)
+    /// Fields at the vertices of a mesh: alone, or with the mesh where the format holds that too. Returns what the format cannot carry.
+    /// (To .sol and .solb go values without names: the names file there is that of a mesh.)
+    pub fn fields(&mut self, team: Team<'_>, to: &Target, fields: Fields, on: On<'_>) -> Result<Vec<String>, Failure> {
+        let format = Format::of(&to.path)?;
+        if format == Format::Solution {
+            io::add_solution(&mut self.batch, team, &to.path, &fields.solution)?;
+            return Ok(Vec::new());
+        }
+        let Some((mesh, names)) = on else {
+            let path = to.path.display();
+            return Err(format!("{path}: a mesh is wanted for this format; give .sol or .solb").into());
+        };
+        // What is written is all owned; only formats of other programs come here.
+        let data = Dataset { mesh: mesh.clone(), names: names.clone(), fields: fields.into_named() };
+        let notices = self.dataset(team, to, &data, Options::default())?;
+        Ok(if format.is_fields() { Vec::new() } else { named(to, notices) })
     }
 
-    /// A metric.
+    /// The metric of these logarithms, as [`Outputs::fields`] has it.
+    pub fn logs(&mut self, team: Team<'_>, to: &Target, logs: &[Sym3], on: On<'_>) -> Result<Vec<String>, Failure> {
+        let solution = Field::solution_of_logs(team, &to.path, logs)?;
+        self.fields(team, to, Fields { solution, names: vec![METRIC.into()], mesh: None }, on)
+    }
+
+    /// A metric beside a mesh: .sol or .solb.
     pub fn metric(&mut self, to: &Target, field: &Field) -> Done {
         Ok(field.add(&mut self.batch, &to.path)?)
-    }
-
-    /// The metric of these logarithms.
-    pub fn logs(&mut self, team: Team<'_>, to: &Target, logs: &[Sym3]) -> Done {
-        Ok(Field::add_logs(&mut self.batch, team, &to.path, logs)?)
     }
 
     /// A file that is there already, say in a folder that goes with the run.

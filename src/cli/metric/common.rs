@@ -1,12 +1,14 @@
 //! What the subcommands of `metric` share: arguments to flatten, reading with notices, the output.
 //!
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
-use crate::cli::files::{Files, JSON, Outputs, SOLUTION, Target};
+use crate::cli::files::reading::{self, Carrier, Fields};
+use crate::cli::files::{Files, JSON, On, Outputs, Target};
 use crate::cli::terminal::PrintError;
+use crate::formats::Dataset;
 use crate::mesh::TetMesh;
-use crate::mesh::io::{Read, Solution, read_mesh_on, read_solution_on};
+use crate::mesh::io::Read;
 use crate::mesh::vector::distance;
-use crate::metric::{Field, Limits, Sym3, field, held};
+use crate::metric::{Limits, Sym3, field, held};
 use crate::tasks::{Pool, Team};
 use std::path::{Path, PathBuf};
 
@@ -46,7 +48,7 @@ impl RunArguments {
 /// Where the metric goes.
 #[derive(clap::Args)]
 pub struct OutputArgument {
-    /// Where the metric goes: .sol or .solb
+    /// Where the metric goes: .sol or .solb; or with the mesh: .vtu, or another format that `convert` knows and that holds fields
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     pub output: PathBuf,
 }
@@ -54,7 +56,7 @@ pub struct OutputArgument {
 impl OutputArgument {
     /// The file, among those of the command.
     pub fn target(&self, files: &mut Files) -> Result<Target, String> {
-        files.writes(&self.output, "-o", SOLUTION)
+        files.writes_fields(&self.output, "-o")
     }
 }
 
@@ -63,11 +65,18 @@ pub fn report(files: &mut Files, path: Option<&PathBuf>) -> Result<Option<Target
     path.map(|path| files.writes(path, "--report", JSON)).transpose()
 }
 
-/// Writes M = exp of these logarithms.
-pub fn write_logs(team: Team<'_>, to: &Target, logs: &[Sym3]) -> Result<(), Failure> {
+/// Writes M = exp of these logarithms, and tells what the format cannot carry.
+pub fn write_logs(run: &RunArguments, team: Team<'_>, to: &Target, logs: &[Sym3], on: On<'_>) -> Result<(), Failure> {
     let mut outputs = Outputs::new();
-    outputs.logs(team, to, logs)?;
-    outputs.commit()
+    let lost = outputs.logs(team, to, logs, on)?;
+    outputs.commit()?;
+    run.note(&lost);
+    Ok(())
+}
+
+/// A mesh that fields or metrics are written with.
+pub fn on(data: &Dataset) -> On<'_> {
+    Some((&data.mesh, &data.names))
 }
 
 /// Vertices of a mesh for a unit of the complexity of its metric, where the boundary is little of it.
@@ -181,52 +190,53 @@ fn at_least_one(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Reads a volume mesh and shows its notices.
-pub fn mesh(run: &RunArguments, team: Team<'_>, path: &Path) -> Result<TetMesh, Failure> {
-    let read = read_mesh_on(team, path)?;
+/// Reads a volume mesh, its names, and the fields of its file, and shows the notices.
+pub fn mesh(run: &RunArguments, team: Team<'_>, path: &Path) -> Result<Dataset, Failure> {
+    let read = reading::mesh(team, path)?;
     run.note(&read.notices);
-    if read.content.tets.is_empty() {
+    if read.content.mesh.tets.is_empty() {
         return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
     }
     Ok(read.content)
 }
 
-/// Reads fields at the vertices of a mesh of so many, one at least, and shows the notices.
-pub fn fields(
-    run: &RunArguments,
-    team: Team<'_>,
-    path: &Path,
-    mesh: &Path,
-    vertices: usize,
-) -> Result<Solution, Failure> {
-    let Read { content, notices } = read_solution_on(team, path)?;
+/// Reads the fields at the vertices of a mesh that an argument names, one at least, and shows the notices.
+pub fn fields(run: &RunArguments, team: Team<'_>, asked: &Path, of: Carrier<'_>) -> Result<Fields, Failure> {
+    let Read { content, notices } = reading::fields(team, asked, of)?;
     run.note(&notices);
-    let name = path.display();
-    if content.vertices != vertices {
-        let (found, mesh) = (content.vertices, mesh.display());
+    let name = asked.display();
+    let (found, vertices) = (content.solution.vertices, of.vertices.len());
+    if found != vertices {
+        let mesh = of.path.display();
         return Err(format!(
             "{name}: values at {found} vertices, but {mesh} has {vertices}; give the mesh they belong to"
         )
         .into());
     }
-    if content.fields.is_empty() {
+    if content.solution.fields.is_empty() {
         return Err(format!("{name}: no field at the vertices").into());
     }
     Ok(content)
 }
 
-/// Reads ln M at the vertices of a mesh of so many, and shows the notices.
-pub fn logs(run: &RunArguments, team: Team<'_>, path: &Path, vertices: usize) -> Result<Vec<Sym3>, Failure> {
-    let Read { content, notices } = Field::read_logs(team, path, vertices)?;
+/// Reads ln M at the vertices of a mesh, and shows the notices.
+pub fn logs(run: &RunArguments, team: Team<'_>, asked: &Path, of: Carrier<'_>) -> Result<Vec<Sym3>, Failure> {
+    let (Read { content, notices }, _) = reading::logs(team, asked, of, Some(of.vertices.len()))?;
     run.note(&notices);
     Ok(content)
 }
 
-/// Reads ln M at the vertices of a mesh that is not read.
-pub fn all_logs(run: &RunArguments, team: Team<'_>, path: &Path) -> Result<Vec<Sym3>, Failure> {
-    let Read { content, notices } = Field::read_all_logs(team, path)?;
+/// Reads ln M at the vertices of a mesh that is not read, but for the one that the file holds too. `vertices`, where that is known.
+pub fn all_logs(
+    run: &RunArguments,
+    team: Team<'_>,
+    asked: &Path,
+    vertices: Option<usize>,
+) -> Result<(Vec<Sym3>, Option<Dataset>), Failure> {
+    let none = Carrier { path: asked, vertices: &[], fields: &[] };
+    let (Read { content, notices }, mesh) = reading::logs(team, asked, none, vertices)?;
     run.note(&notices);
-    Ok(content)
+    Ok((content, mesh.map(|(mesh, names)| Dataset { mesh, names, fields: Vec::new() })))
 }
 
 /// The complexity of ln M on a mesh (`path` is for the error): positive.

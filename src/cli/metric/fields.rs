@@ -1,7 +1,8 @@
 //! Reading the fields that a metric is made from, and the options of the multiscale metric; `adapt --field` has them too.
 use super::common::{Failure, GradationArgument, LimitArguments};
+use crate::cli::files::reading::{self, Carrier};
 use crate::mesh::TetMesh;
-use crate::mesh::io::{FieldKind, Read, Solution, SolutionField, read_solution_on};
+use crate::mesh::io::{FieldKind, Read, Solution, SolutionField};
 use crate::mesh::split_nonmanifold::copy_values;
 use crate::metric::multiscale::{self, Bounds, Measure, Norm, Options, Summary, multiscale};
 use crate::metric::recovery::Recovery;
@@ -85,13 +86,13 @@ impl MultiscaleArguments {
         self.gradation.is_given() || self.limits.limits() != Ok(Limits::default())
     }
 
-    /// ln M at the vertices of the mesh, shape (n,), made from the fields of these files, and what was done; `fixed`, ln of
+    /// ln M at the vertices of the mesh, shape (n,), made from the fields that these arguments name, and what was done; `fixed`, ln of
     /// another metric, is intersected at any scale. The last vertices are `copies`, on which the files have nothing. Notices are added.
     pub fn make(
         &self,
         team: Team<'_>,
         (mesh, copies): (&TetMesh, &[u32]),
-        paths: &[PathBuf],
+        (paths, of): (&[PathBuf], Carrier<'_>),
         (complexity, measure): (f64, Measure),
         fixed: Option<&[Sym3]>,
         notices: &mut Vec<String>,
@@ -99,9 +100,9 @@ impl MultiscaleArguments {
         let limits = self.limits.limits()?;
         let mut files = Vec::new();
         for path in paths {
-            let Read { content, notices: found } = read_solution_on(team, path)?;
+            let Read { content, notices: found } = reading::fields(team, path, of)?;
             notices.extend(found);
-            let mut scalars = self.scalars(path, content, mesh.vertices.len() - copies.len())?;
+            let mut scalars = self.scalars(path, content.solution, mesh.vertices.len() - copies.len())?;
             scalars.iter_mut().for_each(|values| copy_values(values, copies));
             files.push(scalars);
         }

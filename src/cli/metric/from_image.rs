@@ -19,7 +19,7 @@ pub struct Arguments {
     /// The image: .nrrd or .nhdr, of 3 axes. Integers are labels: sizes are small at borders between them. Floating-point values are grey:
     /// sizes follow their second derivatives. Without --hmin no size is below half a voxel
     image: PathBuf,
-    /// The mesh, in the image's space: .mesh or .meshb. Its vertices are where the image is looked at: it should resolve what matters
+    /// The mesh, in the image's space, in any format that `convert` reads. Its vertices are where the image is looked at: it should resolve what matters
     #[arg(long, value_name = "MESH")]
     mesh: PathBuf,
     #[command(flatten)]
@@ -55,28 +55,29 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let limits = arguments.limits.limits()?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(run, team, &arguments.mesh)?;
+    let data = common::mesh(run, team, &arguments.mesh)?;
+    let mesh = &data.mesh;
     let image = image::read(&arguments.image)?;
-    let diameter = common::diameter(&mesh);
+    let diameter = common::diameter(mesh);
     let hmax = limits.hmax.unwrap_or(diameter).min(diameter);
     let half_voxel = 0.5 * image.frame.spacings().into_iter().fold(f64::INFINITY, f64::min);
     // The image has nothing finer.
     let limits = Limits { hmin: Some(limits.hmin.unwrap_or(half_voxel.min(hmax))), hmax: Some(hmax), ..limits };
     let wish = Wish { complexity: arguments.amount.needed()?, limits, gradation: arguments.gradation.ratio() };
-    let outside = outside(team, &image, &mesh);
+    let outside = outside(team, &image, mesh);
     if outside > 0 {
         run.note(&[format!("{outside} vertices lie outside the image and see its border")]);
     }
     let is_grey = arguments.grey || !image.kind.is_integer();
     let logs = if is_grey {
-        grey(team, arguments, &image, &mesh, &wish)
+        grey(team, arguments, &image, mesh, &wish)
     } else {
-        labels(team, arguments, &image, &mesh, &wish)
+        labels(team, arguments, &image, mesh, &wish)
     }?;
-    common::write_logs(team, &target, &logs)?;
+    common::write_logs(run, team, &target, &logs, common::on(&data))?;
     let mut table = Table::new();
     table.row("the image is", if is_grey { "grey" } else { "of labels" });
-    super::show::rows(&mut table, &Summary::of(team, &mesh, &logs), None);
+    super::show::rows(&mut table, &Summary::of(team, mesh, &logs), None);
     run.print(table.text())?;
     Ok(ExitCode::SUCCESS)
 }

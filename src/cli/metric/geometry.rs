@@ -1,6 +1,6 @@
 //! `geo-adapt metric geometry`.
 use super::common::{self, Failure, GradationArgument, LimitArguments, OutputArgument, RunArguments};
-use crate::cli::files::{Files, Outputs};
+use crate::cli::files::{Files, Outputs, reading};
 use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::{Table, figure, place};
 use crate::cli::{Outcome, load, positive};
@@ -8,7 +8,6 @@ use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::complete_boundary;
 use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
-use crate::mesh::io::read_mesh_on;
 use crate::metric::Limits;
 use crate::metric::summary::Summary as Figures;
 use crate::sizing::{self, Options, Summary};
@@ -21,7 +20,7 @@ use std::time::Instant;
 /// Arguments of `geo-adapt metric geometry`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The mesh, tetrahedra or triangles only: .mesh or .meshb
+    /// The mesh, tetrahedra or triangles only, in any format that `convert` reads
     mesh: PathBuf,
     /// The CAD model the boundary lies on: .step, .stp, .iges, .igs, .brep or .egads. Without it the curvature is estimated from the
     /// mesh's own triangles
@@ -105,21 +104,21 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let limits = arguments.limits.limits()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mut read = read_mesh_on(team, &arguments.mesh)?;
-    let mesh = &mut read.content;
+    let mut read = reading::mesh(team, &arguments.mesh)?;
+    let mesh = &mut read.content.mesh;
     let added = complete_boundary(team, mesh);
     if added > 0 {
         read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
     }
     arguments.run.note(&read.notices);
-    let mesh = read.content;
-    let (model, lies) = lies(team, arguments, &mesh)?;
+    let (data, mesh) = (&read.content, &read.content.mesh);
+    let (model, lies) = lies(team, arguments, mesh)?;
     let read_and_classify = start.elapsed().as_secs_f64();
     let options = arguments.sizes.options(&model, limits, arguments.gradation.ratio());
-    let (logs, summary) = sizing::geometry_metric(team, &mesh, &lies, &model, &options);
+    let (logs, summary) = sizing::geometry_metric(team, mesh, &lies, &model, &options);
     let metric = start.elapsed().as_secs_f64() - read_and_classify;
     let mut outputs = Outputs::new();
-    outputs.logs(team, &target, &logs)?;
+    arguments.run.note(&outputs.logs(team, &target, &logs, common::on(data))?);
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         input: &arguments.mesh,
@@ -127,7 +126,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         output: &arguments.output.output,
         options,
         summary,
-        metric: Figures::of(team, &mesh, &logs),
+        metric: Figures::of(team, mesh, &logs),
         seconds: Seconds { read_and_classify, metric },
     };
     outputs.json(json.as_ref(), &report)?;

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 /// Arguments of `geo-adapt metric implied`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb
+    /// The mesh, in any format that `convert` reads
     mesh: PathBuf,
     #[command(flatten)]
     to: OutputArgument,
@@ -26,8 +26,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let target = to.target(&mut Files::new().reads_meshes([&arguments.mesh]))?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(run, team, &arguments.mesh)?;
-    let Some(Implied { logs, flat, bare }) = implied(team, &mesh) else {
+    let data = common::mesh(run, team, &arguments.mesh)?;
+    let mesh = &data.mesh;
+    let Some(Implied { logs, flat, bare }) = implied(team, mesh) else {
         let name = arguments.mesh.display();
         return Err(format!("{name}: all tetrahedra are flat or inverted; turn two nodes of each round").into());
     };
@@ -37,8 +38,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if bare > 0 {
         run.note(&[format!("{bare} vertices have no tetrahedron that counts; they get the mean of the mesh")]);
     }
-    common::write_logs(team, &target, &logs)?;
-    let complexity = field::complexity_of_logs(team, &mesh, &logs);
+    common::write_logs(run, team, &target, &logs, common::on(&data))?;
+    let complexity = field::complexity_of_logs(team, mesh, &logs);
     let mut table = Table::new();
     table.row("vertices", logs.len());
     table.row("complexity", figure(complexity));

@@ -2,6 +2,7 @@
 use super::common::{self, OutputArgument, RunArguments, VERTICES_PER_COMPLEXITY};
 use crate::cli::Outcome;
 use crate::cli::files::Files;
+use crate::cli::files::reading::Carrier;
 use crate::cli::table::{Table, figure};
 use crate::metric::{Sym3, field};
 use crate::tasks::{GRAIN, Plan, Team};
@@ -27,12 +28,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let target = to.target(&mut Files::new().reads_meshes([&arguments.mesh]).reads([&arguments.sizes]))?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(run, team, &arguments.mesh)?;
-    let given = common::logs(run, team, &arguments.sizes, mesh.vertices.len())?;
+    let data = common::mesh(run, team, &arguments.mesh)?;
+    let mesh = &data.mesh;
+    let given = common::logs(run, team, &arguments.sizes, Carrier::of(&arguments.mesh, &data))?;
     let greatest = |log: &Sym3| log.eigen().values[2];
     let logs = team.map(GRAIN, given.len(), |v| Sym3::ZERO.plus_identity(greatest(&given[v])));
-    common::write_logs(team, &target, &logs)?;
-    let complexity = field::complexity_between(team, &mesh, &logs);
+    common::write_logs(run, team, &target, &logs, common::on(&data))?;
+    let complexity = field::complexity_between(team, mesh, &logs);
     let sizes = logs.iter().map(|log| log.sizes_of_log()[0]);
     let (least, most) = sizes.fold((f64::INFINITY, 0.0), |(least, most), h| (h.min(least), h.max(most)));
     let mut table = Table::new();

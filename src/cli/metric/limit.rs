@@ -23,16 +23,16 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    let target = to.target(&mut Files::new().reads([&arguments.metric]))?;
+    let target = to.target(&mut Files::new().reads_fields([&arguments.metric], &arguments.metric))?;
     let limits = arguments.limits.limits()?;
     if limits.are_none() {
         return Err("nothing to limit: give --hmin, --hmax or --aspect-ratio".into());
     }
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mut logs = common::all_logs(run, team, &arguments.metric)?;
+    let (mut logs, data) = common::all_logs(run, team, &arguments.metric, None)?;
     let changed = limits.apply(team, &mut logs);
-    common::write_logs(team, &target, &logs)?;
+    common::write_logs(run, team, &target, &logs, data.as_ref().and_then(common::on))?;
     let mut table = Table::new();
     table.row("vertices changed", format_args!("{changed} of {}", logs.len()));
     run.print(table.text())?;

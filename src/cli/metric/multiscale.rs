@@ -2,6 +2,7 @@
 use super::common::{self, Amount, OutputArgument, RunArguments};
 use super::fields::MultiscaleArguments;
 use crate::cli::Outcome;
+use crate::cli::files::reading::Carrier;
 use crate::cli::files::{Files, Outputs};
 use crate::cli::table::Table;
 use crate::metric::multiscale::Measure;
@@ -15,9 +16,9 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 #[command(defer(common::needs_amount))]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb
+    /// The mesh, in any format that `convert` reads
     mesh: PathBuf,
-    /// The field at its vertices: .sol or .solb. Several files are steps in time, several scalars in a file count alike
+    /// The field at its vertices: .sol, .solb, .csv or .dat, or the name of one in the mesh's file. Several are steps in time, several scalars in a file count alike
     #[arg(required = true, value_name = "FIELD")]
     fields: Vec<PathBuf>,
     #[command(flatten)]
@@ -47,19 +48,20 @@ struct Report<'a> {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads(&arguments.fields);
+    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_fields(&arguments.fields, &arguments.mesh);
     let target = arguments.output.target(&mut files)?;
     let json = common::report(&mut files, arguments.report.as_ref())?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     stage("start");
-    let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
+    let data = common::mesh(&arguments.run, team, &arguments.mesh)?;
     stage("mesh read");
     let (mut notices, wanted) = (Vec::new(), (arguments.amount.needed()?, Measure::AtVertices));
-    let (logs, made) = arguments.multiscale.make(team, (&mesh, &[]), &arguments.fields, wanted, None, &mut notices)?;
+    let (given, mesh) = ((&arguments.fields[..], Carrier::of(&arguments.mesh, &data)), &data.mesh);
+    let (logs, made) = arguments.multiscale.make(team, (mesh, &[]), given, wanted, None, &mut notices)?;
     arguments.run.note(&notices);
     let mut outputs = Outputs::new();
-    outputs.logs(team, &target, &logs)?;
+    arguments.run.note(&outputs.logs(team, &target, &logs, common::on(&data))?);
     stage("written");
     if json.is_none() && arguments.run.quiet {
         outputs.commit()?;
@@ -70,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         mesh: &arguments.mesh,
         output: &arguments.output.output,
         multiscale: made,
-        metric: Summary::of(team, &mesh, &logs),
+        metric: Summary::of(team, mesh, &logs),
     };
     outputs.json(json.as_ref(), &report)?;
     outputs.commit()?;

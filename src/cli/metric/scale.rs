@@ -2,6 +2,7 @@
 use super::common::{self, Amount, OutputArgument, RunArguments};
 use crate::cli::Outcome;
 use crate::cli::files::Files;
+use crate::cli::files::reading::Carrier;
 use crate::cli::table::{Table, figure};
 use crate::metric::field;
 use crate::tasks::GRAIN;
@@ -13,9 +14,9 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 #[command(defer(common::needs_amount))]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb
+    /// The mesh, in any format that `convert` reads
     mesh: PathBuf,
-    /// The metric at its vertices: .sol or .solb
+    /// The metric at its vertices: .sol or .solb, or the name of one in the mesh's file
     metric: PathBuf,
     #[command(flatten)]
     amount: Amount,
@@ -28,18 +29,20 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { run, to, .. } = arguments;
-    let target = to.target(&mut Files::new().reads_meshes([&arguments.mesh]).reads([&arguments.metric]))?;
+    let target = to
+        .target(&mut Files::new().reads_meshes([&arguments.mesh]).reads_fields([&arguments.metric], &arguments.mesh))?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(run, team, &arguments.mesh)?;
-    let mut logs = common::logs(run, team, &arguments.metric, mesh.vertices.len())?;
-    let before = common::complexity(team, &arguments.mesh, &mesh, &logs)?;
+    let data = common::mesh(run, team, &arguments.mesh)?;
+    let mut logs = common::logs(run, team, &arguments.metric, Carrier::of(&arguments.mesh, &data))?;
+    let mesh = &data.mesh;
+    let before = common::complexity(team, &arguments.mesh, mesh, &logs)?;
     let factor = field::complexity_factor(before, arguments.amount.needed()?);
     team.fill(GRAIN, &mut logs, |_, logs| logs.iter_mut().for_each(|log| *log = log.plus_identity(factor.ln())));
-    common::write_logs(team, &target, &logs)?;
+    common::write_logs(run, team, &target, &logs, common::on(&data))?;
     let mut table = Table::new();
     table.row("complexity before", figure(before));
-    table.row("complexity", figure(field::complexity_of_logs(team, &mesh, &logs)));
+    table.row("complexity", figure(field::complexity_of_logs(team, mesh, &logs)));
     table.row("factor of the sizes", figure(factor.powf(-0.5)));
     run.print(table.text())?;
     Ok(ExitCode::SUCCESS)

@@ -1,6 +1,7 @@
 //! `geo-adapt metric show`.
 use super::common::{self, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::files::reading::Carrier;
 use crate::cli::files::{Files, JSON, Outputs};
 use crate::cli::table::{Table, figure};
 use crate::metric::gradation::{self, Growths};
@@ -12,9 +13,9 @@ use std::process::ExitCode;
 /// Arguments of `geo-adapt metric show`.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb
+    /// The mesh, in any format that `convert` reads
     mesh: PathBuf,
-    /// The metric at its vertices: .sol or .solb
+    /// The metric at its vertices: .sol or .solb, or the name of one in the mesh's file
     metric: PathBuf,
     /// Write the figures as JSON
     #[arg(long, value_name = "FILE.json")]
@@ -34,13 +35,14 @@ struct Shown {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads([&arguments.metric]);
+    let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_fields([&arguments.metric], &arguments.mesh);
     let json = arguments.json.as_ref().map(|path| files.writes(path, "--json", JSON)).transpose()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mesh = common::mesh(&arguments.run, team, &arguments.mesh)?;
-    let logs = common::logs(&arguments.run, team, &arguments.metric, mesh.vertices.len())?;
-    let shown = Shown { summary: Summary::of(team, &mesh, &logs), gradation: gradation::measure(team, &mesh, &logs) };
+    let data = common::mesh(&arguments.run, team, &arguments.mesh)?;
+    let logs = common::logs(&arguments.run, team, &arguments.metric, Carrier::of(&arguments.mesh, &data))?;
+    let mesh = &data.mesh;
+    let shown = Shown { summary: Summary::of(team, mesh, &logs), gradation: gradation::measure(team, mesh, &logs) };
     let mut outputs = Outputs::new();
     outputs.json(json.as_ref(), &shown)?;
     outputs.commit()?;

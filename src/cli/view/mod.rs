@@ -1,15 +1,17 @@
 //! `geo-adapt view`.
 mod look;
 
+use super::files::reading::{self, Carrier};
 use super::files::{Files, Outputs, Target};
-use super::metric::common::{Failure, RunArguments};
+use super::metric::common::{self, Failure, RunArguments};
 use super::surface::SurfaceArguments;
 use super::table::figure;
-use crate::geometry::{Evaluate, Geometry, Model, classify, fidelity, names};
+use crate::formats::{Dataset, NamedField};
+use crate::geometry::{Evaluate, Geometry, Model, classify, fidelity};
 use crate::mesh::TetMesh;
-use crate::mesh::io::{Read, read_mesh_on, read_solution_on};
+use crate::mesh::io::Read;
 use crate::mesh::vector::Vec3;
-use crate::metric::{Analytic, Field, Statistics, Sym3};
+use crate::metric::{Analytic, Statistics, Sym3};
 use crate::tasks::{GRAIN, Plan, Team, stage};
 use crate::view::cut::Part;
 use crate::view::picture::{Colour, Options};
@@ -22,7 +24,7 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("written").required(true).multiple(true).args(["output", "png"])))]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb; names of its references may lie beside it as MESH.names.json
+    /// The mesh, in any format that `convert` reads; names of the references of .mesh and .meshb may lie beside as MESH.names.json
     mesh: PathBuf,
     /// A page for the browser: .html. All is in this one file
     #[arg(short, long, visible_short_alias = 'x', value_name = "PAGE.html")]
@@ -35,13 +37,14 @@ pub struct Arguments {
     cad: Option<PathBuf>,
     #[command(flatten)]
     surface: SurfaceArguments,
-    /// The metric at the mesh's vertices that shapes are measured in: .sol or .solb
+    /// The metric at the mesh's vertices that shapes are measured in: .sol or .solb, or the name of one in the mesh's file
     #[arg(long, value_name = "FILE", conflicts_with = "analytic")]
     metric: Option<PathBuf>,
     /// An analytic metric field
     #[arg(long, value_name = "NAME")]
     analytic: Option<Analytic>,
-    /// Fields at the mesh's vertices to colour by: .sol or .solb; may be given several times
+    /// Fields at the mesh's vertices to colour by: .sol, .solb, .csv or .dat, or the name of one in the mesh's file; may be given several times.
+    /// Without it the page has those of the mesh's file
     #[arg(long, value_name = "FILE")]
     field: Vec<PathBuf>,
     #[command(flatten)]
@@ -55,17 +58,17 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let [page, picture] = arguments.targets()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let read = read_mesh_on(team, &arguments.mesh)?;
+    let read = reading::mesh(team, &arguments.mesh)?;
     arguments.run.note(&read.notices);
-    let mesh = read.content;
+    let (data, mesh) = (&read.content, &read.content.mesh);
     if mesh.tets.is_empty() && mesh.triangles.is_empty() {
         let name = arguments.mesh.display();
         return Err(format!("{name}: neither tetrahedra nor triangles: there is nothing to show").into());
     }
     stage("mesh read");
-    let given = arguments.given(team, &mesh)?;
+    let given = arguments.given(team, data)?;
     stage("measured");
-    let scene = Scene::new(team, &mesh, given);
+    let scene = Scene::new(team, mesh, given);
     stage("scene");
     let options = arguments.options(&scene)?;
     let mut outputs = Outputs::new();
@@ -91,7 +94,7 @@ impl Arguments {
     /// Page and picture, as far as they are asked for.
     fn targets(&self) -> Result<[Option<Target>; 2], String> {
         let files = Files::new().reads_meshes([&self.mesh]).reads_models(&self.cad).reads_any(&self.surface.surface);
-        let mut files = files.reads(&self.metric).reads(&self.field);
+        let mut files = files.reads_fields(&self.metric, &self.mesh).reads_fields(&self.field, &self.mesh);
         let mut target = |path: &Option<PathBuf>, by: &str, ending: &str| {
             path.as_ref().map(|path| files.writes(path, by, &[ending])).transpose()
         };
@@ -99,8 +102,9 @@ impl Arguments {
     }
 
     /// Reads and measures what comes with the mesh.
-    fn given(&self, team: Team<'_>, mesh: &TetMesh) -> Result<Given, Failure> {
-        let logs = self.logs(team, mesh)?;
+    fn given(&self, team: Team<'_>, data: &Dataset) -> Result<Given, Failure> {
+        let (mesh, of) = (&data.mesh, Carrier::of(&self.mesh, data));
+        let logs = self.logs(team, of)?;
         let metrics = logs.as_ref().map(|logs| team.map(GRAIN, logs.len(), |v| logs[v].exp()));
         let statistics = match &metrics {
             Some(metrics) => Statistics::in_metric(team, mesh, metrics),
@@ -109,7 +113,10 @@ impl Arguments {
         let mut figures = figures(&statistics);
         let mut fields = Vec::new();
         for path in &self.field {
-            fields.extend(self.read_field(team, path, mesh.vertices.len())?);
+            fields.extend(self.read_field(team, path, of)?);
+        }
+        if self.field.is_empty() {
+            fields.extend(named(team, &data.fields));
         }
         let mut model_edges = Vec::new();
         if let Some(model) = self.surface.model_or(team, self.cad.as_deref())? {
@@ -118,32 +125,33 @@ impl Arguments {
         }
         let file = self.mesh.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let title = self.look.title.clone().unwrap_or(file);
-        Ok(Given { title, logs, fields, names: names::read(&self.mesh)?, model_edges, figures })
+        Ok(Given { title, logs, fields, names: data.names.clone(), model_edges, figures })
     }
 
     /// ln M at the vertices, when there is a metric.
-    fn logs(&self, team: Team<'_>, mesh: &TetMesh) -> Result<Option<Vec<Sym3>>, Failure> {
+    fn logs(&self, team: Team<'_>, of: Carrier<'_>) -> Result<Option<Vec<Sym3>>, Failure> {
         if let Some(path) = &self.metric {
-            let Read { content, notices } = Field::read_logs(team, path, mesh.vertices.len())?;
-            self.run.note(&notices);
-            return Ok(Some(content));
+            return common::logs(&self.run, team, path, of).map(Some);
         }
-        Ok(self.analytic.map(|field| team.map(GRAIN, mesh.vertices.len(), |v| field.log_at(mesh.vertices[v]))))
+        Ok(self.analytic.map(|field| team.map(GRAIN, of.vertices.len(), |v| field.log_at(of.vertices[v]))))
     }
 
-    fn read_field(&self, team: Team<'_>, path: &Path, vertices: usize) -> Result<Vec<ScalarField>, Failure> {
-        let Read { content, notices } = read_solution_on(team, path)?;
+    fn read_field(&self, team: Team<'_>, path: &Path, of: Carrier<'_>) -> Result<Vec<ScalarField>, Failure> {
+        let Read { content, notices } = reading::fields(team, path, of)?;
         self.run.note(&notices);
-        let (name, found) = (path.display(), content.vertices);
+        let (name, found, vertices) = (path.display(), content.solution.vertices, of.vertices.len());
         if found != vertices {
             let message = format!("values at {found} vertices, but the mesh has {vertices}: give a field of this mesh");
             return Err(format!("{name}: {message}").into());
         }
-        if content.fields.is_empty() {
+        if content.solution.fields.is_empty() {
             return Err(format!("{name}: no field at the vertices; a field file holds one or more").into());
         }
+        if !content.names.is_empty() {
+            return Ok(named(team, &content.into_named()));
+        }
         let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Ok(ScalarField::of_solution(team, &stem, &content))
+        Ok(ScalarField::of_solution(team, &stem, &content.solution))
     }
 
     /// Distances of the vertices from what they lie on; where the mesh does not fit the model, from its nearest face.
@@ -222,6 +230,11 @@ impl Arguments {
         };
         Err(format!("--color: nothing is called '{by}'{remedy}; there are {names}").into())
     }
+}
+
+/// Fields that have names of their own.
+fn named(team: Team<'_>, fields: &[NamedField]) -> Vec<ScalarField> {
+    fields.iter().map(|field| ScalarField::of_values(team, &field.name, field.kind, &field.values)).collect()
 }
 
 /// Chords of a curve that is not straight.

@@ -5,7 +5,6 @@
 //! several references may have one name.
 mod data;
 mod source;
-mod tags;
 mod v2;
 mod v4;
 mod write;
@@ -13,6 +12,7 @@ mod write;
 pub(super) use write::write;
 
 use super::orientation;
+use super::tags::Tags;
 use super::{Dataset, error};
 use crate::geometry::{Label, Names};
 use crate::mesh::io::{Error, Read};
@@ -20,7 +20,6 @@ use crate::mesh::{Elements, TetMesh};
 use source::{Encoding, Source};
 use std::collections::BTreeMap;
 use std::path::Path;
-use tags::Tags;
 
 /// gmsh's numbers of the elements that we have.
 const LINE: i64 = 1;

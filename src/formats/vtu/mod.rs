@@ -4,7 +4,7 @@ mod decode;
 mod write;
 mod xml;
 
-pub(super) use write::write;
+pub(super) use write::{by_name, to_vtk, write};
 
 use super::cells::cells_to_vertices;
 use super::format::vtk::{self, LINE, TETRAHEDRON, TRIANGLE, VERTEX};
@@ -19,7 +19,7 @@ use std::path::Path;
 use xml::{Array, Kind, Piece};
 
 /// What the references of cells are called: by us, by meshio for libMeshb's, gmsh's and SU2's files, by VMTK.
-const REFERENCES: [&str; 6] =
+pub(super) const REFERENCES: [&str; 6] =
     ["reference", "medit:ref", "gmsh:physical", "gmsh:geometrical", "su2:tag", "CellEntityIds"];
 
 /// Most values an item of an array that become fields, one each.
@@ -237,20 +237,7 @@ impl<'a> Reader<'_, 'a> {
         let mut names = Names::default();
         for array in arrays.iter().filter(|array| matches!(array.kind, Kind::Int(_)) && !array.name.is_empty()) {
             let Some(pairs) = self.decoder.few_ints(array, MOST_NAMED)? else { continue };
-            if pairs.len() % 2 != 0 || (array.width != 2 && pairs.len() != 2) {
-                continue;
-            }
-            for &[reference, dimension] in pairs.as_chunks::<2>().0 {
-                let of = match dimension {
-                    1 => &mut names.edges,
-                    2 => &mut names.triangles,
-                    3 => &mut names.tetrahedra,
-                    _ => continue,
-                };
-                if let Ok(reference) = i32::try_from(reference) {
-                    of.insert(reference, Label { name: Some(array.name.clone()), colour: None });
-                }
-            }
+            name_pairs(&array.name, array.width, &pairs, &mut names);
         }
         Ok(names)
     }
@@ -279,14 +266,32 @@ impl<'a> Reader<'_, 'a> {
                 self.notices
                     .push(format!("{} was given at cells: their mean about each vertex is taken", error::short(&name)));
             }
-            split(name, width, values, &mut fields);
+            of_array(name, width, values, &mut fields);
         }
         fields
     }
 }
 
+/// Adds what an array of field data says, if it is pairs of reference and dimension: that these are called as it is.
+pub(super) fn name_pairs(name: &str, width: usize, pairs: &[i64], names: &mut Names) {
+    if pairs.len() % 2 != 0 || (width != 2 && pairs.len() != 2) {
+        return;
+    }
+    for &[reference, dimension] in pairs.as_chunks::<2>().0 {
+        let of = match dimension {
+            1 => &mut names.edges,
+            2 => &mut names.triangles,
+            3 => &mut names.tetrahedra,
+            _ => continue,
+        };
+        if let Ok(reference) = i32::try_from(reference) {
+            of.insert(reference, Label { name: Some(name.to_owned()), colour: None });
+        }
+    }
+}
+
 /// Fields of an array, by its values an item.
-fn split(name: String, width: usize, values: Vec<f64>, fields: &mut Vec<NamedField>) {
+pub(super) fn of_array(name: String, width: usize, values: Vec<f64>, fields: &mut Vec<NamedField>) {
     let kind = match width {
         1 => FieldKind::Scalar,
         2 | 3 => FieldKind::Vector,

@@ -100,7 +100,12 @@ fn sections(data: &Dataset) -> Vec<Section<'_>> {
 }
 
 fn field(field: &NamedField) -> Array<'_> {
-    let values = match field.kind {
+    Array { name: field.name.as_str().into(), width: field.kind.values(), values: Values::Real(to_vtk(field)) }
+}
+
+/// The values of a field in VTK's order.
+pub(in super::super) fn to_vtk(field: &NamedField) -> Cow<'_, [f64]> {
+    match field.kind {
         FieldKind::SymmetricTensor => {
             let mut values = vec![0.0; field.values.len()];
             for (to, from) in values.as_chunks_mut::<6>().0.iter_mut().zip(field.values.as_chunks::<6>().0) {
@@ -111,8 +116,7 @@ fn field(field: &NamedField) -> Array<'_> {
             values.into()
         }
         _ => (&field.values).into(),
-    };
-    Array { name: field.name.as_str().into(), width: field.kind.values(), values: Values::Real(values) }
+    }
 }
 
 /// Nodes of the cells, their ends among these, their types.
@@ -166,21 +170,28 @@ fn head(data: &Dataset, compressor: &str) -> String {
     )
 }
 
-/// The names of references.
-fn names(names: &Names) -> String {
-    let mut pairs: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+/// The names of references, each with those that have it: reference and dimension.
+pub(in super::super) fn by_name(names: &Names) -> BTreeMap<&str, Vec<[i32; 2]>> {
+    let mut pairs: BTreeMap<&str, Vec<[i32; 2]>> = BTreeMap::new();
     for (labels, dimension) in [(&names.edges, 1), (&names.triangles, 2), (&names.tetrahedra, 3)] {
         for (reference, label) in labels {
             if let Some(name) = label.name.as_deref().filter(|name| !name.is_empty()) {
-                pairs.entry(name).or_default().push(format!("{reference} {dimension}"));
+                pairs.entry(name).or_default().push([*reference, dimension]);
             }
         }
     }
+    pairs
+}
+
+/// The names of references as field data.
+fn names(names: &Names) -> String {
+    let pairs = by_name(names);
     if pairs.is_empty() {
         return String::new();
     }
-    let array = |(name, pairs): (&str, &Vec<String>)| {
-        let (name, count, pairs) = (attribute(name), pairs.len(), pairs.join(" "));
+    let array = |(name, pairs): (&str, &Vec<[i32; 2]>)| {
+        let text: Vec<String> = pairs.iter().map(|[reference, dimension]| format!("{reference} {dimension}")).collect();
+        let (name, count, pairs) = (attribute(name), pairs.len(), text.join(" "));
         format!(
             "<DataArray type=\"Int32\" Name=\"{name}\" NumberOfComponents=\"2\" NumberOfTuples=\"{count}\" format=\"ascii\">{pairs}</DataArray>\n"
         )

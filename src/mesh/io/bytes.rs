@@ -1,7 +1,7 @@
 //! The bytes of a file: the one place where files that users give are opened.
 use super::Error;
 use crate::tasks::Team;
-use std::io::{self, ErrorKind};
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
 /// Refuses what is no regular file: a folder has no bytes, a device may have no end, and a pipe may never begin.
@@ -25,6 +25,18 @@ pub fn check_regular(path: &Path) -> Result<(), Error> {
 pub fn read_file(path: &Path) -> Result<Vec<u8>, Error> {
     check_regular(path)?;
     std::fs::read(path).map_err(|error| Error::system(path, error))
+}
+
+/// The first bytes of a regular file, as many at most.
+///
+/// # Errors
+/// [`Error::System`] when it cannot be read, or is none.
+pub fn read_head(path: &Path, most: usize) -> Result<Vec<u8>, Error> {
+    check_regular(path)?;
+    let mut bytes = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(most as u64).read_to_end(&mut bytes));
+    read.map_err(|error| Error::system(path, error))?;
+    Ok(bytes)
 }
 
 /// All bytes of a file; of a large one every thread of the team reads parts.

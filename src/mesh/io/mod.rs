@@ -20,7 +20,7 @@ mod source;
 mod write;
 
 pub use batch::{Batch, write_beside};
-pub use bytes::{check_regular, read_file};
+pub use bytes::{check_regular, read_file, read_head};
 pub use error::Error;
 pub use missing::meant;
 pub use place::{check_writable, follow};
