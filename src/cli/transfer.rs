@@ -6,7 +6,7 @@ use super::metric::common::{self, Failure, OutputArgument, RunArguments};
 use super::table::{Table, figure};
 use crate::formats::Dataset;
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::io::{Solution, SolutionField};
+use crate::mesh::io::{FieldKind, Read, Solution, SolutionField};
 use crate::mesh::locate::Locator;
 use crate::metric::{Field, Sym3, transfer as of_metric};
 use crate::tasks::{GRAIN, Plan, Team, stage};
@@ -179,10 +179,15 @@ impl Arguments {
             return common::fields(&self.run, team, &self.old_fields, of);
         }
         // Read as a metric, so that other files are refused with the same message as in all commands.
-        let solution = reading::metric(team, &self.old_fields, of)?;
-        self.run.note(&solution.notices);
-        Field::logs_of_solution(team, &self.old_fields, &solution.content.solution, Some(of.vertices.len()))?;
-        Ok(solution.content)
+        let Read { content: mut fields, notices } = reading::metric(team, &self.old_fields, of)?;
+        let vertices = Some(of.vertices.len());
+        let logs = Field::logs_of_solution(team, &self.old_fields, &fields.solution, vertices)?;
+        self.run.note(&[notices, logs.notices].concat());
+        if fields.solution.fields[0].kind == FieldKind::Scalar {
+            // Isotropic sizes: their tensors are interpolated.
+            fields.solution = Field::solution_of_logs(team, &self.old_fields, &logs.content)?;
+        }
+        Ok(fields)
     }
 
     fn method(&self) -> &'static str {
