@@ -36,7 +36,8 @@ impl ScalarField {
     }
 
     /// The fields of a solution: scalars as they are, lengths of vectors, Frobenius norms of tensors.
-    pub fn of_solution(team: Team<'_>, name: &str, solution: &Solution) -> Vec<Self> {
+    /// They are called by `names`, as far as there is one for each, else by `name` and a number.
+    pub fn of_solution(team: Team<'_>, name: &str, names: &[String], solution: &Solution) -> Vec<Self> {
         let several = solution.fields.len() > 1;
         let fields = solution.fields.iter().enumerate();
         let one = |(number, field): (usize, &crate::mesh::io::SolutionField)| {
@@ -53,8 +54,10 @@ impl ScalarField {
                 };
                 length as f32
             });
+            let own = names.get(number).filter(|_| names.len() == solution.fields.len());
+            let name = own.map_or(name, String::as_str);
             let name = if field.kind == FieldKind::Scalar { name.to_owned() } else { format!("|{name}|") };
-            Self::new(team, if several { format!("{name} {}", number + 1) } else { name }, values)
+            Self::new(team, if several && own.is_none() { format!("{name} {}", number + 1) } else { name }, values)
         };
         fields.map(one).collect()
     }
@@ -149,7 +152,7 @@ mod tests {
             SolutionField { kind: FieldKind::Vector, values: vec![3.0, 4.0, 0.0, 0.0, 0.0, 1.0] },
             SolutionField { kind: FieldKind::SymmetricTensor, values: [[0.0, 3.0, 0.0, 0.0, 0.0, 0.0]; 2].concat() },
         ];
-        let found = ScalarField::of_solution(Team::alone(), "u", &Solution { vertices: 2, fields });
+        let found = ScalarField::of_solution(Team::alone(), "u", &[], &Solution { vertices: 2, fields });
         assert_eq!(found.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["u 1", "|u| 2", "|u| 3"]);
         assert_eq!(found[0].range, [-2.0, 3.0]);
         assert_eq!(found[1].values, [5.0, 1.0]);

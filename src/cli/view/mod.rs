@@ -1,28 +1,29 @@
 //! `geo-adapt view`.
+mod figures;
+mod given;
 mod look;
+mod model;
+mod options;
 
 use super::files::{Files, Outputs, Target};
 use super::metric::common::{Failure, RunArguments};
 use super::surface::SurfaceArguments;
-use super::table::figure;
-use crate::geometry::{Evaluate, Geometry, Model, classify, fidelity, names};
 use crate::mesh::TetMesh;
-use crate::mesh::io::{Read, read_mesh_on, read_solution_on};
-use crate::mesh::vector::Vec3;
-use crate::metric::{Analytic, Field, Statistics, Sym3};
-use crate::tasks::{GRAIN, Plan, Team, stage};
-use crate::view::cut::Part;
-use crate::view::picture::{Colour, Options};
-use crate::view::{Given, ScalarField, Scene};
+use crate::mesh::io::read_mesh_on;
+use crate::metric::Analytic;
+use crate::tasks::{Plan, Team, stage};
+use crate::view::picture::{self, Options};
+use crate::view::{Given, Scene};
 use look::LookArguments;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Arguments of `geo-adapt view`.
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("written").required(true).multiple(true).args(["output", "png"])))]
 pub struct Arguments {
-    /// The mesh: .mesh or .meshb; names of its references may lie beside it as MESH.names.json
+    /// The mesh: .mesh or .meshb; names of its references may lie beside it as MESH.names.json. Or a CAD model, whose faces are shown with
+    /// their numbers: .step, .stp, .iges, .igs, .brep or .egads
     mesh: PathBuf,
     /// A page for the browser: .html. All is in this one file
     #[arg(short, long, visible_short_alias = 'x', value_name = "PAGE.html")]
@@ -35,13 +36,14 @@ pub struct Arguments {
     cad: Option<PathBuf>,
     #[command(flatten)]
     surface: SurfaceArguments,
-    /// The metric at the mesh's vertices that shapes are measured in: .sol or .solb
+    /// The metric at the mesh's vertices that shapes are measured in: .sol or .solb, or none [default: the one beside the mesh, MESH.solb,
+    /// where there is one]
     #[arg(long, value_name = "FILE", conflicts_with = "analytic")]
     metric: Option<PathBuf>,
     /// An analytic metric field
     #[arg(long, value_name = "NAME")]
     analytic: Option<Analytic>,
-    /// Fields at the mesh's vertices to colour by: .sol or .solb; may be given several times
+    /// Fields at the mesh's vertices to colour by: .sol or .solb, their names beside as FIELD.names.json; may be given several times
     #[arg(long, value_name = "FILE")]
     field: Vec<PathBuf>,
     #[command(flatten)]
@@ -55,33 +57,21 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let [page, picture] = arguments.targets()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let read = read_mesh_on(team, &arguments.mesh)?;
-    arguments.run.note(&read.notices);
-    let mesh = read.content;
+    let (mesh, mut given) = arguments.read(team)?;
     if mesh.tets.is_empty() && mesh.triangles.is_empty() {
         let name = arguments.mesh.display();
         return Err(format!("{name}: neither tetrahedra nor triangles: there is nothing to show").into());
     }
-    stage("mesh read");
-    let given = arguments.given(team, &mesh)?;
+    let file = arguments.mesh.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    given.title = arguments.look.title.clone().unwrap_or(file);
     stage("measured");
     let scene = Scene::new(team, &mesh, given);
     stage("scene");
     let options = arguments.options(&scene)?;
-    let mut outputs = Outputs::new();
-    if let Some(page) = &page {
-        outputs.page(team, page, &scene, &options)?;
-        stage("page written");
+    if let Some(message) = picture::nothing_cut(team, &scene, &options) {
+        arguments.run.note(&[message]);
     }
-    if let Some(picture) = &picture {
-        outputs.picture(team, picture, &scene, &options)?;
-        stage("picture written");
-    }
-    outputs.commit()?;
-    for path in [&arguments.output, &arguments.png].into_iter().flatten() {
-        let megabytes = std::fs::metadata(path).map_or(0.0, |file| file.len() as f64 / 1e6);
-        arguments.run.print(&format!("{}: {megabytes:.2} MB\n", path.display()))?;
-    }
+    arguments.write([page, picture], team, &scene, &options)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -90,183 +80,59 @@ type Outcome = Result<ExitCode, Failure>;
 impl Arguments {
     /// Page and picture, as far as they are asked for.
     fn targets(&self) -> Result<[Option<Target>; 2], String> {
-        let files = Files::new().reads_meshes([&self.mesh]).reads_models(&self.cad).reads_any(&self.surface.surface);
-        let mut files = files.reads(&self.metric).reads(&self.field);
+        let files = if model::is_model(&self.mesh) {
+            Files::new().reads_models([&self.mesh])
+        } else {
+            Files::new().reads_meshes([&self.mesh]).reads(self.metric_beside())
+        };
+        let files = files.reads_models(&self.cad).reads_any(&self.surface.surface);
+        let mut files = files.reads(&self.metric).reads_meshes(&self.field);
         let mut target = |path: &Option<PathBuf>, by: &str, ending: &str| {
             path.as_ref().map(|path| files.writes(path, by, &[ending])).transpose()
         };
         Ok([target(&self.output, "-o", "html")?, target(&self.png, "--png", "png")?])
     }
 
-    /// Reads and measures what comes with the mesh.
-    fn given(&self, team: Team<'_>, mesh: &TetMesh) -> Result<Given, Failure> {
-        let logs = self.logs(team, mesh)?;
-        let metrics = logs.as_ref().map(|logs| team.map(GRAIN, logs.len(), |v| logs[v].exp()));
-        let statistics = match &metrics {
-            Some(metrics) => Statistics::in_metric(team, mesh, metrics),
-            None => Statistics::in_space(team, mesh),
-        };
-        let mut figures = figures(&statistics);
-        let mut fields = Vec::new();
-        for path in &self.field {
-            fields.extend(self.read_field(team, path, mesh.vertices.len())?);
-        }
-        let mut model_edges = Vec::new();
-        if let Some(model) = self.surface.model_or(team, self.cad.as_deref())? {
-            model_edges = edges_of(&model);
-            fields.push(self.distances(team, mesh, &model, &mut figures));
-        }
-        let file = self.mesh.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let title = self.look.title.clone().unwrap_or(file);
-        Ok(Given { title, logs, fields, names: names::read(&self.mesh)?, model_edges, figures })
-    }
-
-    /// ln M at the vertices, when there is a metric.
-    fn logs(&self, team: Team<'_>, mesh: &TetMesh) -> Result<Option<Vec<Sym3>>, Failure> {
-        if let Some(path) = &self.metric {
-            let Read { content, notices } = Field::read_logs(team, path, mesh.vertices.len())?;
+    /// What is shown, and what comes with it.
+    fn read(&self, team: Team<'_>) -> Result<(TetMesh, Given), Failure> {
+        if model::is_model(&self.mesh) {
+            if self.metric.is_some() || self.analytic.is_some() || !self.field.is_empty() || self.cad.is_some() {
+                let name = self.mesh.display();
+                let message = "a model is shown by itself; --metric, --analytic, --field and --cad go with a mesh";
+                return Err(format!("{name}: {message}").into());
+            }
+            let (mesh, given, notices) = model::read(&self.mesh)?;
             self.run.note(&notices);
-            return Ok(Some(content));
+            return Ok((mesh, given));
         }
-        Ok(self.analytic.map(|field| team.map(GRAIN, mesh.vertices.len(), |v| field.log_at(mesh.vertices[v]))))
+        let read = read_mesh_on(team, &self.mesh)?;
+        self.run.note(&read.notices);
+        stage("mesh read");
+        let given = self.given(team, &read.content)?;
+        Ok((read.content, given))
     }
 
-    fn read_field(&self, team: Team<'_>, path: &Path, vertices: usize) -> Result<Vec<ScalarField>, Failure> {
-        let Read { content, notices } = read_solution_on(team, path)?;
-        self.run.note(&notices);
-        let (name, found) = (path.display(), content.vertices);
-        if found != vertices {
-            let message = format!("values at {found} vertices, but the mesh has {vertices}: give a field of this mesh");
-            return Err(format!("{name}: {message}").into());
+    fn write(
+        &self,
+        [page, picture]: [Option<Target>; 2],
+        team: Team<'_>,
+        scene: &Scene<'_>,
+        options: &Options,
+    ) -> Result<(), Failure> {
+        let mut outputs = Outputs::new();
+        if let Some(page) = &page {
+            outputs.page(team, page, scene, options)?;
+            stage("page written");
         }
-        if content.fields.is_empty() {
-            return Err(format!("{name}: no field at the vertices; a field file holds one or more").into());
+        if let Some(picture) = &picture {
+            outputs.picture(team, picture, scene, options)?;
+            stage("picture written");
         }
-        let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Ok(ScalarField::of_solution(team, &stem, &content))
+        outputs.commit()?;
+        for path in [&self.output, &self.png].into_iter().flatten() {
+            let megabytes = std::fs::metadata(path).map_or(0.0, |file| file.len() as f64 / 1e6);
+            self.run.print(&format!("{}: {megabytes:.2} MB\n", path.display()))?;
+        }
+        Ok(())
     }
-
-    /// Distances of the vertices from what they lie on; where the mesh does not fit the model, from its nearest face.
-    fn distances(&self, team: Team<'_>, mesh: &TetMesh, model: &Model, figures: &mut Vec<[String; 2]>) -> ScalarField {
-        let distances = match classify::classify(team, mesh, model, &classify::Options::default()) {
-            Ok((classification, report)) => {
-                self.run.note(&report.notices);
-                figures.push(row("on the model", "yes"));
-                fidelity::distances(team, mesh, model, &classification)
-            }
-            Err(error) => {
-                self.run.note(&[format!("{}: {error}", self.mesh.display())]);
-                figures.push(row("on the model", &format!("no: {error}")));
-                fidelity::distances_from_faces(team, mesh, model)
-            }
-        };
-        let greatest = distances.iter().copied().filter(|d| d.is_finite()).fold(0.0, f64::max);
-        figures.push(row("greatest distance from the model", &figure(greatest)));
-        ScalarField::new(team, "distance".into(), team.map(GRAIN, distances.len(), |v| distances[v] as f32))
-    }
-
-    /// How it is to look.
-    fn options(&self, scene: &Scene<'_>) -> Result<Options, Failure> {
-        let look = &self.look;
-        if let Some(unknown) = look.hide.iter().find(|&&one| scene.surfaces.iter().all(|known| known.reference != one))
-        {
-            let known: Vec<String> = scene.surfaces.iter().take(20).map(|one| one.reference.to_string()).collect();
-            let (name, known) = (self.mesh.display(), known.join(", "));
-            return Err(format!("{name}: --hide: no triangle has the reference {unknown}; there are {known}").into());
-        }
-        if look.below.is_some() && scene.mesh.tets.is_empty() {
-            return Err(format!("{}: --below: there are no tetrahedra", self.mesh.display()).into());
-        }
-        let hidden = look.hide.iter().copied().collect();
-        let part = Part { plane: look.cut, hidden, below: look.below.map(|below| below as f32) };
-        Ok(Options {
-            size: look.size,
-            view: look.view.map(|view| view.0),
-            at: look.at.map(|at| at.0),
-            zoom: look.zoom,
-            colour: self.colour(scene, &part)?,
-            part,
-            range: look.range.map(|range| range.0),
-            wire: !look.no_wire,
-        })
-    }
-
-    fn colour(&self, scene: &Scene<'_>, part: &Part) -> Result<Colour, Failure> {
-        let fields = &scene.given.fields;
-        let Some(by) = &self.look.color else {
-            let measured = self.metric.is_some() || self.analytic.is_some();
-            return Ok(if !self.field.is_empty() {
-                Colour::Field(0)
-            } else if part.plane.is_some() || part.below.is_some() || measured {
-                Colour::Quality
-            } else {
-                Colour::Reference
-            });
-        };
-        match by.as_str() {
-            "reference" => return Ok(Colour::Reference),
-            "quality" => return Ok(Colour::Quality),
-            "field" if !self.field.is_empty() => return Ok(Colour::Field(0)),
-            _ => {}
-        }
-        if let Some(number) = fields.iter().position(|field| field.name == *by) {
-            return Ok(Colour::Field(number));
-        }
-        let names = ["reference", "quality"].into_iter().chain(fields.iter().map(|field| field.name.as_str()));
-        let names = names.collect::<Vec<_>>().join(", ");
-        let remedy = match by.as_str() {
-            "field" => "; give a --field",
-            "distance" => "; give a --cad",
-            "size" | "aspect" => "; give a --metric",
-            _ => "",
-        };
-        Err(format!("--color: nothing is called '{by}'{remedy}; there are {names}").into())
-    }
-}
-
-/// Chords of a curve that is not straight.
-const CHORDS: u32 = 96;
-
-/// The edges of a model as polygons.
-fn edges_of(model: &Model) -> Vec<Vec<Vec3>> {
-    let mut evaluator = model.evaluator();
-    let topology = model.topology();
-    let edges = (0..topology.edges.len() as u32).filter(|&edge| topology.is_ridge(edge));
-    edges
-        .map(|edge| {
-            let [first, last] = topology.edges[edge as usize].range;
-            let along = |i: u32| first + (last - first) * f64::from(i) / f64::from(CHORDS);
-            (0..=CHORDS).map(|i| evaluator.edge_frame(edge, along(i)).point).collect()
-        })
-        .collect()
-}
-
-fn row(name: &str, value: &str) -> [String; 2] {
-    [name.into(), value.into()]
-}
-
-/// The figures of a mesh for its page.
-fn figures(statistics: &Statistics) -> Vec<[String; 2]> {
-    let (lengths, ratios) = (&statistics.edge_lengths, &statistics.mean_ratios);
-    let mut rows = vec![
-        row("vertices", &statistics.vertices.to_string()),
-        row("tetrahedra", &statistics.tets.to_string()),
-        row("triangles", &statistics.triangles.to_string()),
-        row("tagged edges", &statistics.tagged_edges.to_string()),
-    ];
-    if statistics.tets > 0 {
-        rows.push(row("volume", &figure(statistics.volume)));
-        rows.push(row("mean ratio, least", &figure(ratios.min)));
-        rows.push(row("mean ratio, mean", &figure(ratios.mean)));
-        let unit = if statistics.metric.is_some() { "in the metric" } else { "model units" };
-        for (what, value) in [("least", lengths.min), ("mean", lengths.mean), ("greatest", lengths.max)] {
-            rows.push(row(&format!("edge length, {unit}, {what}"), &figure(value)));
-        }
-    }
-    if let Some(metric) = &statistics.metric {
-        rows.push(row("unit edges (1/√2 to √2)", &format!("{:.2} %", 100.0 * metric.unit_edges)));
-        rows.push(row("complexity", &figure(metric.complexity)));
-        rows.push(row("vertices / complexity", &figure(metric.vertices_per_complexity)));
-    }
-    rows
 }
