@@ -127,13 +127,16 @@ fn draw(team: Team<'_>, scene: &Scene<'_>, options: &Options) -> Image {
     let [width, height] = options.size.map(|x| x as usize);
     let unit = (width as f64 / 1200.0).min(height as f64 / 900.0).max(0.5);
     let shown = options.part.of(team, scene);
-    // Of a flow about a body more is to be seen than the body.
+    let points = in_view(scene, options, &shown);
+    // Of a flow about a small body more is to be seen than the body.
     let is_around = options.part.plane.is_some() || options.streamlines > 0;
-    let is_flow = is_around && !options.part.hidden.is_empty() && options.at.is_none();
+    let is_small = extent(&points) < scene.radius();
+    // What is inside may then reach beyond what fits.
+    let is_partial = is_around && !options.part.hidden.is_empty();
+    let is_flow = is_partial && is_small && options.at.is_none();
     let mut camera = Camera::from(options.view.unwrap_or_else(|| usual_view(options.part.plane)));
-    let points = in_view(scene, options, &shown).into_iter();
     let room = [30.0, 76.0, width as f64 / unit - 256.0, height as f64 / unit - 150.0].map(|x| x * unit);
-    camera.fit(points, room, options.zoom * if is_flow { AROUND_BODY } else { 1.0 });
+    camera.fit(points.into_iter(), room, options.zoom * if is_flow { AROUND_BODY } else { 1.0 });
     if let Some(at) = options.at {
         camera.target = at;
     }
@@ -145,7 +148,7 @@ fn draw(team: Team<'_>, scene: &Scene<'_>, options: &Options) -> Image {
     let drawing = Drawing { triangles: &triangles, lines: &lines, map, wire: options.wire };
     let image = drawing.image(team, [width, height], PAPER);
     let mut sheet = Sheet { image, unit, scene, options, alone: shown.faces.len() / 4 };
-    if options.at.is_some() || options.zoom > 1.0 || is_flow || options.streamlines > 0 {
+    if options.at.is_some() || options.zoom > 1.0 || is_partial || options.streamlines > 0 {
         sheet.frame(room);
     }
     if options.numbers {
@@ -205,6 +208,13 @@ fn in_view(scene: &Scene<'_>, options: &Options, shown: &Shown) -> Vec<Vec3> {
     } else {
         found
     }
+}
+
+/// The diagonal of the box of points.
+fn extent(points: &[Vec3]) -> f64 {
+    let low = points.iter().copied().reduce(|a, b| std::array::from_fn(|i| a[i].min(b[i]))).unwrap_or_default();
+    let high = points.iter().copied().reduce(|a, b| std::array::from_fn(|i| a[i].max(b[i]))).unwrap_or_default();
+    distance(low, high)
 }
 
 /// The first of the views that sees the cut.

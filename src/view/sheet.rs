@@ -94,6 +94,9 @@ impl Sheet<'_> {
             hidden.retain(|name| known.insert(name.clone()));
             line += &clipped(&format!("   without {}", hidden.join(", ")), 200.0);
         }
+        if let (Some(velocity), 1..) = (&scene.given.velocity, self.options.streamlines) {
+            line += &format!("   streamlines of {}", velocity.name);
+        }
         if let Some(below) = self.options.part.below {
             line += &format!("   mean ratio below {}: {} tetrahedra", short(f64::from(below)), grouped(self.alone));
         }

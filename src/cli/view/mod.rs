@@ -96,9 +96,11 @@ impl Arguments {
     /// What is shown, and what comes with it.
     fn read(&self, team: Team<'_>) -> Result<(TetMesh, Given), Failure> {
         if model::is_model(&self.mesh) {
-            if self.metric.is_some() || self.analytic.is_some() || !self.field.is_empty() || self.cad.is_some() {
+            let has_model = self.cad.is_some() || self.surface.surface.is_some();
+            if self.metric.is_some() || self.analytic.is_some() || !self.field.is_empty() || has_model {
                 let name = self.mesh.display();
-                let message = "a model is shown by itself; --metric, --analytic, --field and --cad go with a mesh";
+                let message =
+                    "a model is shown by itself; --metric, --analytic, --field, --cad and --surface go with a mesh";
                 return Err(format!("{name}: {message}").into());
             }
             let (mesh, given, notices) = model::read(&self.mesh)?;
