@@ -360,6 +360,22 @@ fn names_that_fit_no_face_are_refused() {
 }
 
 #[test]
+fn names_beside_a_brep_may_be_those_of_a_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(data("duct.brep"), folder.path().join("a.brep")).unwrap();
+    let names = r#"{"triangles": {"2": {"name": "inlet"}, "70": {"name": "of a mesh"}}, "tetrahedra": {"9": {"name": "steel"}}}"#;
+    std::fs::write(folder.path().join("a.names.json"), names).unwrap();
+    let json = listing(&folder.path().join("a.brep"));
+    assert_eq!(json["faces"][1]["name"], "inlet");
+    assert_eq!(json["names"]["triangles"].as_object().unwrap().len(), 1);
+    // A name that is given to the model leaves the mesh's file as it is.
+    assert_eq!(run_in(folder.path(), &["model", "a.brep", "--name", "wall=1"]).status.code(), Some(0));
+    assert_eq!(std::fs::read_to_string(folder.path().join("a.names.json")).unwrap(), names);
+    let json = listing(&folder.path().join("a.brep"));
+    assert_eq!((&json["faces"][0]["name"], &json["faces"][1]["name"]), (&"wall".into(), &"inlet".into()));
+}
+
+#[test]
 fn names_and_colours_of_cadquery_are_read() {
     // tests/data/cadquery_names.py
     let json = listing(&data("cadquery-names.step"));

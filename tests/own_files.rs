@@ -69,6 +69,7 @@ const COMMANDS: &[Case] = &[
     case("transfer a.meshb f.solb b.mesh -o new.solb --report OUT", "json", &["a.meshb", "f.solb", "b.mesh"]),
     case("tune a.meshb --metric a.solb --report OUT", "json", &["a.meshb", "a.solb"]),
     case("view a.meshb --metric a.solb -o OUT", "html", &["a.meshb", "a.solb", "a.names.json"]),
+    case("view a.meshb --png OUT", "png", &["a.meshb", "a.solb", "a.names.json"]),
     case("view a.meshb --field f.solb --cad a.brep --png OUT", "png", &["a.meshb", "f.solb", "a.brep"]),
 ];
 

@@ -8,7 +8,7 @@ use common::program;
 use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::io::write_mesh;
 use geo_adapt::tasks::Team;
-use geo_adapt::view::cut::Part;
+use geo_adapt::view::cut::{Part, Style};
 use geo_adapt::view::{Given, Scene};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -18,9 +18,13 @@ const SOFTWARE: [&str; 3] = ["--use-gl=angle", "--use-angle=swiftshader", "--ena
 
 /// A page of a mesh.
 fn page(folder: &Path, mesh: &TetMesh) -> PathBuf {
+    page_with(folder, mesh, &[])
+}
+
+fn page_with(folder: &Path, mesh: &TetMesh, arguments: &[&str]) -> PathBuf {
     let (input, page) = (folder.join("in.meshb"), folder.join("page.html"));
     write_mesh(&input, mesh).unwrap();
-    let run = program().arg("view").arg(&input).arg("-o").arg(&page).output().unwrap();
+    let run = program().arg("view").arg(&input).arg("-o").arg(&page).args(arguments).output().unwrap();
     assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
     page
 }
@@ -97,6 +101,68 @@ fn a_page_is_drawn_turned_and_cut() {
     // What is clicked is told.
     browser.drag([455, 400], [0, 0]);
     browser.wait("/^(triangle|tetrahedron) .*mean ratio 0\\.\\d+/.test(document.getElementById('picked').textContent)");
+    assert_eq!(browser.errors(), Vec::<serde_json::Value>::new());
+}
+
+#[test]
+fn a_cut_along_the_plane_is_that_of_the_pictures() {
+    let Some(browser) = Browser::start(&SOFTWARE) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = cube(5, |_| 1);
+    browser.open(&page_with(folder.path(), &mesh, &["--cut", "1,2,0.5=1.73", "--cut-style", "plane", "--hide", "2"]));
+    browser.wait("document.body.dataset.state !== 'loading'");
+    let scene = Scene::new(Team::alone(), &mesh, Given::default());
+    let plane = Some("1,2,0.5=1.73".parse().unwrap());
+    let shown = Part { plane, style: Style::Plane, hidden: [2].into(), below: None }.of(Team::alone(), &scene);
+    let count = |key: &str| browser.script(&format!("return document.body.dataset.{key}")).as_str().unwrap().to_owned();
+    assert_eq!(
+        [count("pieces"), count("triangles"), count("faces")],
+        [shown.pieces.len().to_string(), shown.triangles.len().to_string(), "0".into()]
+    );
+    // The same points.
+    let sum =
+        browser.script("return geoAdapt.model.pieceSoup().positions.reduce((a, b) => a + b, 0)").as_f64().unwrap();
+    let points = shown.pieces.iter().flat_map(|piece| piece.corners).map(|corner| corner.point(&mesh.vertices));
+    let expected: f64 = points.map(|p| p.iter().map(|x| x - 0.5).sum::<f64>()).sum();
+    assert!((sum - expected).abs() < 1e-3, "{sum} {expected}");
+    assert_eq!(browser.errors(), Vec::<serde_json::Value>::new());
+}
+
+#[test]
+fn names_are_typed_and_saved_and_a_click_tells_the_surface() {
+    let Some(browser) = Browser::start(&SOFTWARE) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let names = r##"{"triangles": {"2": {"colour": "#12ab34"}}, "tetrahedra": {"1": {"name": "core"}}}"##;
+    std::fs::write(folder.path().join("in.names.json"), names).unwrap();
+    browser.open(&page_with(folder.path(), &cube(3, |_| 1), &["--numbers", "--view", "0,0"]));
+    browser.wait("document.body.dataset.state !== 'loading'");
+    // From +x surface 2 is seen, and its number on it.
+    let labels =
+        || browser.script("return [...document.querySelectorAll('#labels text')].map((one) => one.textContent).join()");
+    browser.wait("document.body.dataset.labels === '1'");
+    assert_eq!(labels(), "2");
+    browser.drag([455, 400], [0, 0]);
+    browser.wait("/reference 2/.test(document.getElementById('picked').textContent)");
+    assert_eq!(browser.script("return document.querySelector('#surfaces li.picked .number').textContent"), "2");
+    browser.script(
+        "window.saved = []; HTMLAnchorElement.prototype.click = function () { window.saved.push(this.download); };
+         URL.createObjectURL = (blob) => { blob.text().then((text) => window.saved.push(text)); return '#'; };
+         const input = document.querySelectorAll('#surfaces input.name')[1];
+         input.value = ' inlet '; input.dispatchEvent(new Event('change'));
+         document.getElementById('save-names').click();",
+    );
+    browser.wait("window.saved.length === 2");
+    assert_eq!(labels(), "2 inlet");
+    let [file, text] = [0, 1].map(|i| browser.script(&format!("return window.saved[{i}]")));
+    assert_eq!(file, "in.names.json");
+    let saved: serde_json::Value = serde_json::from_str(text.as_str().unwrap()).unwrap();
+    // What was there is kept, and the program reads it.
+    assert_eq!(saved["triangles"]["2"], serde_json::json!({"name": "inlet", "colour": "#12ab34"}));
+    assert_eq!(saved["tetrahedra"]["1"]["name"], "core");
+    let path = folder.path().join("in.meshb");
+    std::fs::write(folder.path().join("in.names.json"), text.as_str().unwrap()).unwrap();
+    let read = geo_adapt::geometry::names::read(&path).unwrap();
+    assert_eq!(read.triangles[&2].name.as_deref(), Some("inlet"));
     assert_eq!(browser.errors(), Vec::<serde_json::Value>::new());
 }
 

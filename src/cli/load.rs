@@ -47,23 +47,23 @@ pub fn model(path: &Path) -> Result<Model, Box<dyn error::Error>> {
 /// Gives a model the names and colours of the file beside it ([`names::beside_model`]), which come before those in the model itself.
 ///
 /// # Errors
-/// When that file is no names file, or names a face, edge or solid that is not there.
+/// When that file is no names file, or is the model's own and names a face, edge or solid that is not there.
 pub fn give_names(model: &mut Model, path: &Path) -> Result<(), Box<dyn error::Error>> {
-    let given = names::read_of_model(path)?;
+    let mut given = names::read_of_model(path)?;
+    let file = names::beside_model(path);
+    // A file that is a mesh's too may name references of that.
+    let is_own = file == names::of_model(path);
     let topology = model.topology();
     let counts = [topology.faces.len(), topology.edges.len(), topology.solids as usize];
-    for ((labels, count), what) in
-        [&given.triangles, &given.edges, &given.tetrahedra].into_iter().zip(counts).zip(["face", "edge", "solid"])
-    {
-        if let Some(number) = labels.keys().find(|&&number| number < 1 || number as usize > count) {
-            let file = names::beside_model(path);
-            return Err(format!(
-                "{}: names {what} {number}, but {} has {count}; take that name out, or move the file away",
-                file.display(),
-                path.display()
-            )
-            .into());
+    let labels = [&mut given.triangles, &mut given.edges, &mut given.tetrahedra];
+    for ((labels, count), what) in labels.into_iter().zip(counts).zip(["face", "edge", "solid"]) {
+        let is_there = |number: i32| number >= 1 && number as usize <= count;
+        if let Some(number) = labels.keys().find(|number| is_own && !is_there(**number)) {
+            let (file, model) = (file.display(), path.display());
+            let remedy = "take that name out, or move the file away";
+            return Err(format!("{file}: names {what} {number}, but {model} has {count}; {remedy}").into());
         }
+        labels.retain(|&number, _| is_there(number));
     }
     let mut all = model.names().clone();
     all.update(given);

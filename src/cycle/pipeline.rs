@@ -9,9 +9,10 @@ use super::observer::Options;
 use super::probe;
 use super::solver::{Before, Job, Solver};
 use super::step::Steps;
-use crate::geometry::{Names, called, names};
+use crate::geometry::{Label, Names, called, names};
 use crate::mesh::io::{Solution, SolutionField, read_mesh, write_mesh, write_solution};
 use crate::mesh::samples::cube;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Size of a picture, pixels: it goes into the report.
@@ -128,6 +129,10 @@ impl<'a> Pipeline<'a> {
                 "-o".into(),
                 text(&field),
             ])?;
+            // What the legend calls it.
+            let asked = self.loaded.config.metric.fields.first();
+            let name = asked.or_else(|| fields.iter().find(|field| field.values == 1).map(|field| &field.name));
+            names::write(&field, &Names::default(), &Vec::from_iter(name.cloned()))?;
             let mut common =
                 vec!["view".into(), text(&mesh), "--field".into(), text(&field), "--color".into(), "field".into()];
             common.extend(["--size".into(), PICTURE.into(), "-q".into()]);
@@ -137,7 +142,7 @@ impl<'a> Pipeline<'a> {
             option(&mut near, "--zoom", output.zoom.as_ref());
             option(&mut near, "--at", output.at.map(|[x, y, z]| format!("{x},{y},{z}")).as_ref());
             let mut hidden = output.hide.clone();
-            hidden.extend(called(&names::read(&mesh)?.triangles, "farfield"));
+            hidden.extend(around(&names::read(&mesh)?.triangles));
             if hidden.is_empty() {
                 surface.extend(near.clone());
             } else {
@@ -146,7 +151,12 @@ impl<'a> Pipeline<'a> {
             }
             surface.extend(["--png".into(), text(&running.file("surface.png"))]);
             running.geo_adapt(surface)?;
+            // Where the picture is to look is told for all of the mesh.
+            if !near.is_empty() {
+                common.extend(["--hide".into(), "none".into()]);
+            }
             common.extend(near);
+            common.extend(["--cut-style".into(), "tets".into()]);
             let plane = output.cut.clone().map_or_else(|| middle(&mesh), Ok)?;
             common.extend(["--cut".into(), plane, "--png".into(), text(&running.file("cut.png"))]);
             running.geo_adapt(common)
@@ -218,4 +228,11 @@ fn middle(mesh: &Path) -> Result<String, Error> {
     let ends =
         vertices.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[0]), high.max(p[0])]);
     Ok(format!("x={}", (ends[0] + ends[1]) / 2.0))
+}
+
+/// What surrounds the body in a flow: it would hide the body, or make it small.
+fn around(labels: &BTreeMap<i32, Label>) -> Vec<i32> {
+    let far = called(labels, "farfield");
+    let both = [far.clone(), called(labels, "symmetry")].concat();
+    if far.is_empty() || both.len() == labels.len() { far } else { both }
 }

@@ -1,9 +1,10 @@
 //! What of a scene is seen: behind a plane, on surfaces that are not hidden, below a quality.
 //!
-//! The cut keeps whole tetrahedra: all that reach behind the plane. So a face between a kept tetrahedron and one that is not kept has all
+//! A cut goes along the plane itself ([`section`](super::section)), or keeps whole tetrahedra: all that reach behind the plane. So a face between a kept tetrahedron and one that is not kept has all
 //! three vertices in front, and the fourth vertex of the kept one is behind. Only tetrahedra with exactly one vertex behind can show a
 //! face, and no neighbours are needed to find them.
 use super::Scene;
+use super::section::{Corner, Heights, Piece};
 use crate::mesh::adjacency::NONE;
 use crate::mesh::vector::{Vec3, dot, norm};
 use crate::tasks::{GRAIN, Team};
@@ -52,11 +53,23 @@ impl std::str::FromStr for Plane {
     }
 }
 
+/// Where a cut goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Style {
+    /// Between tetrahedra, which stay whole.
+    #[default]
+    Tets,
+    /// Along the plane.
+    Plane,
+}
+
 /// Which part of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
     /// What is in front of it is taken away.
     pub plane: Option<Plane>,
+    /// How.
+    pub style: Style,
     /// References of surfaces that are not drawn.
     pub hidden: BTreeSet<i32>,
     /// Only tetrahedra of a quality below this, and no surface.
@@ -71,12 +84,19 @@ pub struct Shown {
     pub faces: Vec<u32>,
     /// Edges.
     pub edges: Vec<u32>,
+    /// What a cut along the plane makes of tetrahedra and triangles that it meets.
+    pub pieces: Vec<Piece>,
+    /// What it leaves of edges that it meets.
+    pub ends: Vec<[Corner; 2]>,
 }
 
 impl Part {
     /// Finds it.
     pub fn of(&self, team: Team<'_>, scene: &Scene<'_>) -> Shown {
         let mesh = scene.mesh;
+        if let (Some(plane), Style::Plane, None) = (self.plane, self.style, self.below) {
+            return self.along(team, scene, plane);
+        }
         let behind =
             team.map(GRAIN, mesh.vertices.len(), |v| self.plane.is_none_or(|plane| plane.is_behind(mesh.vertices[v])));
         let is_behind = |v: u32| behind[v as usize];
@@ -117,7 +137,42 @@ impl Part {
                 |nodes: [u32; 2]| nodes.iter().any(|&v| is_behind(v)) && nodes.iter().all(|&v| on_shown[v as usize]);
             found.extend(range.filter(|&e| seen(scene.ridges.nodes[e])).map(|e| e as u32));
         });
-        Shown { triangles, faces, edges }
+        Shown { triangles, faces, edges, pieces: Vec::new(), ends: Vec::new() }
+    }
+
+    /// What a cut along the plane leaves.
+    fn along(&self, team: Team<'_>, scene: &Scene<'_>, plane: Plane) -> Shown {
+        let (mesh, surface) = (scene.mesh, &scene.surface.triangles);
+        let heights = Heights::of(team, &mesh.vertices, plane);
+        let clipped = team.chunks(GRAIN, surface.len(), |range| {
+            let (mut whole, mut pieces) = (Vec::new(), Vec::new());
+            for t in range.filter(|&t| !self.hidden.contains(&surface.refs[t])) {
+                if heights.clip_triangle(t as u32, surface.nodes[t], &mut pieces) {
+                    whole.push(t as u32);
+                }
+            }
+            (whole, pieces)
+        });
+        let (mut triangles, mut pieces) = (Vec::new(), Vec::new());
+        for (whole, of_triangles) in clipped {
+            triangles.extend(whole);
+            pieces.extend(of_triangles);
+        }
+        pieces.extend(team.collect(GRAIN, mesh.tets.len(), |range, found| {
+            range.for_each(|tet| heights.cut_tet(tet as u32, mesh.tets.nodes[tet], found));
+        }));
+        let on_shown = self.vertices(scene);
+        let (mut edges, mut ends) = (Vec::new(), Vec::new());
+        for (e, &nodes) in (0..).zip(&scene.ridges.nodes) {
+            if !nodes.iter().all(|&v| on_shown[v as usize]) {
+                continue;
+            }
+            match heights.clip_edge(nodes) {
+                Some([a, b]) if a.ends[0] == a.ends[1] && b.ends[0] == b.ends[1] => edges.push(e),
+                part => ends.extend(part),
+            }
+        }
+        Shown { triangles, faces: Vec::new(), edges, pieces, ends }
     }
 
     /// Whether each vertex is one of a triangle that is not hidden; the plane does not matter.

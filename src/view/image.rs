@@ -55,6 +55,12 @@ impl Image {
         x
     }
 
+    /// What is under a text becomes of one colour, so that it can be read on any.
+    pub fn halo(&mut self, text: &str, at: [f64; 2], height: f64, colour: Rgb) {
+        let (segments, _) = font::lay_out(text, at, height);
+        self.strokes(&segments, (0.075 * height).max(0.55) + (0.2 * height).max(1.5), colour);
+    }
+
     fn blend(&mut self, x: usize, y: usize, colour: Rgb, cover: f32) {
         let pixel = &mut self.pixels[y * self.width + x];
         (0..3).for_each(|i| pixel[i] += cover * (colour[i] - pixel[i]));

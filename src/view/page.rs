@@ -1,8 +1,10 @@
 //! One HTML file with all that is needed to see a mesh: data, program and style. It loads nothing.
 use super::colour::{self, Rgb};
+use super::cut::Style;
 use super::pack::{Entry, Kind, Packer};
 use super::picture::{Colour, Options};
-use super::scene::{Reference, Scene};
+use super::scene::{NamesFile, OfModel, Reference, Scene};
+use super::streamlines::{Point, streamlines};
 use crate::mesh::io::{Batch, Error};
 use crate::mesh::vector::{Vec3, sub};
 use crate::tasks::{GRAIN, Team};
@@ -14,14 +16,17 @@ const FRAME: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
 
 /// The program, in the order of what builds on what.
-const PROGRAM: [&str; 8] = [
+const PROGRAM: [&str; 11] = [
     include_str!("page/inflate.js"),
     include_str!("page/data.js"),
     include_str!("page/camera.js"),
+    include_str!("page/section.js"),
     include_str!("page/model.js"),
     include_str!("page/paint.js"),
     include_str!("page/mouse.js"),
     include_str!("page/panel.js"),
+    include_str!("page/labels.js"),
+    include_str!("page/names.js"),
     include_str!("page/main.js"),
 ];
 
@@ -40,6 +45,9 @@ struct Head<'s> {
     figures: &'s [[String; 2]],
     maps: Maps,
     start: Start<'s>,
+    /// How many entities a model has; of a mesh the page counts itself.
+    counts: Option<&'s str>,
+    names: &'s NamesFile,
 }
 
 #[derive(Serialize)]
@@ -48,6 +56,8 @@ struct Listed<'s> {
     count: usize,
     name: Option<&'s str>,
     colour: String,
+    /// What else there is to tell.
+    about: Option<&'s str>,
 }
 
 #[derive(Serialize)]
@@ -66,9 +76,13 @@ struct Start<'s> {
     plane: Option<(Vec3, f64)>,
     hidden: &'s BTreeSet<i32>,
     below: Option<f32>,
+    /// Whether the cut goes along the plane.
+    along: bool,
+    isolines: u32,
     colour: String,
     range: Option<[f32; 2]>,
     wire: bool,
+    numbers: bool,
 }
 
 #[derive(Serialize)]
@@ -99,15 +113,15 @@ pub fn add_page(
     options: &Options,
     path: &Path,
 ) -> Result<(), Error> {
-    let packer = packed(team, scene);
+    let packer = packed(team, scene, &streamlines(team, scene, options));
     let given = &scene.given;
     let head = Head {
         title: &given.title,
         centre: scene.centre(),
         bounds: scene.bounds,
         arrays: &packer.entries,
-        surfaces: scene.surfaces.iter().map(listed).collect(),
-        regions: scene.regions.iter().map(listed).collect(),
+        surfaces: scene.surfaces.iter().map(|one| listed(one, given.model.as_ref())).collect(),
+        regions: scene.regions.iter().map(|one| listed(one, None)).collect(),
         fields: given
             .fields
             .iter()
@@ -118,6 +132,8 @@ pub fn add_page(
         figures: &given.figures,
         maps: Maps { quality: colour::QUALITY, field: colour::FIELD, nothing: colour::NOTHING },
         start: start(options),
+        counts: given.model.as_ref().map(|model| model.counts.as_str()),
+        names: &given.names_file,
     };
     // A "<" in a string could end the element that it stands in.
     let head = serde_json::to_string(&head).unwrap_or_default().replace('<', "\\u003c");
@@ -151,7 +167,7 @@ fn start(options: &Options) -> Start<'_> {
         Colour::Quality => "quality".into(),
         Colour::Field(number) => format!("field {number}"),
     };
-    let Options { view, at, zoom, part, range, wire, .. } = options;
+    let Options { view, at, zoom, part, range, wire, numbers, isolines, .. } = options;
     let plane = part.plane.map(|plane| (plane.normal, plane.offset));
     Start {
         view: *view,
@@ -160,18 +176,26 @@ fn start(options: &Options) -> Start<'_> {
         plane,
         hidden: &part.hidden,
         below: part.below,
+        along: part.style == Style::Plane,
+        isolines: *isolines,
         colour,
         range: *range,
         wire: *wire,
+        numbers: *numbers,
     }
 }
 
-fn listed(reference: &Reference) -> Listed<'_> {
-    let Reference { reference, count, name, colour } = reference;
-    Listed { reference: *reference, count: *count, name: name.as_deref(), colour: colour::hexadecimal(*colour) }
+fn listed<'s>(one: &'s Reference, model: Option<&'s OfModel>) -> Listed<'s> {
+    Listed {
+        reference: one.reference,
+        count: one.count,
+        name: one.name.as_deref(),
+        colour: colour::hexadecimal(one.colour),
+        about: model.and_then(|model| model.about.get(&one.reference)).map(String::as_str),
+    }
 }
 
-fn packed<'t>(team: Team<'t>, scene: &Scene<'_>) -> Packer<'t> {
+fn packed<'t>(team: Team<'t>, scene: &Scene<'_>, flow: &[Vec<Point>]) -> Packer<'t> {
     let (mesh, centre) = (scene.mesh, scene.centre());
     let near = |p: Vec3| sub(p, centre).map(|x| x as f32);
     let place = |list: &[Reference], reference: i32| list.partition_point(|one| one.reference < reference) as u32;
@@ -202,6 +226,11 @@ fn packed<'t>(team: Team<'t>, scene: &Scene<'_>) -> Packer<'t> {
         })
         .collect();
     packer.reals("model edges", &chords);
+    let flow = flow.iter().flat_map(|line| line.windows(2)).map(|ends| {
+        let [a, b] = [0, 1].map(|i| near(ends[i].at));
+        [a[0], a[1], a[2], b[0], b[1], b[2]]
+    });
+    packer.reals("streamlines", &flow.collect::<Vec<_>>());
     packer
 }
 

@@ -37,6 +37,8 @@ pub struct Triangle {
     pub shade: f32,
     /// Its colour.
     pub fill: Fill,
+    /// A bit for each side, opposite to the corner of that number, that has a line where there are lines between elements.
+    pub sides: u8,
 }
 
 /// A line in the picture, hidden by what is before it.
@@ -151,7 +153,7 @@ impl Band {
                 }
                 self.near[start + column] = near;
                 let mut colour = flat.unwrap_or_else(|| triangle.mixed(w, drawing.map));
-                if dark > 0.0 && (0..3).any(|i| w[i] * heights[i] < reach) {
+                if dark > 0.0 && (0..3).any(|i| triangle.sides >> i & 1 == 1 && w[i] * heights[i] < reach) {
                     colour = colour.map(|x| x * (1.0 - dark));
                 }
                 self.colours[start + column] = colour;
@@ -227,7 +229,8 @@ mod tests {
 
     fn square(depth: [f64; 4], colour: Rgb) -> [Triangle; 2] {
         let p = [[10.0, 10.0, depth[0]], [50.0, 10.0, depth[1]], [50.0, 50.0, depth[2]], [10.0, 50.0, depth[3]]];
-        let triangle = |i: [usize; 3]| Triangle { corners: i.map(|i| p[i]), shade: 1.0, fill: Fill::Flat(colour) };
+        let triangle =
+            |i: [usize; 3]| Triangle { corners: i.map(|i| p[i]), shade: 1.0, fill: Fill::Flat(colour), sides: 0b111 };
         [triangle([0, 1, 2]), triangle([2, 3, 0])]
     }
 

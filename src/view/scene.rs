@@ -1,5 +1,6 @@
 //! All there is to show of a mesh.
 use super::colour::{self, Rgb};
+use super::streamlines::Velocity;
 use super::surface::{self, Surface};
 use super::values::{self, ScalarField};
 use crate::geometry::{Label, Names};
@@ -8,6 +9,7 @@ use crate::mesh::{Elements, TetMesh};
 use crate::metric::Sym3;
 use crate::metric::statistics::by_reference;
 use crate::tasks::{GRAIN, Team};
+use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Classes of the histogram of the qualities, of equal width.
@@ -22,12 +24,37 @@ pub struct Given {
     pub logs: Option<Vec<Sym3>>,
     /// What to colour by, besides.
     pub fields: Vec<ScalarField>,
+    /// What streamlines follow.
+    pub velocity: Option<Velocity>,
     /// Names of references.
     pub names: Names,
+    /// The file that names typed on the page belong into.
+    pub names_file: NamesFile,
+    /// What is told of a model where one is shown, not a mesh.
+    pub model: Option<OfModel>,
     /// Edges of the model as polygons.
     pub model_edges: Vec<Vec<Vec3>>,
     /// What is told beside the picture: name and value.
     pub figures: Vec<[String; 2]>,
+}
+
+/// A names file as it is so far.
+#[derive(Default, Serialize)]
+pub struct NamesFile {
+    /// What it is called, without its folder.
+    pub file: String,
+    /// What is in it.
+    pub names: Names,
+    /// Names of fields that are in it.
+    pub fields: Vec<String>,
+}
+
+/// What is told of a model that is shown: its triangles have the numbers of its faces as references.
+pub struct OfModel {
+    /// How many entities it has.
+    pub counts: String,
+    /// A line on each face, by its number.
+    pub about: BTreeMap<i32, String>,
 }
 
 /// Shapes of the elements.

@@ -4,9 +4,11 @@ use super::colour::{self, Rgb};
 use super::cut::Plane;
 use super::font;
 use super::image::Image;
-use super::picture::{Colour, Options, range_of};
+use super::labels::Spot;
+use super::picture::{Colour, Options, levels, range_of};
 use super::scene::{Reference, Scene};
 use super::values::ScalarField;
+use std::collections::BTreeSet;
 
 /// Background.
 pub const PAPER: Rgb = [1.0; 3];
@@ -64,12 +66,15 @@ impl Sheet<'_> {
         let scene = self.scene;
         self.text(&scene.given.title, [30.0, 40.0], 13.0, INK);
         let [tets, triangles] = [scene.mesh.tets.len(), scene.surface.triangles.len()];
-        let mut line = format!(
-            "{} vertices   {} tetrahedra   {} triangles",
-            grouped(scene.mesh.vertices.len()),
-            grouped(tets),
-            grouped(triangles)
-        );
+        let mut line = match &scene.given.model {
+            Some(model) => model.counts.replace(", ", "   "),
+            None => format!(
+                "{} vertices   {} tetrahedra   {} triangles",
+                grouped(scene.mesh.vertices.len()),
+                grouped(tets),
+                grouped(triangles)
+            ),
+        };
         if let Some(Plane { normal: [x, y, z], offset }) = self.options.part.plane {
             let normal = match [x, y, z].map(|x| x.abs() == 1.0) {
                 [true, ..] => format!("x = {}", short(offset * x)),
@@ -80,13 +85,49 @@ impl Sheet<'_> {
             line += &format!("   cut at {normal}");
         }
         if !self.options.part.hidden.is_empty() {
-            let hidden: Vec<String> = self.options.part.hidden.iter().map(i32::to_string).collect();
+            let hidden = self.options.part.hidden.iter().map(|reference| {
+                let label = scene.given.names.triangles.get(reference);
+                label.and_then(|label| label.name.clone()).unwrap_or_else(|| reference.to_string())
+            });
+            let mut hidden: Vec<String> = hidden.collect();
+            let mut known = BTreeSet::new();
+            hidden.retain(|name| known.insert(name.clone()));
             line += &clipped(&format!("   without {}", hidden.join(", ")), 200.0);
+        }
+        if let (Some(velocity), 1..) = (&scene.given.velocity, self.options.streamlines) {
+            line += &format!("   streamlines of {}", velocity.name);
         }
         if let Some(below) = self.options.part.below {
             line += &format!("   mean ratio below {}: {} tetrahedra", short(f64::from(below)), grouped(self.alone));
         }
         self.text(&line, [30.0, 62.0], 8.5, PALE);
+    }
+
+    /// A message under the title.
+    pub fn say(&mut self, message: &str) {
+        self.text(message, [38.0, 94.0], 8.5, [0.72, 0.16, 0.12]);
+    }
+
+    /// Numbers and names on surfaces, the roomiest first; what would lie on another label is left out.
+    pub fn labels(&mut self, labels: &[(Spot, String)]) {
+        const HEIGHT: f64 = 9.5;
+        let mut taken: Vec<[f64; 4]> = Vec::new();
+        for (spot, text) in labels {
+            let text = clipped(text, 150.0);
+            let wide = font::width(&text, HEIGHT);
+            let [x, y] = spot.at.map(|x| x / self.unit);
+            let [left, top] = [x - 0.5 * wide - 3.0, y - 0.5 * HEIGHT - 3.0];
+            let place = [left, top, left + wide + 6.0, top + HEIGHT + 6.0];
+            let apart = |other: &[f64; 4]| {
+                place[2] < other[0] || other[2] < place[0] || place[3] < other[1] || other[3] < place[1]
+            };
+            if !taken.iter().all(apart) {
+                continue;
+            }
+            taken.push(place);
+            self.image.halo(&text, [left + 3.0, top + 3.0 + HEIGHT].map(|x| x * self.unit), HEIGHT * self.unit, PAPER);
+            self.text(&text, [left + 3.0, top + 3.0 + HEIGHT], HEIGHT, INK);
+        }
     }
 
     /// The directions of the axes.
@@ -132,11 +173,12 @@ impl Sheet<'_> {
         let (left, mut y) = (width - 190.0, 96.0);
         let scene = self.scene;
         let cut = self.options.part.plane.is_some() || self.options.part.below.is_some();
-        let lists = [("surfaces", &scene.surfaces, true), ("regions", &scene.regions, cut)];
+        let surfaces = if scene.given.model.is_some() { "faces" } else { "surfaces" };
+        let lists = [(surfaces, &scene.surfaces, true), ("regions", &scene.regions, cut)];
         for (what, list, _) in lists.into_iter().filter(|(_, list, wanted)| *wanted && !list.is_empty()) {
             self.text(what, [left, y], 9.0, PALE);
             y += 22.0;
-            let hidden = |one: &&Reference| what == "surfaces" && self.options.part.hidden.contains(&one.reference);
+            let hidden = |one: &&Reference| what == surfaces && self.options.part.hidden.contains(&one.reference);
             let seen: Vec<&Reference> = list.iter().filter(|one| !hidden(one)).collect();
             for (number, one) in seen.iter().enumerate() {
                 if y > height - 90.0 {
@@ -166,6 +208,21 @@ impl Sheet<'_> {
         for (line, part) in name.split(", ").enumerate() {
             self.text(&clipped(part, 190.0), [width - 206.0, 98.0 + 18.0 * line as f64], 9.0, INK);
         }
+        let mut marks = Vec::new();
+        let levels = levels(scene, self.options);
+        if let [first, second, ..] = levels[..] {
+            let step = if logarithmic {
+                "isolines".into()
+            } else {
+                format!("isolines every {}", short(f64::from(second - first)))
+            };
+            self.text(&step, [width - 206.0, 116.0], 7.5, PALE);
+        }
+        for y in
+            levels.iter().map(|&level| top + high * (1.0 - f64::from(ScalarField::place(level, range, logarithmic))))
+        {
+            marks.push([[left, y], [left + wide, y]]);
+        }
         if self.options.colour == Colour::Quality {
             self.histogram([left - 8.0, top, 80.0, high]);
         }
@@ -174,6 +231,7 @@ impl Sheet<'_> {
             let place = [left * self.unit, top * self.unit + row as f64, wide * self.unit, 1.0];
             self.image.rectangle(place, colour::between(map, 1.0 - (row as f32 + 0.5) / rows as f32));
         }
+        marks.into_iter().for_each(|ends| self.stroke(ends, INK));
         for value in ticks(range, logarithmic) {
             let y = top + high * (1.0 - f64::from(ScalarField::place(value, range, logarithmic)));
             self.stroke([[left + wide, y], [left + wide + 5.0, y]], INK);
@@ -212,8 +270,13 @@ fn clipped(text: &str, width: f64) -> String {
     kept + "..."
 }
 
-/// Round numbers between the ends.
-fn ticks([low, high]: [f32; 2], logarithmic: bool) -> Vec<f32> {
+/// Round numbers between the ends, as a legend has them.
+fn ticks(range: [f32; 2], logarithmic: bool) -> Vec<f32> {
+    between(range, logarithmic, 8)
+}
+
+/// Round numbers between the ends, about so many.
+pub fn between([low, high]: [f32; 2], logarithmic: bool, count: usize) -> Vec<f32> {
     if low >= high {
         return vec![low];
     }
@@ -222,11 +285,11 @@ fn ticks([low, high]: [f32; 2], logarithmic: bool) -> Vec<f32> {
         let slack = 1e-6;
         let first = (f64::from(low).log10() - slack).ceil() as i32;
         let last = (f64::from(high).log10() + slack).floor() as i32;
-        let step = ((last - first) / 8 + 1) as usize;
+        let step = ((last - first) / count as i32 + 1) as usize;
         return (first..=last).step_by(step).map(|power| 10.0f64.powi(power) as f32).collect();
     }
     let (low, high) = (f64::from(low), f64::from(high));
-    let rough = (high - low) / 8.0;
+    let rough = (high - low) / count as f64;
     let ten = 10.0f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|x| x * ten).find(|&x| x >= rough).unwrap_or(rough);
     let first = (low / step - 1e-9).ceil() as i64;
@@ -235,7 +298,7 @@ fn ticks([low, high]: [f32; 2], logarithmic: bool) -> Vec<f32> {
 }
 
 /// A number for a label: four figures, no zeros at its end.
-fn short(x: f64) -> String {
+pub fn short(x: f64) -> String {
     let magnitude = x.abs();
     if magnitude != 0.0 && !(1e-3..1e5).contains(&magnitude) {
         let text = format!("{x:.2e}");

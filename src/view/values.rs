@@ -1,5 +1,5 @@
 //! Numbers to colour by: qualities of elements, fields at vertices.
-use crate::mesh::io::{FieldKind, Solution, SolutionField};
+use crate::mesh::io::FieldKind;
 use crate::mesh::vector::{area2, dot, norm, scale, sub};
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::{Sym3, mean_ratios};
@@ -35,20 +35,7 @@ impl ScalarField {
         Self { name, values, range, logarithmic: range[0] > 0.0 && range[1] > Self::WIDE * range[0] }
     }
 
-    /// The fields of a solution: scalars as they are, lengths of vectors, Frobenius norms of tensors.
-    pub fn of_solution(team: Team<'_>, name: &str, solution: &Solution) -> Vec<Self> {
-        let several = solution.fields.len() > 1;
-        let one = |(field, number): (&SolutionField, usize)| {
-            let mut found = Self::of_values(team, name, field.kind, &field.values);
-            if several {
-                found.name += &format!(" {number}");
-            }
-            found
-        };
-        solution.fields.iter().zip(1..).map(one).collect()
-    }
-
-    /// A field of such a kind, shape (vertices, values of the kind).
+    /// A field of such a kind, shape (vertices, values of the kind): scalars as they are, lengths of vectors, Frobenius norms of tensors.
     pub fn of_values(team: Team<'_>, name: &str, kind: FieldKind, values: &[f64]) -> Self {
         let width = kind.values();
         let lengths = team.map(GRAIN, values.len() / width, |v| {
@@ -130,7 +117,6 @@ pub fn of_triangles(team: Team<'_>, mesh: &TetMesh, triangles: &Elements<3>, log
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::io::SolutionField;
     use crate::mesh::samples::cube;
 
     #[test]
@@ -151,13 +137,14 @@ mod tests {
 
     #[test]
     fn fields_of_all_kinds_become_one_number() {
-        let fields = vec![
-            SolutionField { kind: FieldKind::Scalar, values: vec![-2.0, 3.0] },
-            SolutionField { kind: FieldKind::Vector, values: vec![3.0, 4.0, 0.0, 0.0, 0.0, 1.0] },
-            SolutionField { kind: FieldKind::SymmetricTensor, values: [[0.0, 3.0, 0.0, 0.0, 0.0, 0.0]; 2].concat() },
-        ];
-        let found = ScalarField::of_solution(Team::alone(), "u", &Solution { vertices: 2, fields });
-        assert_eq!(found.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["u 1", "|u| 2", "|u| 3"]);
+        let tensors = [[0.0, 3.0, 0.0, 0.0, 0.0, 0.0]; 2].concat();
+        let found = [
+            (FieldKind::Scalar, vec![-2.0, 3.0]),
+            (FieldKind::Vector, vec![3.0, 4.0, 0.0, 0.0, 0.0, 1.0]),
+            (FieldKind::SymmetricTensor, tensors),
+        ]
+        .map(|(kind, values)| ScalarField::of_values(Team::alone(), "u", kind, &values));
+        assert_eq!(found.each_ref().map(|f| f.name.as_str()), ["u", "|u|", "|u|"]);
         assert_eq!(found[0].range, [-2.0, 3.0]);
         assert_eq!(found[1].values, [5.0, 1.0]);
         assert!((found[2].values[0] - 18.0f32.sqrt()).abs() < 1e-6);

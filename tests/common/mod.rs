@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 pub mod adapting;
+#[cfg(feature = "cli")]
+pub mod viewing;
 
 /// A file of the shared cases, such as `cube/cube-linear-00.meshb`, or None where they are not: then the test
 /// says so on stderr, and its caller passes over it. They lie beside the project, or where GEO_ADAPT_SHARED says.

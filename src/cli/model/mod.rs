@@ -38,7 +38,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let target = Files::new().reads([path]).writes(&to, "--name", &["json"])?;
     let mut model = load::model(path)?;
     let found = naming::faces(&model, &arguments.name).map_err(|error| format!("{}: {error}", path.display()))?;
+    // Of names that a BREP file shares with a mesh those of the model are taken over.
     let mut kept = names::read_of_model(path)?;
+    kept.triangles.retain(|number, _| model.names().triangles.contains_key(number));
+    kept.edges.retain(|number, _| model.names().edges.contains_key(number));
+    kept.tetrahedra.retain(|number, _| model.names().tetrahedra.contains_key(number));
     naming::name(&mut kept, &found);
     let mut outputs = Outputs::new();
     outputs.names(&target, &kept)?;

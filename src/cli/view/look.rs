@@ -23,6 +23,15 @@ pub struct LookArguments {
     /// A plane: only the tetrahedra that reach behind it are shown: x=0.5, -z=0.1 (the other side), or a normal: 1,1,0=0.5
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true)]
     pub cut: Option<Plane>,
+    /// Where the cut goes: along the plane, or between whole tetrahedra [default: plane for fields and models, else tets]
+    #[arg(long, value_name = "STYLE", value_enum, requires = "cut")]
+    pub cut_style: Option<CutStyle>,
+    /// About how many lines of equal value a field has on a cut along the plane, else on the surface [default: 20 on such a cut]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub isolines: Option<u32>,
+    /// So many streamlines of the velocity, the first field of --field that is a vector [without a number: 40]
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_missing_value = "40", value_parser = clap::value_parser!(u32).range(1..=2000))]
+    pub streamlines: Option<u32>,
     /// What elements are coloured by: reference, quality, field, distance (with --cad), size, aspect (with a metric),
     /// or a field's name [default: field, else quality, on a cut or in a metric, else reference]
     #[arg(long, visible_alias = "colour", value_name = "BY")]
@@ -30,15 +39,28 @@ pub struct LookArguments {
     /// Ends of the colours of a field [default: its least and greatest value]
     #[arg(long, value_name = "A,B", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<Range>,
-    /// Surfaces that are not shown, by reference; the others fill the picture
-    #[arg(long, value_name = "REF,…", value_delimiter = ',', allow_negative_numbers = true)]
-    pub hide: Vec<i32>,
+    /// Surfaces that are not shown, by reference or name; the others fill the picture [default: farfield and symmetry, where a surface is
+    /// called farfield; none: all are shown]
+    #[arg(long, value_name = "REF|NAME,…", value_delimiter = ',', allow_negative_numbers = true)]
+    pub hide: Vec<String>,
     /// Only tetrahedra of a mean ratio below this, and no surface
     #[arg(long, value_name = "Q", value_parser = crate::cli::positive, allow_negative_numbers = true)]
     pub below: Option<f64>,
     /// No lines between the elements
     #[arg(long)]
     pub no_wire: bool,
+    /// Whether surfaces have their number and name on them [default: yes for a model, no for a mesh]
+    #[arg(long, value_name = "yes|no", num_args = 0..=1, default_missing_value = "yes", require_equals = true, value_parser = yes_or_no)]
+    pub numbers: Option<bool>,
+}
+
+/// Where a cut goes.
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub enum CutStyle {
+    /// Along the plane: the field, interpolated
+    Plane,
+    /// Between tetrahedra: all that reach behind the plane are whole
+    Tets,
 }
 
 // Types of their own: clap would take a bare array for something else.
@@ -63,6 +85,14 @@ fn view(text: &str) -> Result<Direction, String> {
     match numbers(text) {
         Some([azimuth, elevation]) if (-90.0..=90.0).contains(&elevation) => Ok(Direction([azimuth, elevation])),
         _ => Err("give azimuth and elevation in degrees, such as -55,25; the elevation from -90 to 90".into()),
+    }
+}
+
+fn yes_or_no(text: &str) -> Result<bool, String> {
+    match text {
+        "yes" => Ok(true),
+        "no" => Ok(false),
+        _ => Err("give yes or no".into()),
     }
 }
 

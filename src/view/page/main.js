@@ -14,11 +14,11 @@ async function start() {
   const model = new Model(head, arrays);
   const camera = new Camera();
   const first = head.start;
-  byId("counts").textContent = `${grouped(model.vertexCount)} vertices · ${grouped(model.tetCount)} tetrahedra · ${grouped(model.triangleCount)} triangles`;
+  byId("counts").textContent = head.counts || `${grouped(model.vertexCount)} vertices · ${grouped(model.tetCount)} tetrahedra · ${grouped(model.triangleCount)} triangles`;
   const hidden = new Set(head.surfaces.flatMap((one, place) => (first.hidden.includes(one.reference) ? [place] : [])));
   const look = {
     camera, radius: model.radius, nothing: head.maps.nothing, background: [1, 1, 1], ridge: [0.09, 0.11, 0.16],
-    wire: first.wire && model.triangleCount < 400000, ridges: true, model: true, range: [0, 1], logarithmic: false, colours: "references",
+    wire: first.wire && model.triangleCount < 400000, ridges: true, model: true, streamlines: true, range: [0, 1], logarithmic: false, colours: "references",
   };
   let kind = "reference";
   const status = { state: "loading", frames: 0, camera, look, model, inflate, part: null };
@@ -28,6 +28,23 @@ async function start() {
   painter.loadColours("quality", head.maps.quality, true);
   painter.loadColours("field", head.maps.field, true);
   painter.load(painter.surface, model.surfaceSoup());
+  painter.loadLines(painter.streamlines, model.streamlines);
+
+  // Labels of a large mesh come when the picture stands still.
+  let labelling = 0;
+  const placeLabels = () => {
+    clearTimeout(labelling);
+    byId("labels").replaceChildren();
+    if (!byId("numbers").checked) return;
+    const place = () => {
+      const { clientWidth, clientHeight } = byId("stage");
+      drawLabels(spotsOf(model, cutPositions, camera, clientWidth, clientHeight, 3), (one) => [head.surfaces[one].reference, head.surfaces[one].name].filter(Boolean).join(" "));
+      document.body.dataset.labels = byId("labels").childElementCount;
+    };
+    if (model.shown.length + model.faces.length < 20000) place();
+    else labelling = setTimeout(place, 100);
+  };
+  let cutPositions = [];
 
   // Drawing waits for the next frame; `stale` says what has to be made anew before.
   let waiting = false;
@@ -46,14 +63,27 @@ async function start() {
       model.show(status.part);
       showLimit();
       painter.choose(model.shown);
-      painter.load(painter.cut, model.cutSoup());
+      const soup = model.pieces ? model.pieceSoup(kind in head.fields) : model.cutSoup();
+      cutPositions = soup.positions;
+      painter.load(painter.cut, soup);
       painter.loadValues(painter.cut, model.cutValues(kind));
       painter.loadLines(painter.lines, model.lineEnds());
       painter.loadLines(painter.model, model.modelEnds());
     }
     if (stale.values) {
       painter.loadValues(painter.surface, model.surfaceValues(kind));
-      if (!stale.part) painter.loadValues(painter.cut, model.cutValues(kind));
+      if (!stale.part) {
+        if (model.pieces) painter.load(painter.cut, model.pieceSoup(kind in head.fields));
+        painter.loadValues(painter.cut, model.cutValues(kind));
+      }
+    }
+    if (stale.part || stale.values || stale.isolines) {
+      const field = head.fields[kind] && byId("isolines").checked ? model.fields[kind] : null;
+      const shownRange = look.logarithmic ? look.range.map(Math.exp) : look.range;
+      const ends = isolinesOf(model, field, field ? ticks(shownRange, look.logarithmic, first.isolines || 20) : []);
+      painter.loadLines(painter.isolines, ends);
+      document.body.dataset.isolines = ends.length / 6;
+      stale.isolines = false;
     }
     stale.part = stale.values = false;
     const error = painter.draw(look);
@@ -61,8 +91,12 @@ async function start() {
     drawRuler(camera);
     status.frames++;
     status.state = error ? "error" : "drawn";
+    const plane = status.part.plane;
+    if (plane && !error) message.textContent = model.behind.every((one) => !one) ? "The cut takes all away: nothing is behind the plane." : model.behind.every((one) => one) ? "The cut meets nothing: all is behind the plane." : "";
+    else if (!error) message.textContent = "";
+    placeLabels();
     Object.assign(document.body.dataset, {
-      state: status.state, webgl: painter.version, frames: status.frames, triangles: model.shown.length, faces: model.faces.length,
+      state: status.state, webgl: painter.version, frames: status.frames, triangles: model.shown.length, faces: model.faces.length, pieces: model.pieces ? model.pieces.count : 0,
       azimuth: camera.azimuth.toFixed(2), elevation: camera.elevation.toFixed(2),
     });
     if (error) message.textContent = "WebGL: error " + error;
@@ -88,7 +122,7 @@ async function start() {
   const partOf = () => {
     const sign = cut.flipped ? -1 : 1;
     const plane = byId("cutting").checked ? { normal: normalOf().map((x) => sign * x), offset: sign * offsetOf() } : null;
-    return { plane, hidden, below: byId("filtering").checked ? byId("below").value / 1000 : null };
+    return { plane, hidden, below: byId("filtering").checked ? byId("below").value / 1000 : null, along: byId("along").checked };
   };
   const showPlane = () => {
     byId("offset").value = 1000 * cut.share;
@@ -125,6 +159,7 @@ async function start() {
   const setRange = ([low, high]) => {
     const safe = (x) => (look.logarithmic ? Math.log(Math.max(x, 1e-37)) : x);
     look.range = [safe(low), safe(high)];
+    stale.isolines = true;
     [byId("low").value, byId("high").value, byId("logarithmic").checked] = [short(low), short(high), look.logarithmic];
     byId("legend").hidden = look.colours === "references";
     if (look.colours === "quality") drawLegend({ name: head.quality, stops: head.maps.quality, range: [0, 1], logarithmic: false, histogram: head.histogram });
@@ -153,14 +188,18 @@ async function start() {
     setRange(low < high ? [low, high] : head.fields[kind].range);
   };
   for (const id of ["low", "high", "logarithmic"]) byId(id).onchange = typedRange;
-  for (const id of ["wire", "ridges", "model"]) {
+  for (const id of ["wire", "ridges", "model", "streamlines"]) {
     byId(id).checked = look[id];
     byId(id).onchange = (event) => {
       look[id] = event.target.checked;
       redraw();
     };
   }
+  byId("numbers").checked = first.numbers;
+  byId("numbers").onchange = placeLabels;
+  if (head.counts) byId("surfaces-title").textContent = "Faces";
   byId("with-model").hidden = model.chords.length === 0;
+  byId("with-streamlines").hidden = model.streamlines.length === 0;
   byId("axis").append(...["x", "y", "z", "free"].map((axis) => make("label", {}, make("input", {
     type: "radio", name: "axis", value: axis, checked: axis === cut.axis, onchange: () => {
       cut.axis = axis;
@@ -186,6 +225,16 @@ async function start() {
     event.target.blur();
     if (Number.isFinite(typed)) setOffset(typed);
   };
+  byId("along").checked = first.along;
+  byId("along").onchange = () => {
+    stale.part = true;
+    redraw();
+  };
+  byId("isolines").checked = first.isolines > 0 || !first.plane;
+  byId("isolines").onchange = () => {
+    stale.isolines = true;
+    redraw();
+  };
   byId("cutting").onchange = (event) => {
     if (event.target.checked) faceViewer();
     if (event.target.checked && kind === "reference") setColour("quality");
@@ -207,7 +256,7 @@ async function start() {
     redraw();
   };
   byId("cut").hidden = byId("worst").hidden = byId("bodies").hidden = model.tetCount === 0;
-  const boxes = () => [...byId("surfaces").querySelectorAll("input")];
+  const boxes = () => [...byId("surfaces").querySelectorAll("[type=checkbox]")];
   const hide = (place, on) => {
     if (on) hidden.delete(place);
     else hidden.add(place);
@@ -216,6 +265,7 @@ async function start() {
   };
   listReferences(byId("surfaces"), head.surfaces, hide, (place) => fit((other) => other === place));
   listReferences(byId("regions"), head.regions);
+  listenToNames(head, head.surfaces, placeLabels);
   boxes().forEach((box, place) => { box.checked = isShown(place); });
   for (const [id, on] of [["all", true], ["none", false]]) {
     byId(id).onclick = () => boxes().forEach((box, place) => {
@@ -224,7 +274,9 @@ async function start() {
     });
   }
   listen(canvas, camera, redraw, (x, y) => {
-    describe(model.pick(camera, x / camera.scale, -y / camera.scale), {
+    const found = model.pick(camera, x / camera.scale, -y / camera.scale);
+    markPicked(found?.kind === "triangle" ? model.surfaces[found.element] : -1);
+    describe(found, {
       head, regions: model.regions, surfaces: model.surfaces, quality: model.quality, fields: model.fields,
       qualityOfTriangle: (t) => model.qualityOfTriangle(t),
     });
@@ -239,11 +291,7 @@ async function start() {
 
   function savePicture() {
     draw();
-    canvas.toBlob((blob) => {
-      const link = make("a", { href: URL.createObjectURL(blob), download: head.title.replace(/[^\w.-]+/g, "-") + ".png" });
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-    });
+    canvas.toBlob((blob) => offer(blob, head.title.replace(/[^\w.-]+/g, "-") + ".png"));
   }
 
   const dark = window.matchMedia("(prefers-color-scheme: dark)");

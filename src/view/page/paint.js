@@ -100,6 +100,8 @@ class Painter {
     this.cut = {};
     this.lines = { count: 0 };
     this.model = { count: 0 };
+    this.isolines = { count: 0 };
+    this.streamlines = { count: 0 };
     this.textures = {};
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
@@ -132,10 +134,11 @@ class Painter {
   }
 
   /** Triangles as Model.soup makes them, into this.surface or this.cut. */
-  load(part, { positions, normals, count }) {
+  load(part, { positions, normals, count, corners = null }) {
     part.positions = this.fill(part.positions, positions);
     part.normals = this.fill(part.normals, normals);
     part.count = count;
+    part.ownCorners = corners ? this.fill(part.ownCorners, corners) : null;
     if (count > this.cornerCount) {
       const corners = new Uint8Array(12 * count);
       for (let t = 0; t < count; t++) corners[12 * t] = corners[12 * t + 5] = corners[12 * t + 10] = 1;
@@ -234,7 +237,7 @@ class Painter {
       if (!count) continue;
       this.attribute(this.triangle, "position", part.positions, 3, gl.FLOAT, false);
       this.attribute(this.triangle, "normal", part.normals, 3, gl.SHORT, true, 8);
-      this.attribute(this.triangle, "corner", this.corners, 3, gl.UNSIGNED_BYTE, false, 4);
+      this.attribute(this.triangle, "corner", part.ownCorners || this.corners, 3, gl.UNSIGNED_BYTE, false, 4);
       this.attribute(this.triangle, "value", part.values, 1, gl.FLOAT, false);
       if (part === this.surface) {
         gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, part.index);
@@ -243,7 +246,7 @@ class Painter {
     }
     gl.useProgram(this.line.program);
     common(this.line);
-    for (const [part, half, lift, colour, wanted] of [[this.lines, 0.75, 1.2, look.ridge, look.ridges], [this.model, 0.6, 2, [0.85, 0.1, 0.45], look.model]]) {
+    for (const [part, half, lift, colour, wanted] of [[this.isolines, 0.5, 1, [0.1, 0.1, 0.14], true], [this.streamlines, 0.8, 2, [0.06, 0.07, 0.1], look.streamlines], [this.lines, 0.75, 1.2, look.ridge, look.ridges], [this.model, 0.6, 2, [0.85, 0.1, 0.45], look.model]]) {
       if (!part.count || !wanted) continue;
       gl.uniform3fv(this.line.uniforms.width, [half / camera.scale, half / camera.scale, lift / camera.scale]);
       gl.uniform3fv(this.line.uniforms.colour, colour);

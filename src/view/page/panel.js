@@ -30,15 +30,15 @@ const rgbOf = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16)
 const named = (one) => one.reference + (one.name ? " · " + one.name : "");
 
 /** Round numbers between the ends. */
-function ticks([low, high], logarithmic) {
+function ticks([low, high], logarithmic, about = 8) {
   if (!(low < high)) return [low];
   if (logarithmic && low > 0 && high / low >= 100) {
     const [first, last] = [Math.ceil(Math.log10(low) - 1e-6), Math.floor(Math.log10(high) + 1e-6)];
-    const step = Math.floor((last - first) / 8) + 1, found = [];
+    const step = Math.floor((last - first) / about) + 1, found = [];
     for (let power = first; power <= last; power += step) found.push(10 ** power);
     return found;
   }
-  const rough = (high - low) / 8, ten = 10 ** Math.floor(Math.log10(rough));
+  const rough = (high - low) / about, ten = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((x) => x * ten).find((x) => x >= rough), found = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push(i * step);
   return found;
@@ -94,14 +94,25 @@ function listReferences(list, references, toggle, fit) {
     const box = toggle ? [make("input", { type: "checkbox", checked: true, onchange: (event) => toggle(place, event.target.checked) })] : [];
     const swatch = make("i");
     swatch.style.background = one.colour;
-    const label = make("label", { title: named(one) }, ...box, swatch, make("span", { textContent: named(one) }));
+    const text = make("span", { textContent: toggle ? String(one.reference) : named(one) });
+    const label = make("label", { title: one.about || named(one) }, ...box, swatch, text);
+    if (toggle) label.className = "number";
+    const name = toggle ? [make("input", { type: "text", className: "name", value: one.name || "", placeholder: "name", title: "Its name" })] : [];
     const button = fit ? [make("button", { type: "button", textContent: "fit", title: "Fill the picture with it", onclick: () => fit(place) })] : [];
-    return make("li", {}, label, ...button, make("small", { textContent: grouped(one.count) }));
+    return make("li", {}, label, ...name, ...button, make("small", { textContent: grouped(one.count) }));
   }));
 }
 
 function listFigures(figures) {
   byId("figures").replaceChildren(...figures.map(([name, value]) => make("tr", {}, make("td", { textContent: name }), make("td", { textContent: value, className: value.length < 16 ? "short" : "" }))));
+}
+
+/** Shows in the list which surface was clicked, if one was. */
+function markPicked(place) {
+  [...byId("surfaces").children].forEach((line, i) => {
+    line.classList.toggle("picked", i === place);
+    if (i === place) line.scrollIntoView({ block: "nearest" });
+  });
 }
 
 /** Says what was clicked. */
@@ -111,12 +122,14 @@ function describe(found, { head, regions, surfaces, quality, fields, qualityOfTr
   if (!found) return;
   const parts = [];
   if (found.kind === "triangle") {
-    parts.push("triangle " + grouped(found.element + 1), "reference " + named(head.surfaces[surfaces[found.element]]));
+    const one = head.surfaces[surfaces[found.element]];
+    if (head.counts) parts.push("face " + named(one), ...(one.about ? [one.about] : []));
+    else parts.push("triangle " + grouped(found.element + 1), "reference " + named(one));
   } else {
     parts.push("tetrahedron " + grouped(found.element + 1), "region " + named(head.regions[regions[found.element]]));
   }
   const ratio = found.kind === "triangle" ? qualityOfTriangle(found.element) : quality[found.element] / 65535;
-  if (ratio >= 0) parts.push("mean ratio " + short(ratio));
+  if (ratio >= 0 && !head.counts) parts.push("mean ratio " + short(ratio));
   fields.forEach((field, i) => {
     const value = found.w.reduce((sum, share, k) => sum + share * field[found.nodes[k]], 0);
     if (Number.isFinite(value)) parts.push(head.fields[i].name + " " + short(value));
