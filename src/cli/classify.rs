@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     for notice in read.notices.iter().chain(&report.notices) {
         crate::cli::note(notice);
     }
-    super::print(&table(&report, associated))?;
+    super::say(&table(&report, associated))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -3,7 +3,8 @@ use crate::tasks::{self, Pool};
 use crate::{geometry, memory};
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
-use terminal::{note, print, tell};
+use terminal::{note, print, say, tell};
+use waiting::Waiting;
 
 mod adapt;
 mod bootstrap;
@@ -12,6 +13,7 @@ mod classify;
 mod convert;
 mod cycle;
 mod field;
+mod figures;
 mod files;
 mod image_mesh;
 mod inspect;
@@ -28,12 +30,15 @@ mod transfer;
 mod tune;
 mod value_enums;
 mod view;
+mod waiting;
 mod workplace;
 
 /// Adapts tetrahedral meshes to a metric, on the real CAD model.
 #[derive(Parser)]
 #[command(name = "geo-adapt", version, about, max_term_width = 100)]
 struct Arguments {
+    #[command(flatten, next_help_heading = "Of all commands")]
+    how: terminal::How,
     #[command(subcommand)]
     command: Command,
 }
@@ -71,6 +76,25 @@ enum Command {
     View(view::Arguments),
 }
 
+impl Command {
+    /// What the terminal says while it works, of a command that has no progress of its own.
+    fn line(&self) -> Option<Waiting> {
+        let what = match self {
+            Self::Adapt(_) | Self::Bootstrap(_) | Self::Cycle(_) | Self::Openfoam(_) | Self::Tune(_) => return None,
+            Self::Classify(_) => "putting the mesh on the model",
+            Self::Convert(_) => "converting",
+            Self::Field(_) => "working on fields",
+            Self::ImageMesh(_) => "meshing the image",
+            Self::Inspect(_) => "checking and measuring the mesh",
+            Self::Metric(_) => "working on the metric",
+            Self::Model(_) => "listing the model",
+            Self::Transfer(_) => "bringing fields to the other mesh",
+            Self::View(_) => "drawing",
+        };
+        Some(Waiting::for_what(what))
+    }
+}
+
 /// What a subcommand returns: its exit code, or an error that ends the program with code 2.
 /// The error is printed as `geo-adapt: error: …` in one piece.
 type Outcome = Result<ExitCode, Box<dyn std::error::Error>>;
@@ -92,7 +116,9 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(said) => return usage(&said),
     };
+    arguments.how.set();
     interrupt::listen();
+    let line = arguments.command.line();
     let outcome = match arguments.command {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
@@ -109,8 +135,9 @@ pub fn main() -> ExitCode {
         Command::Tune(arguments) => tune::run(&arguments),
         Command::View(arguments) => view::run(&arguments),
     };
+    drop(line);
     outcome.unwrap_or_else(|error| {
-        tell(format_args!("geo-adapt: error: {error}"));
+        terminal::error(&error);
         ExitCode::from(code_of(&*error))
     })
 }
@@ -132,7 +159,7 @@ fn usage(said: &clap::Error) -> ExitCode {
     let printed = said.print();
     match terminal::check(printed) {
         Err(error) if !said.use_stderr() => {
-            tell(format_args!("geo-adapt: error: {error}"));
+            terminal::error(error);
             ExitCode::from(BAD_INPUT)
         }
         _ => ExitCode::from(u8::try_from(said.exit_code()).unwrap_or(BAD_INPUT)),

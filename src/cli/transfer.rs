@@ -1,10 +1,11 @@
 //! `geo-adapt transfer`.
 use super::Outcome;
-use super::files::{Files, Outputs};
+use super::figures::FigureArguments;
+use super::files::{Files, JSON, Outputs};
 use super::metric::common::{self, Failure, OutputArgument, RunArguments};
 use super::table::{Table, figure};
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::io::{Solution, SolutionField};
+use crate::mesh::io::{FieldKind, Solution, SolutionField};
 use crate::mesh::locate::Locator;
 use crate::metric::{Field, Sym3, transfer as of_metric};
 use crate::tasks::{GRAIN, Plan, Team, stage};
@@ -34,9 +35,8 @@ pub struct Arguments {
     /// The file is a metric: interpolate its logarithm, so that sizes between two are their geometric mean
     #[arg(long, conflicts_with = "conservative")]
     metric: bool,
-    /// Write the figures as JSON
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArguments,
     #[command(flatten)]
     run: RunArguments,
 }
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut files =
         Files::new().reads_meshes([&arguments.old_mesh, &arguments.new_mesh]).reads([&arguments.old_fields]);
     let target = to.target(&mut files)?;
-    let json = common::report(&mut files, arguments.report.as_ref())?;
+    let json = arguments.figures.target(&mut files, JSON)?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let old = common::mesh(run, team, &arguments.old_mesh)?;
@@ -161,7 +161,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     outputs.json(json.as_ref(), &report)?;
     outputs.commit()?;
-    run.print(&report.text())?;
+    arguments.figures.print(&report, || report.text())?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -169,8 +169,12 @@ impl Arguments {
     /// Reads the fields, of a mesh of so many vertices.
     fn fields(&self, team: Team<'_>, vertices: usize) -> Result<Solution, Failure> {
         if self.metric {
-            // Read as a metric, so that other files are refused with the same message as in all commands; the notices come below.
-            Field::read_logs(team, &self.old_fields, vertices)?;
+            // Read as a metric, so that other files are refused with the same message as in all commands; sizes become tensors.
+            let metrics = Field::read(&self.old_fields, vertices)?;
+            self.run.note(&metrics.notices);
+            let values = metrics.content.metrics.iter().flat_map(|metric| metric.0).collect();
+            let fields = vec![SolutionField { kind: FieldKind::SymmetricTensor, values }];
+            return Ok(Solution { vertices, fields });
         }
         common::fields(&self.run, team, &self.old_fields, &self.old_mesh, vertices)
     }

@@ -1,7 +1,7 @@
 //! `geo-adapt field pick`.
 use super::super::files::{Files, Outputs, SOLUTION};
 use super::super::metric::common::Failure;
-use super::super::print;
+use super::super::say;
 use crate::mesh::io::{FieldKind, Solution, SolutionField, read_solution};
 use crate::tasks::Team;
 use std::path::PathBuf;
@@ -79,12 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let mut outputs = Outputs::new();
     outputs.solution(Team::alone(), &target, &picked)?;
     outputs.commit()?;
-    print(&format!(
-        "{}: {} scalars at {} vertices\n",
-        arguments.output.display(),
-        picked.fields.len(),
-        picked.vertices
-    ))?;
+    say(&format!("{}: {} scalars at {} vertices\n", arguments.output.display(), picked.fields.len(), picked.vertices))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,7 +1,7 @@
 //! What the subcommands of `metric` share: arguments to flatten, reading with notices, the output.
 //!
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
-use crate::cli::files::{Files, JSON, Outputs, SOLUTION, Target};
+use crate::cli::files::{Files, Outputs, SOLUTION, Target};
 use crate::cli::terminal::PrintError;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Read, Solution, read_mesh_on, read_solution_on};
@@ -13,15 +13,12 @@ use std::path::{Path, PathBuf};
 /// An error that ends the subcommand with code 2.
 pub type Failure = Box<dyn std::error::Error>;
 
-/// Threads, and how much is told.
+/// Threads.
 #[derive(clap::Args)]
 pub struct RunArguments {
     /// Threads [default: all cores]. The result is the same bit for bit on any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     threads: Option<u16>,
-    /// No table and no notes; errors only
-    #[arg(short, long)]
-    pub quiet: bool,
 }
 
 impl RunArguments {
@@ -32,14 +29,12 @@ impl RunArguments {
 
     /// Shows notes on standard error, unless quiet.
     pub fn note(&self, notices: &[String]) {
-        for notice in notices.iter().filter(|_| !self.quiet) {
-            crate::cli::note(notice);
-        }
+        notices.iter().for_each(crate::cli::note);
     }
 
     /// Prints a table, unless quiet.
     pub fn print(&self, text: &str) -> Result<(), PrintError> {
-        if self.quiet { Ok(()) } else { super::super::print(text) }
+        super::super::say(text)
     }
 }
 
@@ -56,11 +51,6 @@ impl OutputArgument {
     pub fn target(&self, files: &mut Files) -> Result<Target, String> {
         files.writes(&self.output, "-o", SOLUTION)
     }
-}
-
-/// A report, where one is asked for.
-pub fn report(files: &mut Files, path: Option<&PathBuf>) -> Result<Option<Target>, String> {
-    path.map(|path| files.writes(path, "--report", JSON)).transpose()
 }
 
 /// Writes M = exp of these logarithms.
