@@ -113,6 +113,31 @@ fn a_loop_refines_to_the_complexity_and_tells_the_error() {
     assert_eq!(complexities, [None, Some(100.0), Some(200.0), Some(400.0)]);
     let errors: Vec<f64> = cycles.iter().map(|cycle| cycle["functionals"]["error"].as_f64().unwrap()).collect();
     assert!(errors.windows(2).all(|pair| pair[1] < pair[0]) && errors[3] < 0.3 * errors[0], "{errors:?}");
+    // The result is at one place, which is told.
+    let result = place.path("out/result");
+    for (what, file) in [
+        ("result", "result.vtu"),
+        ("mesh", "mesh.meshb"),
+        ("solution", "solution.solb"),
+        ("functionals", "functionals.csv"),
+        ("report", "report.html"),
+    ] {
+        let path = result.canonicalize().unwrap().join(file);
+        assert!(path.is_file(), "{file}");
+        let line = format!("{what:<14} {}", path.display());
+        assert!(table.lines().any(|told| told == line), "{line}: {table}");
+    }
+    let same =
+        |a: &str, b: &str| assert_eq!(std::fs::read(place.path(a)).unwrap(), std::fs::read(place.path(b)).unwrap());
+    same("out/result/mesh.meshb", "out/cycle-03/adapt/mesh.meshb");
+    same("out/result/solution.solb", "out/cycle-04/solve/solution.solb");
+    let whole = geo_adapt::formats::read(&result.join("result.vtu")).unwrap().content;
+    let solution = geo_adapt::mesh::io::read_solution(&result.join("solution.solb")).unwrap().content;
+    assert_eq!((whole.fields[0].name.as_str(), &whole.fields[0].values), ("u", &solution.fields[0].values));
+    let rows = std::fs::read_to_string(result.join("functionals.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = rows.lines().map(|row| row.split(',').collect()).collect();
+    assert_eq!(rows[0], ["cycle", "complexity", "vertices", "tetrahedra", "error", "seconds"]);
+    assert_eq!(rows[1..].iter().map(|row| row[4].parse::<f64>().unwrap()).collect::<Vec<_>>(), errors);
     // What is in the folders is what is told, and each command can be typed again.
     let last = place.path("out/cycle-03/adapt/mesh.meshb");
     let mesh = geo_adapt::mesh::io::read_mesh(&last).unwrap().content;
@@ -197,12 +222,13 @@ fn what_a_killed_run_left_working_is_ended() {
         state.rsplit(')').next().is_some_and(|rest| !rest.trim_start().starts_with('Z') && !rest.is_empty())
     };
     assert!(alive() || !cfg!(target_os = "linux"));
-    // The same command goes on, and meets nobody: another solver in its place.
+    place.write("loop.toml", &config("echo no solution").replace("cube = 1", "cube = 2"));
+    let refused = place.refusal(&[]);
+    assert!(refused.contains("mesh.cube was"), "{refused}");
+    assert!(alive() || !cfg!(target_os = "linux"), "a refusal leaves all as it is");
+    // The same command goes on, and meets nobody: another solver in its place, which is taken, for no solve is done.
     place.write("loop.toml", &config("echo no solution"));
     let refused = place.refusal(&[]);
-    assert!(refused.contains("solver.command.run was"), "{refused}");
-    assert!(alive() || !cfg!(target_os = "linux"), "a refusal leaves all as it is");
-    let refused = place.refusal(&["--restart"]);
     assert!(refused.contains("cycle-01/solve: ") && refused.contains("did not write this"), "{refused}");
     assert!(!alive(), "the program of the killed run is still there");
 }
@@ -327,6 +353,7 @@ fn an_interrupt_ends_the_loop_after_the_child() {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
     assert!(stderr(&output).contains("the same command goes on"), "{}", stderr(&output));
+    assert_eq!(stderr(&output).matches("interrupted").count(), 1, "{}", stderr(&output));
     assert!(place.path("out/cycle-01/solve/done.json").exists(), "the child has ended");
     assert!(!place.path("out/cycle-01/metric").exists());
 }
@@ -473,7 +500,7 @@ folder = "out"
     std::fs::set_permissions(place.path("SU2_CFD"), std::fs::Permissions::from_mode(0o755)).unwrap();
     geo_adapt::mesh::io::write_mesh(&place.path("cube.meshb"), &common::adapting::cube(3, |_| 1)).unwrap();
     let label = |name: &str| serde_json::json!({ "name": name });
-    let names = serde_json::json!({ "triangles": { "1": label("wall"), "2": label("inlet"), "3": label("far"), "4": label("far"), "5": label("far"), "6": label("far") } });
+    let names = serde_json::json!({ "triangles": { "1": label("far"), "2": label("inlet"), "3": label("far"), "4": label("far"), "5": label("wall"), "6": label("wall") } });
     place.write("cube.names.json", &names.to_string());
     place.run(&[]);
     let report = place.report();
@@ -484,6 +511,16 @@ folder = "out"
     assert!(told(1, "CD") < 1e-12 && told(2, "CD") < 1e-12, "{report}");
     let written = std::fs::read_to_string(place.path("out/cycle-02/solve/su2.cfg")).unwrap();
     assert!(written.contains("RESTART_SOL= YES") && written.contains("MARKER_FAR= ( inlet, far )"), "{written}");
+
+    // Reference values that are not given are those of the walls, and said once.
+    let log = std::fs::read_to_string(place.path("out/start/log.txt")).unwrap();
+    let said = "reference area 1.000000 (the planform of the walls of the first mesh), reference length 1.000000";
+    assert_eq!(log.matches(said).count(), 1, "{log}");
+    // The result is there as SU2 reads it.
+    let data = geo_adapt::formats::read(&place.path("out/result/mesh.su2")).unwrap().content;
+    assert_eq!(data.mesh.vertices.len() as f64, told(2, "CL"));
+    let rows = std::fs::read_to_string(place.path("out/result/restart.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 1 + data.mesh.vertices.len());
 
     let place = Place::new(&config.replace("./SU2_CFD", "./none"));
     place.write("cube.meshb", "");

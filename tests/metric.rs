@@ -295,7 +295,7 @@ fn show_measures_a_metric() {
     let bench = Bench::new(4);
     let a = bench.metric("a.solb", |_| Sym3::diagonal(4.0, 100.0, 10000.0));
     let json = bench.path("shown.json");
-    let run = metric(&["show", &bench.input, &a, "--json", &json]);
+    let run = metric(&["show", &bench.input, &a, "--report", &json]);
     assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
     says(&String::from_utf8(run.stdout).unwrap(), &["complexity", "aspect ratio", "gradation", "99 %"]);
     let shown: Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
@@ -304,7 +304,7 @@ fn show_measures_a_metric() {
     assert!(is(&shown["least_size"]["median"], 0.01) && is(&shown["greatest_size"]["p90"], 0.5), "{shown}");
     assert!(is(&shown["aspect_ratio"]["greatest"], 50.0) && is(&shown["anisotropic_quotient"]["least"], 250.0));
     assert!(is(&shown["gradation"]["greatest"], 1.0), "{shown}");
-    says(&complaint(&metric(&["show", &bench.input, &a, "--json", &a])), &["a.solb", ".json"]);
+    says(&complaint(&metric(&["show", &bench.input, &a, "--report", &a])), &["a.solb", ".json"]);
     says(&complaint(&metric(&["show", &bench.input])), &["METRIC"]);
 }
 

@@ -64,7 +64,7 @@ const COMMANDS: &[Case] = &[
     case("metric multiscale a.meshb f.solb b.sol --complexity 9 -o OUT", "sol", &["a.meshb", "f.solb", "b.sol"]),
     case("metric multiscale a.meshb f.solb --complexity 9 -o new.sol --report OUT", "json", &["a.meshb", "f.solb"]),
     case("metric scale a.meshb a.solb --complexity 9 -o OUT", "solb", &["a.meshb", "a.solb"]),
-    case("metric show a.meshb a.solb --json OUT", "json", &["a.meshb", "a.solb"]),
+    case("metric show a.meshb a.solb --report OUT", "json", &["a.meshb", "a.solb"]),
     case("transfer a.meshb f.solb b.mesh -o OUT", "solb", &["a.meshb", "f.solb", "b.mesh"]),
     case("transfer a.meshb f.solb b.mesh -o new.solb --report OUT", "json", &["a.meshb", "f.solb", "b.mesh"]),
     case("tune a.meshb --metric a.solb --report OUT", "json", &["a.meshb", "a.solb"]),

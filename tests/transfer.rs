@@ -252,7 +252,11 @@ fn bad_input_is_told() {
         &["old.solb", "343 vertices", "512", "mesh they belong to"],
     );
     says(pair.refusal(["old.meshb", "new.meshb", "old.meshb"], &[]), &["new.meshb", "no field at the vertices"]);
+    pair.field(FieldKind::Scalar, |p| vec![p[0]]);
+    says(pair.refusal(good, &["--metric"]), &["old.solb", "the size of vertex 1 is 0"]);
+    pair.field(FieldKind::Vector, |p| p.to_vec());
     says(pair.refusal(good, &["--metric"]), &["old.solb", "symmetric tensors"]);
+    pair.field(FieldKind::Scalar, wavy);
     says(pair.refusal(good, &["--metric", "--conservative"]), &["--conservative"]);
     says(pair.refusal(good, &["-o", &pair.path("old.solb")]), &["old.solb", "is an input"]);
     says(pair.refusal(good, &["-o", &pair.path("out.meshb")]), &[".sol or .solb"]);
@@ -271,4 +275,20 @@ fn bad_input_is_told() {
     std::fs::write(pair.work.path("empty.sol"), "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n343\n0\nEnd\n")
         .unwrap();
     says(pair.refusal(["old.meshb", "empty.sol", "new.meshb"], &[]), &["empty.sol"]);
+}
+
+#[test]
+fn sizes_are_interpolated_as_the_metric_that_they_are() {
+    let pair = Pair::of_cubes();
+    let size = |p: Vec3| (1.0 + p[0]).exp();
+    pair.field(FieldKind::Scalar, |p| vec![size(p)]);
+    let (found, _) = pair.transfer(THERE, &["--metric"]);
+    assert_eq!((found.fields.len(), found.fields[0].kind), (1, FieldKind::SymmetricTensor));
+    // Their logarithm is linear, so it comes out exactly.
+    for (terms, &p) in found.fields[0].values.chunks(6).zip(&pair.meshes[1].vertices) {
+        let wanted = size(p).powi(-2);
+        for (term, wanted) in terms.iter().zip([wanted, 0.0, wanted, 0.0, 0.0, wanted]) {
+            assert!((term - wanted).abs() < 1e-12, "{terms:?} at {p:?}");
+        }
+    }
 }

@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     for notice in read.notices.iter().chain(&report.notices).chain(&lost) {
         crate::cli::note(notice);
     }
-    super::print(&table(&report, associated))?;
+    super::say(&table(&report, associated))?;
     Ok(ExitCode::SUCCESS)
 }
 

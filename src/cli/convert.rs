@@ -56,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     outputs.commit()?;
     notices.iter().for_each(crate::cli::note);
     lost.iter().for_each(|notice| crate::cli::note(format_args!("{}: {notice}", output.display())));
-    super::print(describe(&data, format).text())?;
+    super::say(describe(&data, format).text())?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,5 +1,6 @@
 //! `geo-adapt image-mesh`.
 use super::Outcome;
+use super::figures::FigureArguments;
 use super::files::{Files, Outputs};
 use super::table::{Table, figure};
 use crate::formats::Dataset;
@@ -38,12 +39,8 @@ pub struct Arguments {
     /// Who runs the tasks of the threads
     #[arg(long, value_enum, default_value_t = Backend::default())]
     backend: Backend,
-    /// Write what was done as JSON
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
-    /// No table; errors only
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    figures: FigureArguments,
 }
 
 /// Parses a bound on the radius-edge ratio.
@@ -81,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     let mut files = Files::new().reads_images([&arguments.image]);
     let target = files.writes_mesh(&arguments.output, "-o")?;
-    let json = arguments.report.as_ref().map(|report| files.writes(report, "--report", &[])).transpose()?;
+    let json = arguments.figures.target(&mut files, &[])?;
     if arguments.isovalue.is_some_and(|value| !value.is_finite()) {
         return Err("--isovalue: give a finite number".into());
     }
@@ -132,10 +129,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let lost = outputs.mesh(team, &target, &Dataset { mesh, ..Dataset::default() })?;
     outputs.json(json.as_ref(), &report)?;
     outputs.commit()?;
-    if !arguments.quiet {
-        lost.iter().for_each(super::note);
-        super::print(&describe(&report))?;
-    }
+    lost.iter().for_each(super::note);
+    arguments.figures.print(&report, || describe(&report))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,6 +1,8 @@
 //! `geo-adapt inspect`.
 use super::Outcome;
+use super::figures::FigureArguments;
 use super::files::reading::{self, Carrier};
+use super::files::{Files, JSON, Outputs};
 use super::surface::SurfaceArguments;
 use super::table::{Table, place};
 use crate::formats::Dataset;
@@ -32,9 +34,8 @@ pub struct Arguments {
     cad: Option<PathBuf>,
     #[command(flatten)]
     surface: SurfaceArguments,
-    /// Print JSON; there the indices count from 0
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    figures: FigureArguments,
 }
 
 /// The tetrahedron of the least mean ratio.
@@ -71,6 +72,9 @@ struct Inspection {
 
 /// Runs the subcommand: code 0 for a valid mesh (that fits the model, if one is given), else 1.
 pub fn run(arguments: &Arguments) -> Outcome {
+    let Arguments { mesh, metric, cad, surface, .. } = arguments;
+    let files = Files::new().reads_meshes([mesh]).reads(metric).reads_models(cad).reads_any(&surface.surface);
+    let json = arguments.figures.target(&mut { files }, JSON)?;
     let pool = super::pool()?;
     let team = Team::new(&pool, Plan::default());
     let data = read(team, &arguments.mesh)?;
@@ -85,8 +89,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let valid = validity.is_valid() && !matches!(cad, Some(Cad::Off { .. }));
     let worst_tet = worst(mesh, &statistics);
     let inspection = Inspection { valid, validity, statistics, worst_tet, cad };
-    let text = if arguments.json { serde_json::to_string_pretty(&inspection)? + "\n" } else { describe(&inspection) };
-    super::print(&text)?;
+    let mut outputs = Outputs::new();
+    outputs.json(json.as_ref(), &inspection)?;
+    outputs.commit()?;
+    arguments.figures.print(&inspection, || describe(&inspection))?;
     Ok(if valid { ExitCode::SUCCESS } else { ExitCode::from(super::INVALID) })
 }
 

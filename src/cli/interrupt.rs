@@ -12,6 +12,9 @@ pub const EXIT_CODE: u8 = 130;
 
 static STOP: Stop = Stop::new();
 
+/// Whether the interrupt was told already.
+static IS_TOLD: AtomicBool = AtomicBool::new(false);
+
 /// What is said when the first interrupt only asks; none where it ends the program.
 static FINISHES: Mutex<Option<&'static str>> = Mutex::new(None);
 
@@ -26,6 +29,7 @@ pub fn listen() {
         let is_first = !STOP.asked.swap(true, SeqCst);
         let says = *FINISHES.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(says) = says.filter(|_| is_first) {
+            IS_TOLD.store(true, SeqCst);
             super::tell(format_args!("\ngeo-adapt: interrupted: {says}"));
             return;
         }
@@ -41,6 +45,9 @@ pub fn listen() {
 
 /// Ends the program from whichever thread, whatever the others are at.
 fn leave() -> ! {
+    if !IS_TOLD.load(SeqCst) {
+        super::tell("\ngeo-adapt: interrupted: nothing was written");
+    }
     super::workplace::clear();
     #[cfg(unix)]
     // SAFETY: the process ends; nobody waits for what its threads hold.

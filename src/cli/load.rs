@@ -1,6 +1,7 @@
 //! Reads CAD models in a child process ([`super::child`]), so that a damaged file does no harm. The child hands over what it has read in a file
 //! of its own: to join the solids of an assembly takes seconds, so it is done once.
 use super::child::{self, Answer, Task};
+use super::waiting::Waiting;
 use super::workplace::Workplace;
 use crate::geometry::{Error, Geometry, Model, names};
 use std::error;
@@ -36,6 +37,7 @@ fn read(file: &OsString, target: &OsString) -> Result<(), String> {
 /// # Errors
 /// When the file is no readable model, also when OpenCASCADE crashes on it, or never comes back; when memory ends; when it is interrupted.
 pub fn model(path: &Path) -> Result<Model, Box<dyn error::Error>> {
+    let _line = Waiting::for_what(&format!("OpenCASCADE reads {}", path.display()));
     let mut model = match in_child(path)? {
         Some(model) => model,
         None => Model::read(path)?,

@@ -4,7 +4,8 @@ use crate::{geometry, memory};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
-use terminal::{note, print, tell};
+use terminal::{note, print, say, tell};
+use waiting::Waiting;
 
 mod adapt;
 mod bootstrap;
@@ -15,6 +16,7 @@ mod convert;
 mod cycle;
 mod examples;
 mod field;
+mod figures;
 mod files;
 mod habits;
 mod image_mesh;
@@ -33,12 +35,15 @@ mod transfer;
 mod tune;
 mod value_enums;
 mod view;
+mod waiting;
 mod workplace;
 
 /// Adapts tetrahedral meshes to a metric, on the real CAD model.
 #[derive(Parser)]
 #[command(name = "geo-adapt", version, about, max_term_width = 100)]
 struct Arguments {
+    #[command(flatten, next_help_heading = "Of all commands")]
+    how: terminal::How,
     #[command(subcommand)]
     command: Command,
 }
@@ -80,6 +85,26 @@ enum Command {
     View(view::Arguments),
 }
 
+impl Command {
+    /// What the terminal says while it works, of a command that has no progress of its own.
+    fn line(&self) -> Option<Waiting> {
+        let what = match self {
+            Self::Adapt(_) | Self::Bootstrap(_) | Self::Cycle(_) | Self::Openfoam(_) | Self::Tune(_) => return None,
+            Self::Completions(_) | Self::Man(_) => return None,
+            Self::Classify(_) => "putting the mesh on the model",
+            Self::Convert(_) => "converting",
+            Self::Field(_) => "working on fields",
+            Self::ImageMesh(_) => "meshing the image",
+            Self::Inspect(_) => "checking and measuring the mesh",
+            Self::Metric(_) => "working on the metric",
+            Self::Model(_) => "listing the model",
+            Self::Transfer(_) => "bringing fields to the other mesh",
+            Self::View(_) => "drawing",
+        };
+        Some(Waiting::for_what(what))
+    }
+}
+
 /// What a subcommand returns: its exit code, or an error that ends the program with code 2.
 /// The error is printed as `geo-adapt: error: …` in one piece.
 type Outcome = Result<ExitCode, Box<dyn std::error::Error>>;
@@ -97,10 +122,10 @@ pub fn main() -> ExitCode {
     if let Some(code) = load::child().or_else(bootstrap::domain::child).or_else(bootstrap::heal::child) {
         return code;
     }
-    let words = match words() {
+    let (words, notices) = match words() {
         Ok(words) => words,
         Err(error) => {
-            tell(format_args!("geo-adapt: error: {error}"));
+            terminal::error(error);
             return ExitCode::from(BAD_INPUT);
         }
     };
@@ -109,7 +134,10 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(said) => return usage(&said),
     };
+    arguments.how.set();
+    notices.iter().for_each(note);
     interrupt::listen();
+    let line = arguments.command.line();
     let outcome = match arguments.command {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
@@ -128,8 +156,9 @@ pub fn main() -> ExitCode {
         Command::Tune(arguments) => tune::run(&arguments),
         Command::View(arguments) => view::run(&arguments),
     };
+    drop(line);
     outcome.unwrap_or_else(|error| {
-        tell(format_args!("geo-adapt: error: {error}"));
+        terminal::error(&error);
         ExitCode::from(code_of(&*error))
     })
 }
@@ -139,19 +168,20 @@ fn command() -> clap::Command {
     examples::add(Arguments::command())
 }
 
-/// The command line, brought into our spelling where it is one of another adapter.
-fn words() -> Result<Vec<OsString>, String> {
+/// The command line, brought into our spelling where it is one of another adapter; and what the user should know of that.
+fn words() -> Result<(Vec<OsString>, Vec<String>), String> {
     let mut given = std::env::args_os();
     let program = given.next().unwrap_or_default();
     let mut words: Vec<OsString> = given.collect();
+    let mut notices = Vec::new();
     if let Some(translated) = habits::translated(&words) {
         let translated = translated?;
-        note(format_args!("this is `{}`", habits::typed(&translated.words)));
-        translated.notices.iter().for_each(note);
+        notices.push(format!("this is `{}`", habits::typed(&translated.words)));
+        notices.extend(translated.notices);
         words = translated.words;
     }
     words.insert(0, program);
-    Ok(words)
+    Ok((words, notices))
 }
 
 /// What is not the input's fault has a code of its own.
@@ -171,7 +201,7 @@ fn usage(said: &clap::Error) -> ExitCode {
     let printed = said.print();
     match terminal::check(printed) {
         Err(error) if !said.use_stderr() => {
-            tell(format_args!("geo-adapt: error: {error}"));
+            terminal::error(error);
             ExitCode::from(BAD_INPUT)
         }
         _ => ExitCode::from(u8::try_from(said.exit_code()).unwrap_or(BAD_INPUT)),

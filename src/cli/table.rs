@@ -90,10 +90,10 @@ impl Table {
         }
         if let Some(worst) = &fidelity.worst_normal {
             let (triangle, face, at) = (worst.triangle + 1, worst.face + 1, place(worst.at));
-            let (value, mean) = (figure(worst.deviation), figure(fidelity.mean_normal_deviation));
+            let (value, mean) = (figure(worst.degrees), figure(fidelity.mean_normal_degrees));
             self.row(
                 "worst normal deviation",
-                format_args!("{value} (triangle {triangle} on face {face} at {at}), mean {mean}"),
+                format_args!("{value}° (triangle {triangle} on face {face} at {at}), mean {mean}°"),
             );
         }
     }

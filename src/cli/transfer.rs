@@ -1,7 +1,8 @@
 //! `geo-adapt transfer`.
 use super::Outcome;
+use super::figures::FigureArguments;
 use super::files::reading::{self, Carrier, Fields};
-use super::files::{Files, Outputs};
+use super::files::{Files, JSON, Outputs};
 use super::metric::common::{self, Failure, OutputArgument, RunArguments};
 use super::table::{Table, figure};
 use crate::formats::Dataset;
@@ -37,9 +38,8 @@ pub struct Arguments {
     /// The file is a metric: interpolate its logarithm, so that sizes between two are their geometric mean
     #[arg(long, conflicts_with = "conservative")]
     metric: bool,
-    /// Write the figures as JSON
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArguments,
     #[command(flatten)]
     run: RunArguments,
 }
@@ -109,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut files = Files::new().reads_meshes([&arguments.old_mesh, &arguments.new_mesh]);
     files = files.reads_fields([&arguments.old_fields], &arguments.old_mesh);
     let target = to.target(&mut files)?;
-    let json = common::report(&mut files, arguments.report.as_ref())?;
+    let json = arguments.figures.target(&mut files, JSON)?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let old = common::mesh(run, team, &arguments.old_mesh)?;
@@ -167,7 +167,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     outputs.json(json.as_ref(), &report)?;
     outputs.commit()?;
-    run.print(&report.text())?;
+    arguments.figures.print(&report, || report.text())?;
     Ok(ExitCode::SUCCESS)
 }
 

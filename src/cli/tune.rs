@@ -1,13 +1,12 @@
 //! `geo-adapt tune`: which back-end, strategy and grain are the fastest, on the user's case and machine.
 use super::Outcome;
 use super::adapt::input::{Input, InputArguments};
-use super::files::Outputs;
-use super::metric::common::report;
+use super::figures::FigureArguments;
+use super::files::{JSON, Outputs};
 use crate::adapt::{self, Grains, Kind, Options, Scheduler, Silent};
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team};
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// The operations whose tasks have a grain worth measuring.
@@ -40,12 +39,8 @@ pub struct Arguments {
     /// Runs of each combination; the fastest counts
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100), allow_negative_numbers = true)]
     repeat: u16,
-    /// Write all that was measured as JSON
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
-    /// No progress; the tables only
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    figures: FigureArguments,
 }
 
 /// The times of one combination, s.
@@ -81,7 +76,7 @@ struct Bench<'b> {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let json = report(&mut arguments.input.files(), arguments.report.as_ref())?;
+    let json = arguments.figures.target(&mut arguments.input.files(), JSON)?;
     let pool = Pool::new(arguments.threads.map_or_else(super::cores, usize::from))?;
     let backends = match &arguments.backends[..] {
         [] => Backend::ALL.into_iter().filter(|backend| backend.is_built()).collect(),
@@ -92,9 +87,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut notices = Vec::new();
     let given = arguments.input.read(team, &mut notices)?;
     let input = arguments.input.prepare(team, given, None, &mut notices)?;
-    for notice in notices.iter().filter(|_| !arguments.quiet) {
-        crate::cli::note(notice);
-    }
+    notices.iter().for_each(crate::cli::note);
     let bench = Bench { arguments, input: &input, pool: &pool };
     let reference = bench.measure(Scheduler::Sequential, Plan::default(), None)?;
     let (mut speculative, mut deterministic) = (Vec::new(), Vec::new());
@@ -112,7 +105,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut outputs = Outputs::new();
     outputs.json(json.as_ref(), &all)?;
     outputs.commit()?;
-    super::print(&tables)?;
+    arguments.figures.print(&all, || tables)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -134,7 +127,7 @@ impl Bench<'_> {
                 adapted.work.iter().map(|work| work.counts.refused[adapt::Refusal::Conflict as usize]).sum();
             best.conflicts = best.conflicts.min(conflicts);
         }
-        if !self.arguments.quiet {
+        if !super::terminal::is_quiet() {
             let grain = grain.map(|grain| format!(", {grain} items a task")).unwrap_or_default();
             let (scheduler, name, seconds) = (scheduler.name(), best.name(), best.total());
             super::tell(format_args!("geo-adapt: {scheduler} {name}{grain}: {seconds:.2} s"));

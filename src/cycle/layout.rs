@@ -42,6 +42,11 @@ impl Layout {
         self.root.join("report.html")
     }
 
+    /// The last mesh and solution, when the loop has ended.
+    pub fn result(&self) -> PathBuf {
+        self.root.join("result")
+    }
+
     /// The figures as JSON.
     pub fn figures(&self) -> PathBuf {
         self.root.join("report.json")

@@ -7,7 +7,7 @@ use super::field_value::{as_words, values_of};
 use super::layout::Layout;
 use super::observer::Options;
 use super::probe;
-use super::solver::{Before, Job, Solver};
+use super::solver::{Before, Choice, Job};
 use super::step::Steps;
 use crate::geometry::{Label, Names, called, names};
 use crate::mesh::io::{Solution, SolutionField, read_mesh, write_mesh, write_solution};
@@ -33,10 +33,6 @@ pub struct Pipeline<'a> {
 impl<'a> Pipeline<'a> {
     fn layout(&self) -> &'a Layout {
         self.steps.layout
-    }
-
-    fn solver(&self) -> &'a dyn Solver {
-        self.loaded.config.solver.solver()
     }
 
     /// The first mesh: bootstrapped, converted or copied.
@@ -79,8 +75,8 @@ impl<'a> Pipeline<'a> {
     }
 
     /// The solution on the mesh of a cycle; `before` are the fields of the last one, where it was brought here.
-    pub fn solve(&self, cycle: u32, before: Option<&[FieldName]>) -> Result<Done<SolveResult>, Error> {
-        let layout = self.layout();
+    pub fn solve(&self, cycle: u32, solver: &Choice, before: Option<&[FieldName]>) -> Result<Done<SolveResult>, Error> {
+        let (layout, solver) = (self.layout(), solver.solver());
         self.steps.step(layout.step(cycle, "solve"), |running| {
             let (mesh, folder) = (layout.mesh(cycle), running.folder.clone());
             let path = before.map(|_| layout.transferred(cycle));
@@ -88,10 +84,10 @@ impl<'a> Pipeline<'a> {
             let base = &self.loaded.base;
             let (threads, thread_words) = (self.options.threads, &self.threads[..]);
             let job = Job { folder: &folder, base, cycle, mesh: &mesh, before, threads, thread_words };
-            for call in self.solver().prepare(&job)? {
+            for call in solver.prepare(&job)? {
                 running.call(&call)?;
             }
-            let mut solved = self.solver().collect(&job)?;
+            let mut solved = solver.collect(&job)?;
             let counted = read_mesh(&mesh)?.content;
             solved.check(counted.vertices.len())?;
             probe::add(&self.loaded.config.probes, &counted, &mut solved)?;

@@ -9,12 +9,16 @@ use super::inputs::{self, Fingerprints};
 use super::layout::Layout;
 use super::observer::{Observer, Options};
 use super::pipeline::Pipeline;
+use super::result::{self, Files};
+use super::solver::Choice;
 use super::step::Steps;
 use super::{leftovers, report};
+use crate::geometry::names;
+use crate::mesh::io::read_mesh;
 use crate::process::Stop;
 use serde::{Deserialize, Serialize};
-use std::fs::{self, File, TryLockError};
-use std::path::PathBuf;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::Write;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// How a loop ended.
@@ -24,12 +28,8 @@ pub struct Ended {
     pub reason: String,
     /// All cycles.
     pub history: History,
-    /// The report page.
-    pub page: PathBuf,
-    /// The last mesh.
-    pub mesh: PathBuf,
-    /// The solution on it.
-    pub solution: PathBuf,
+    /// What the folder of the result holds.
+    pub files: Files,
 }
 
 /// What `loop.json` says.
@@ -97,6 +97,7 @@ fn begin(loaded: &Loaded, options: &Options, steps: Steps<'_>) -> Result<(), Err
     }
     // First what says that there is a loop: a kill on the way leaves one that asks for --restart again.
     let _ = fs::remove_file(layout.state());
+    let _ = fs::remove_dir_all(layout.result());
     for folder in layout.present() {
         for step in super::layout::STEPS {
             steps.clear(&folder.join(step))?;
@@ -171,9 +172,10 @@ fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<E
     let mut functional = Vec::new();
     let mut before: Option<SolveResult> = None;
     let mut cycle = 1;
-    let (reason, history) = loop {
+    let solver = referenced(pipeline, observer)?;
+    let (reason, history, files) = loop {
         let fields = before.as_ref().filter(|_| transfers);
-        let solved = pipeline.solve(cycle, fields.map(|solved| &solved.fields[..]))?.result;
+        let solved = pipeline.solve(cycle, &solver, fields.map(|solved| &solved.fields[..]))?.result;
         if let Some(converged) = &config.schedule.converged {
             let value = solved.functionals.get(&converged.functional).ok_or_else(|| {
                 let known: Vec<&str> = solved.functionals.keys().map(String::as_str).collect();
@@ -198,7 +200,8 @@ fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<E
         write_json(&layout.figures(), &history)?;
         report::write(layout, config, &history)?;
         if let Some(reason) = ends {
-            break (reason, history);
+            let files = result::write(layout, pipeline.loaded, &history, cycle, &solved)?;
+            break (reason, history, files);
         }
         pipeline.metric(cycle, &solved.fields)?;
         pipeline.adapt(cycle, &begun)?;
@@ -211,5 +214,24 @@ fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<E
         before = Some(solved);
         cycle += 1;
     };
-    Ok(Ended { reason, history, page: layout.page(), mesh: layout.mesh(cycle), solution: layout.solution(cycle) })
+    Ok(Ended { reason, history, files })
+}
+
+/// The solver with reference values of its coefficients, where it has some and the configuration does not give them. It is said in the log of
+/// the first mesh, of whose walls they are in all cycles.
+fn referenced(pipeline: &Pipeline<'_>, observer: &dyn Observer) -> Result<Choice, Error> {
+    let (layout, choice) = (pipeline.steps.layout, &pipeline.loaded.config.solver);
+    if !choice.wants_reference() {
+        return Ok(choice.clone());
+    }
+    let (mesh, names) = (read_mesh(&layout.mesh(1))?.content, names::read(&layout.mesh(1))?);
+    let (choice, said) = choice.referenced(&mesh, &names);
+    if !layout.is_done(&layout.step(1, "solve")) {
+        observer.note(&said);
+        let path = layout.start().join("log.txt");
+        let open = OpenOptions::new().append(true).create(true).open(&path);
+        let written = open.and_then(|mut log| writeln!(log, "{said}"));
+        written.map_err(|error| Error::Failed(format!("{}: {error}", path.display())))?;
+    }
+    Ok(choice)
 }

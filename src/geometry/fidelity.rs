@@ -3,7 +3,7 @@ use super::classify::Classification;
 use super::{Entity, Evaluate, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, Side, TriangleIndex};
-use crate::mesh::vector::{Vec3, add, area2, distance, dot, norm, scale, unit};
+use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale};
 use crate::tasks::{GRAIN, Team};
 use serde::Serialize;
 
@@ -26,8 +26,8 @@ pub struct Farthest {
 /// The triangle that deviates most.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Deviation {
-    /// 1 − n·n_CAD, n_CAD at the point of its face closest to its centroid: 0 best, 2 worst.
-    pub deviation: f64,
+    /// Angle between its normal and the model's at the point of its face closest to its centroid, degrees: 0 best, 180 worst.
+    pub degrees: f64,
     /// Triangle, from 0.
     pub triangle: u32,
     /// Its face, from 0.
@@ -50,8 +50,8 @@ pub struct Fidelity {
     pub held: Option<Farthest>,
     /// The triangle of the worst normal.
     pub worst_normal: Option<Deviation>,
-    /// Mean of 1 − n·n_CAD over the triangles.
-    pub mean_normal_deviation: f64,
+    /// Mean of that angle over the triangles, degrees.
+    pub mean_normal_degrees: f64,
 }
 
 /// Measures a mesh that was classified on a model.
@@ -185,15 +185,17 @@ fn measure_normals(
             let foot = evaluator.closest_on_face(face, at, guess);
             let truth = evaluator.face_normal(face, foot.uv);
             if dot(truth, truth) > 0.0 {
-                let cosine = dot(unit(area2(a, b, c)), truth);
-                let deviation = 1.0 - side.map_or(cosine.abs(), |sign| sign * cosine);
-                found.push(Deviation { deviation, triangle: triangle as u32, face, at });
+                let normal = area2(a, b, c);
+                // By its tangent: the cosine of a small angle tells nothing of it.
+                let (along, across) = (dot(normal, truth), norm(cross(normal, truth)));
+                let degrees = across.atan2(side.map_or(along.abs(), |sign| sign * along)).to_degrees();
+                found.push(Deviation { degrees, triangle: triangle as u32, face, at });
             }
         }
     });
-    let sum: f64 = found.iter().map(|one| one.deviation).sum();
-    fidelity.mean_normal_deviation = sum / found.len().max(1) as f64;
-    let worse = |a: &Deviation, b: &Deviation| a.deviation.total_cmp(&b.deviation).then(b.triangle.cmp(&a.triangle));
+    let sum: f64 = found.iter().map(|one| one.degrees).sum();
+    fidelity.mean_normal_degrees = sum / found.len().max(1) as f64;
+    let worse = |a: &Deviation, b: &Deviation| a.degrees.total_cmp(&b.degrees).then(b.triangle.cmp(&a.triangle));
     fidelity.worst_normal = found.into_iter().max_by(worse);
 }
 
@@ -247,7 +249,7 @@ mod tests {
         let fidelity = measure(Team::alone(), &mesh, &model, &classification);
         assert_eq!(fidelity.vertices, 26);
         assert!(fidelity.from_entity.unwrap().distance < 1e-14 && fidelity.from_model.unwrap().distance < 1e-14);
-        assert!(fidelity.worst_normal.unwrap().deviation < 1e-14);
+        assert!(fidelity.worst_normal.unwrap().degrees < 1e-12);
         // A vertex within a side, pushed in: by 0.1 from both, and the triangles around it lean.
         let vertex = mesh.vertices.iter().position(|&p| p == [0.5, 0.5, 0.0]).unwrap();
         mesh.vertices[vertex][2] = 0.1;
@@ -255,8 +257,9 @@ mod tests {
         let (own, all) = (fidelity.from_entity.unwrap(), fidelity.from_model.unwrap());
         assert_eq!((own.vertex, all.vertex), (vertex as u32, vertex as u32));
         assert!((own.distance - 0.1).abs() < 1e-12 && (all.distance - 0.1).abs() < 1e-12);
-        let lean = fidelity.worst_normal.unwrap().deviation;
-        assert!(lean > 0.01 && lean < 0.1, "{lean}");
+        let lean = fidelity.worst_normal.unwrap().degrees;
+        // Of its three corners one is 0.1 out of the plane.
+        assert!(lean > 8.2 && lean < 25.8, "{lean}");
         // Slid over a side it leaves its entity, not the model: an edge's vertex here.
         let vertex = mesh.vertices.iter().position(|&p| p == [0.5, 0.0, 1.0]).unwrap();
         mesh.vertices[vertex] = [0.5, 0.2, 1.0];

@@ -43,7 +43,7 @@ pub use plan::{Backend, Plan, Strategy};
 pub use pool::{Error, Pool};
 pub use rows::Rows;
 pub use scope::{Scope, Task};
-pub use stage::stage;
+pub use stage::{stage, tell_stages};
 pub use team::{GRAIN, Team};
 
 // The locks of the slots; tests/parking_protocol.rs has loom's in their place.

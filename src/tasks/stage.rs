@@ -1,5 +1,6 @@
 //! Stages of a run, told on standard error to whoever measures: `GEO_ADAPT_STAGES=1`.
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{LazyLock, Mutex};
 use std::time::Instant;
 
@@ -7,10 +8,17 @@ use std::time::Instant;
 static BEGAN: LazyLock<(Instant, Mutex<(Instant, f64)>)> =
     LazyLock::new(|| (Instant::now(), Mutex::new((Instant::now(), processor_seconds()))));
 
+static TELLS: AtomicBool = AtomicBool::new(false);
+
+/// From now on stages are told, whatever the environment says.
+pub fn tell_stages() {
+    TELLS.store(true, Relaxed);
+}
+
 /// Says, if the trace is wanted, that a stage is over: its seconds since the one before by the clock and (where the system tells it:
 /// Linux) on the processors, those since the first, the memory in use now and the most there was, MB.
 pub fn stage(name: &str) {
-    if std::env::var_os("GEO_ADAPT_STAGES").is_none() {
+    if !TELLS.load(Relaxed) && std::env::var_os("GEO_ADAPT_STAGES").is_none() {
         return;
     }
     let (first, last) = &*BEGAN;

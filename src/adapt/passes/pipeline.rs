@@ -173,6 +173,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
         self.limit(size_limits());
+        self.observer.vertices(self.live());
         if self.crowded {
             self.thin();
         }

@@ -54,6 +54,8 @@ pub struct Work {
 
 /// Is told what happens. Called from several threads.
 pub trait Observer: Sync {
+    /// The passes begin with so many vertices.
+    fn vertices(&self, _count: usize) {}
     /// A sweep begins.
     fn begin(&self, _kind: Kind, _pass: usize, _items: usize) {}
     /// This many more items are done.

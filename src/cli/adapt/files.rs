@@ -1,5 +1,6 @@
 //! The files of a run: checked before it, written after it.
 use super::report::Report;
+use crate::cli::figures::FigureArguments;
 use crate::cli::files::reading::METRIC;
 use crate::cli::files::{Files, Outputs, Target};
 use crate::formats::{Dataset, NamedField};
@@ -23,12 +24,12 @@ pub struct Targets {
 
 impl Targets {
     /// Refuses before the work what would fail after it; `endings` of the report.
-    pub fn of(files: &mut Files, output: &Path, report: Option<&PathBuf>, endings: &[&str]) -> Result<Self, String> {
+    pub fn of(files: &mut Files, output: &Path, figures: &FigureArguments, endings: &[&str]) -> Result<Self, String> {
         let mesh = files.writes_mesh(output, "-o")?;
         let metric = super::report::metric_path(output)
             .map(|path| files.writes(&path, "the metric beside -o", &[]))
             .transpose()?;
-        let report = report.map(|report| files.writes(report, "--report", endings)).transpose()?;
+        let report = figures.target(files, endings)?;
         Ok(Self { mesh, metric, report, model: None })
     }
 

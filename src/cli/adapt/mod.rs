@@ -9,8 +9,11 @@ pub mod progress;
 pub mod report;
 mod source;
 
+use super::figures::FigureArguments;
+use super::metric::common::VERTICES_PER_COMPLEXITY;
+use super::waiting::Waiting;
 use super::{Outcome, interrupt};
-use crate::adapt::{self, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
+use crate::adapt::{self, Adapted, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
 use crate::geometry::classify::keeps_references;
 use crate::metric::Field;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
@@ -35,9 +38,8 @@ pub struct Arguments {
     /// Threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     threads: Option<u16>,
-    /// Write what was done as JSON
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArguments,
     /// Adapts so many times, each time what came of the last: as so many runs from the written files
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000), allow_negative_numbers = true)]
     cycles: u16,
@@ -71,9 +73,6 @@ pub struct Arguments {
     /// Items a task of the speculative scheduler: one number, or insertion=N,reconnection=N,…; `geo-adapt tune` finds the best
     #[arg(long, value_name = "GRAIN", default_value_t = Grains::default(), hide_default_value = true)]
     grain: Grains,
-    /// No progress and no table; errors only
-    #[arg(short, long)]
-    quiet: bool,
 }
 
 /// An angle that triangles can be held to.
@@ -91,8 +90,7 @@ fn chord(text: &str) -> Result<f64, String> {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
-    let report = arguments.report.as_ref();
-    let targets = Targets::of(&mut arguments.input.files(), &arguments.output, report, &[])?;
+    let targets = Targets::of(&mut arguments.input.files(), &arguments.output, &arguments.figures, &[])?;
     if arguments.cycles > 1 && !arguments.input.field.field.is_empty() {
         return Err("--cycles: the field of --field lies on the first mesh alone; give one cycle, or a --metric".into());
     }
@@ -104,48 +102,33 @@ pub fn run(arguments: &Arguments) -> Outcome {
     stage("start");
     let asked = arguments.asked(threads);
     let mut notices = Vec::new();
+    let mut line = Some(Waiting::for_what("reading the mesh"));
     let mut given = arguments.input.read(team, &mut notices)?;
     let (mut cad, mut start) = (None, Some(start));
     for cycle in 1..=arguments.cycles {
         let start = start.take().unwrap_or_else(Instant::now);
+        let line = line.take();
+        let inner = Waiting::for_what("putting the mesh on its model, and making the metric");
         let mut input = arguments.input.prepare(team, given, cad.take(), &mut notices)?;
-        for notice in notices.drain(..).filter(|_| !arguments.quiet) {
-            crate::cli::note(notice);
-        }
+        notices.drain(..).for_each(crate::cli::note);
+        drop((inner, line));
         let prepared = start.elapsed();
         // What comes now is worth to be written.
-        let progress = Progress::new(!arguments.quiet, progress::finish_on_interrupt());
-        let named = |error| format!("{}: {error}", arguments.input.mesh.display());
-        let freeze = parts::frozen(&arguments.freeze, &input.mesh, &input.names).map_err(named)?;
-        let options = arguments.options(plan, freeze);
-        if cycle < arguments.cycles && !options.freeze.surfaces.is_empty() {
-            arguments.check_references(&input).map_err(named)?;
-        }
-        let adapt = |input: &Input| {
-            let Input { mesh, place, model, source, .. } = input;
-            let adapted = adapt::adapt(mesh, place, model, source, &options, &pool, &progress);
-            progress.finish();
-            adapted.map_err(|error| named(error.to_string()))
-        };
-        let told = |text: &str| {
-            if !arguments.quiet && !text.is_empty() && !progress.interrupted() {
-                crate::cli::note(text);
-            }
-            !progress.interrupted()
-        };
-        let adapted = meet::adapted(&arguments.input, team, &mut input, adapt, told)?;
+        let progress = Progress::new(progress::finish_on_interrupt());
+        let is_last = cycle == arguments.cycles;
+        let adapted = arguments.adapted(team, (&pool, plan), &mut input, (&progress, is_last))?;
         let finished = start.elapsed();
+        let line = Waiting::for_what("measuring and writing");
         let report = Report::new(team, &asked, &input, adapted);
         stage("report");
         let (mut report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
+        drop(line);
         stage("written");
-        if !arguments.quiet {
-            lost.iter().for_each(crate::cli::note);
-            if arguments.cycles > 1 {
-                super::print(&format!("cycle {cycle} of {}\n", arguments.cycles))?;
-            }
-            super::print(&report.text())?;
+        lost.iter().for_each(crate::cli::note);
+        if arguments.cycles > 1 {
+            arguments.figures.say(|| format!("cycle {cycle} of {}\n", arguments.cycles))?;
         }
+        arguments.figures.print(&report, || report.text())?;
         if progress.interrupted() {
             return Ok(interrupt::exit_code());
         }
@@ -166,6 +149,33 @@ impl Arguments {
     fn asked(&self, threads: usize) -> Asked {
         let (input, output) = (self.input.mesh.clone(), self.output.clone());
         Asked { input, output, threads, complexity_wanted: self.input.amount.complexity }
+    }
+
+    /// Adapts the mesh of a cycle, again for --vertices where that is needed.
+    fn adapted(
+        &self,
+        team: Team<'_>,
+        (pool, plan): (&Pool, Plan),
+        input: &mut Input,
+        (progress, is_last): (&Progress, bool),
+    ) -> Result<Adapted, Box<dyn std::error::Error>> {
+        let named = |error| format!("{}: {error}", self.input.mesh.display());
+        let freeze = parts::frozen(&self.freeze, &input.mesh, &input.names).map_err(named)?;
+        let options = self.options(plan, freeze);
+        if progress.is_shown() {
+            let expected = VERTICES_PER_COMPLEXITY * input.source.complexity(team, &input.mesh);
+            progress.expect(self.input.amount.vertices.unwrap_or(expected));
+        }
+        if !is_last && !options.freeze.surfaces.is_empty() {
+            self.check_references(input).map_err(named)?;
+        }
+        let adapt = |input: &Input| {
+            let Input { mesh, place, model, source, .. } = input;
+            let adapted = adapt::adapt(mesh, place, model, source, &options, pool, progress);
+            progress.finish();
+            adapted.map_err(|error| named(error.to_string()).into())
+        };
+        meet::adapted(&self.input, team, input, adapt, || progress.interrupted())
     }
 
     /// Refuses references that the next cycle would not find again: on a CAD model they become the numbers of its faces where they do

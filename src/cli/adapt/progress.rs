@@ -1,15 +1,18 @@
 //! Progress on the terminal: a bar a pass, with counts; and the interrupt.
 use crate::adapt::{Counts, KINDS, Kind, Observer};
-use crate::cli::interrupt;
+use crate::cli::{interrupt, terminal};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Lets the first interrupt end the work after the running sweep, and a second one end the program at once.
 pub fn finish_on_interrupt() -> &'static AtomicBool {
-    interrupt::finish_on("ends after this sweep and writes the mesh (again: ends at once)")
+    interrupt::finish_on("ends as soon as it can and writes the mesh (again: ends at once, and writes none)")
 }
+
+/// How often the time is drawn anew.
+const TICK: Duration = Duration::from_millis(200);
 
 /// Shows what the adapter does.
 pub struct Progress {
@@ -24,20 +27,36 @@ struct State {
     kind: Kind,
     began: Instant,
     done: [u64; KINDS],
+    /// Vertices now.
+    vertices: u64,
+    /// How many are expected in the end; 0 where that is not known.
+    expected: u64,
 }
 
 impl Progress {
-    /// Draws if `wanted` and standard error is a terminal.
-    pub fn new(wanted: bool, stop: &'static AtomicBool) -> Self {
+    /// Draws if standard error is a terminal, and not with --quiet.
+    pub fn new(stop: &'static AtomicBool) -> Self {
         let state = State {
             bar: ProgressBar::hidden(),
             pass: None,
             kind: Kind::Split,
             began: Instant::now(),
             done: [0; KINDS],
+            vertices: 0,
+            expected: 0,
         };
-        let shown = wanted && std::io::IsTerminal::is_terminal(&std::io::stderr());
+        let shown = !terminal::is_quiet() && std::io::IsTerminal::is_terminal(&std::io::stderr());
         Self { shown, stop, state: Mutex::new(state) }
+    }
+
+    /// Whether anything is drawn.
+    pub fn is_shown(&self) -> bool {
+        self.shown
+    }
+
+    /// So many vertices are expected.
+    pub fn expect(&self, vertices: f64) {
+        self.state.lock().expect("no panic while drawing").expected = vertices.round() as u64;
     }
 
     /// The work is over.
@@ -53,32 +72,39 @@ impl Progress {
 
 impl State {
     /// Leaves the bar of a pass as it is, and its line.
-    fn leave(&self) {
+    fn leave(&mut self) {
         if !self.bar.is_hidden() {
-            self.bar.abandon();
+            std::mem::replace(&mut self.bar, ProgressBar::hidden()).abandon();
             crate::cli::tell("");
         }
+        self.pass = None;
     }
 
     fn describe(&self) -> String {
-        let [split, collapse, reconnect, smooth, ..] = self.done;
-        let name = self.kind.name();
-        format!("{name:<12} {split} in, {collapse} out, {reconnect} flips, {smooth} moves")
+        let [_, _, reconnect, smooth, ..] = self.done;
+        let (name, now) = (self.kind.name(), self.vertices);
+        let expected = if self.expected > 0 { format!(" of about {}", self.expected) } else { String::new() };
+        format!("{name:<12} {now}{expected} vertices, {reconnect} flips, {smooth} moves")
     }
 }
 
 impl Observer for Progress {
+    fn vertices(&self, count: usize) {
+        self.state.lock().expect("no panic while drawing").vertices = count as u64;
+    }
+
     fn begin(&self, kind: Kind, pass: usize, items: usize) {
         let mut state = self.state.lock().expect("no panic while drawing");
         state.kind = kind;
         state.began = Instant::now();
         if self.shown && state.pass != Some(pass) {
             state.leave();
-            let style = ProgressStyle::with_template("pass {prefix:>2} [{bar:16}] {wide_msg}");
+            let style = ProgressStyle::with_template("pass {prefix:>2} [{bar:16}] {elapsed:>4} {wide_msg}");
             let style = style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> ");
             let target = ProgressDrawTarget::stderr();
             state.bar = ProgressBar::with_draw_target(Some(0), target).with_style(style);
             state.bar.set_prefix(format!("{}", pass + 1));
+            state.bar.enable_steady_tick(TICK);
             state.done = [0; KINDS];
         }
         state.pass = Some(pass);
@@ -98,9 +124,14 @@ impl Observer for Progress {
         let mut state = self.state.lock().expect("no panic while drawing");
         let kind = state.kind as usize;
         state.done[kind] += counts.done;
+        match state.kind {
+            Kind::Split => state.vertices += counts.done,
+            Kind::Collapse => state.vertices = state.vertices.saturating_sub(counts.done),
+            _ => {}
+        }
         let text = state.describe();
         state.bar.set_message(text);
-        if std::env::var_os("GEO_ADAPT_TRACE").is_some() {
+        if terminal::tells_sweeps() {
             let ms = state.began.elapsed().as_secs_f64() * 1e3;
             crate::cli::tell(format_args!(
                 "{:2} {:8} {ms:7.1} ms {:8} {:7} {:?}",

@@ -164,12 +164,8 @@ impl Report {
         if let Some(made) = &self.multiscale {
             made.rows(&mut table);
         }
-        if let Some(Meeting { wanted, complexity, meshes, is_met }) = self.vertices_wanted {
-            let missed =
-                if is_met { "" } else { "; not met: bounds of the sizes, or what must stay, leave no such mesh" };
-            let plural = if meshes == 1 { "mesh" } else { "meshes" };
-            let figures = format_args!("{wanted} ({meshes} {plural} made, the complexity is {complexity:.0}{missed})");
-            table.row("vertices wanted", figures);
+        if let Some(meeting) = &self.vertices_wanted {
+            meeting.row(&mut table);
         }
         table.statistics(&self.statistics);
         table.fidelity(&self.fidelity);

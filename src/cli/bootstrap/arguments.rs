@@ -3,6 +3,7 @@ use super::rung::Choice;
 use super::triangles::is_surface;
 use super::{domain, heal};
 use crate::cli::adapt::files::Targets;
+use crate::cli::figures::FigureArguments;
 use crate::cli::files::{Files, JSON, Target};
 use crate::cli::metric::geometry::GeometryArguments;
 use crate::cli::surface::ridge_angle;
@@ -54,7 +55,7 @@ pub struct Arguments {
     #[arg(long, value_name = "LENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "-", long_help = HEAL)]
     pub heal: Option<heal::Length>,
     /// Leave the mesh as the mesher made it; our own makes few vertices, whatever the sizes
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["report", "json"])]
     pub no_adapt: bool,
     /// Who makes the mesh that is adapted
     #[arg(long, value_enum, default_value_t = Choice::default())]
@@ -71,12 +72,8 @@ pub struct Arguments {
     /// Threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
-    /// Write what was done as JSON
-    #[arg(long, value_name = "FILE.json", conflicts_with = "no_adapt")]
-    pub report: Option<PathBuf>,
-    /// No progress and no table; errors only
-    #[arg(short, long)]
-    pub quiet: bool,
+    #[command(flatten)]
+    pub figures: FigureArguments,
 }
 
 impl Arguments {
@@ -87,7 +84,7 @@ impl Arguments {
         } else {
             Files::new().reads_models([&self.model])
         };
-        let mut targets = Targets::of(&mut files, &self.output, self.report.as_ref(), JSON)?;
+        let mut targets = Targets::of(&mut files, &self.output, &self.figures, JSON)?;
         let log = files.writes(&self.output.with_extension("log"), "the log beside -o", &[])?;
         if self.far_field.is_some() || self.heal.is_some() {
             let domain = files.writes(&self.output.with_extension("brep"), "the model beside -o", &[])?;

@@ -2,10 +2,10 @@
 use super::places::{gmsh_places, netgen_places};
 use super::queue::Queue;
 use super::rung::{Choice, Rung};
-use super::waiting::Waiting;
 use super::wish::Wish;
 use super::{gmsh, netgen};
 use crate::cli::table;
+use crate::cli::waiting::Waiting;
 use crate::cli::workplace::Workplace;
 use crate::formats;
 use crate::geometry::classify::{Classification, Error, Options, classify};
@@ -95,7 +95,7 @@ impl<'a> Ladder<'a> {
             let began = Instant::now();
             let what = format!("{rung}, of at most {:.0} s", limit.as_secs_f64());
             let given = {
-                let _line = Waiting::for_what(&what, !self.wish.is_quiet);
+                let _line = Waiting::for_what(&what);
                 self.attempt(rung, limit)
             };
             // What waits for a busy machine has more time by the clock.

@@ -19,7 +19,6 @@ mod rung;
 mod solids;
 mod triangles;
 mod unused;
-mod waiting;
 mod wish;
 
 pub use arguments::Arguments;
@@ -29,6 +28,7 @@ use super::adapt::report::Asked;
 use super::interrupt::{self, Interrupted};
 use super::workplace::Workplace;
 use super::{Outcome, load};
+use crate::cli::waiting::Waiting;
 use crate::formats::Dataset;
 use crate::geometry::{Geometry, Model};
 use crate::tasks::{Plan, Pool, Team, stage};
@@ -41,7 +41,6 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-use waiting::Waiting;
 use wish::Wish;
 
 /// Runs the subcommand.
@@ -67,7 +66,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
         diagonal: model.topology().diagonal(),
         segments: options.segments,
         stop: interrupt::end_at_once(),
-        is_quiet: arguments.quiet,
         limit: Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX),
     };
     let named = |error: String| format!("{}: {error}", arguments.model.display());
@@ -116,14 +114,16 @@ pub fn run(arguments: &Arguments) -> Outcome {
 fn prepared(arguments: &Arguments, place: &Workplace) -> Result<PathBuf, Box<dyn Error>> {
     let mut path = arguments.model.clone();
     if let Some(length) = arguments.heal {
+        let _line = Waiting::for_what("OpenCASCADE heals the model");
         // The last that is made is the one that is written.
         let file = place.file(if arguments.far_field.is_some() { HEALED } else { DOMAIN });
-        for done in heal::build(&path, length, &file)?.iter().filter(|_| !arguments.quiet) {
+        for done in heal::build(&path, length, &file)?.iter() {
             super::note(done);
         }
         path = file;
     }
     if let Some(spec) = &arguments.far_field {
+        let _line = Waiting::for_what("OpenCASCADE makes the far field");
         path = domain::build(&path, spec, arguments.symmetry, &place.file(DOMAIN))?;
     }
     Ok(path)
@@ -145,7 +145,7 @@ fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Target
     }
     let team = Team::new(pool, Plan::default());
     let limit = Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX);
-    let line = Waiting::for_what("tetrahedra of its triangles", !arguments.quiet);
+    let line = Waiting::for_what("tetrahedra of its triangles");
     let (model, meshed) = triangles::run(team, &arguments.model, &arguments.patches(), limit)?;
     drop(line);
     stage("meshed");
@@ -178,17 +178,15 @@ fn write_as_it_is(arguments: &Arguments, team: Team<'_>, meshed: &Meshed, model:
     }
     let data = Dataset { mesh, names: model.names().clone(), fields: Vec::new() };
     let (lost, mesh) = (targets.mesh_alone(team, &data)?, data.mesh);
-    if !arguments.quiet {
-        lost.iter().for_each(super::note);
-        let solids = model.topology().solids;
-        super::print(&format!(
-            "{}: {} vertices, {} tetrahedra in {solids} solid{}; written: {}\n",
-            meshed.by,
-            mesh.vertices.len(),
-            mesh.tets.len(),
-            if solids == 1 { "" } else { "s" },
-            arguments.output.display()
-        ))?;
-    }
+    lost.iter().for_each(super::note);
+    let solids = model.topology().solids;
+    super::say(&format!(
+        "{}: {} vertices, {} tetrahedra in {solids} solid{}; written: {}\n",
+        meshed.by,
+        mesh.vertices.len(),
+        mesh.tets.len(),
+        if solids == 1 { "" } else { "s" },
+        arguments.output.display()
+    ))?;
     Ok(ExitCode::SUCCESS)
 }

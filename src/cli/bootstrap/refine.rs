@@ -3,13 +3,13 @@ use super::arguments::Arguments;
 use super::domain;
 use super::ladder::Meshed;
 use super::rung::Rung;
-use super::waiting::Waiting;
 use crate::adapt::{self, Adapted, Options};
 use crate::cli::Outcome;
 use crate::cli::adapt::files::Targets;
 use crate::cli::adapt::input::Input;
 use crate::cli::adapt::progress::{Progress, finish_on_interrupt};
 use crate::cli::adapt::report::{Asked, Report};
+use crate::cli::waiting::Waiting;
 use crate::cli::{INVALID, interrupt, table};
 use crate::geometry::classify::Classification;
 use crate::geometry::fidelity::{self, Fidelity};
@@ -65,7 +65,7 @@ pub fn run(
     let mut settled = false;
     for cycle in 1..=MOST_CYCLES {
         stage("geometry");
-        let progress = Progress::new(!arguments.quiet, stop);
+        let progress = Progress::new(stop);
         let adapted = adapt::adapt(&mesh, &place, model, &sizes.source, &Options::default(), pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
@@ -98,7 +98,7 @@ impl Refined {
     fn flaws(&self) -> Flaws {
         Flaws {
             off: self.adapted.extracted.off_model.len(),
-            folded: self.fidelity.worst_normal.is_some_and(|worst| worst.deviation > FOLDED),
+            folded: self.fidelity.worst_normal.is_some_and(|worst| worst.degrees > FOLDED),
             crossings: self.adapted.extracted.crossings.count,
         }
     }
@@ -137,9 +137,7 @@ impl Refined {
     ) -> Outcome {
         let is_refused = self.flaws().are_refused();
         let flaw = self.flaw().map(|flaw| format!("{}: {flaw}; no mesh to begin with gave a better one", self.by));
-        for notice in self.notices.iter().chain(&flaw).filter(|_| !arguments.quiet) {
-            crate::cli::note(notice);
-        }
+        self.notices.iter().chain(&flaw).for_each(crate::cli::note);
         let names = model.names().clone();
         let place = self.adapted.extracted.classification.clone();
         let input =
@@ -147,10 +145,8 @@ impl Refined {
         let report = Report::new(team, asked, &input, self.adapted);
         let [prepared, finished] = self.times;
         let (report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
-        if !arguments.quiet {
-            lost.iter().for_each(crate::cli::note);
-            crate::cli::print(&format!("{:<26} {}\n{}", "mesher", self.by, report.text()))?;
-        }
+        lost.iter().for_each(crate::cli::note);
+        arguments.figures.print(&report, || format!("{:<26} {}\n{}", "mesher", self.by, report.text()))?;
         Ok(if self.interrupted {
             interrupt::exit_code()
         } else if is_refused {
@@ -179,8 +175,8 @@ impl Flaws {
     }
 }
 
-/// 1 − n·n_CAD of a triangle that is turned over.
-const FOLDED: f64 = 1.0;
+/// Normal deviation of a triangle that is turned over, degrees.
+const FOLDED: f64 = 90.0;
 
 /// What the geometry asks for.
 struct Sizes {
@@ -200,7 +196,7 @@ fn sizes(
     place: &Classification,
     model: &Model,
 ) -> Result<Sizes, String> {
-    let _line = Waiting::for_what("the geometry's sizes", !arguments.quiet);
+    let _line = Waiting::for_what("the geometry's sizes");
     let options = arguments.sizes.options(model, arguments.limits(), None);
     let body = arguments.far_field.is_some().then(|| body(model));
     let resolved = sizing::resolved_metric(team, mesh, place, model, (&options, body.as_ref()));

@@ -16,6 +16,4 @@ pub struct Wish {
     pub limit: Duration,
     /// Set when the user ends it.
     pub stop: &'static AtomicBool,
-    /// Whether nothing is told while it is made.
-    pub is_quiet: bool,
 }

@@ -5,6 +5,7 @@ mod progress;
 
 use super::child::OutOfMemory;
 use super::table::figure;
+use super::terminal::is_quiet;
 use super::{Outcome, interrupt, print};
 use crate::cycle::{self, Error, Loaded, Options, example};
 use progress::Progress;
@@ -27,9 +28,6 @@ pub struct Arguments {
     /// Say what would be done, and do nothing
     #[arg(long, requires = "config")]
     dry_run: bool,
-    /// No progress and no table; errors only
-    #[arg(short, long)]
-    quiet: bool,
 }
 
 /// Runs the subcommand.
@@ -45,31 +43,32 @@ pub fn run(arguments: &Arguments) -> Outcome {
         print(&plan::text(&loaded, arguments.restart)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    interrupt::finish_on("ends after this step (again: ends it at once)");
+    interrupt::finish_on(
+        "ends after this step (again: ends it at once); the same command goes on after the last finished step",
+    );
     let threads = loaded.config.threads.map_or_else(super::cores, usize::from);
     let options = Options { threads, restart: arguments.restart };
-    let progress = Progress::new(!arguments.quiet, &loaded.config.schedule);
+    let progress = Progress::new(!is_quiet(), &loaded.config.schedule);
     let ended = cycle::run(&loaded, &options, &progress, interrupt::stop());
     let printed = progress.finish();
     match ended {
         Ok(ended) => {
             printed?;
-            if !arguments.quiet {
+            if !is_quiet() {
                 let seconds: f64 = ended.history.cycles.iter().flat_map(|cycle| cycle.seconds.values()).sum();
                 print(&format!(
                     "{}: ended after {} s of work\n",
                     ended.reason,
                     figure(seconds + ended.history.start_seconds)
                 ))?;
-                print(&format!("mesh     {}\nsolution {}\n", ended.mesh.display(), ended.solution.display()))?;
-                print(&format!("report   {}\n", ended.page.display()))?;
+                let rows: Vec<String> =
+                    ended.files.iter().map(|(what, path)| format!("{what:<14} {}\n", path.display())).collect();
+                print(&rows.concat())?;
             }
             Ok(ExitCode::SUCCESS)
         }
-        Err(Error::Interrupted) => {
-            crate::cli::tell("geo-adapt: interrupted; the same command goes on after the last finished step");
-            Ok(interrupt::exit_code())
-        }
+        // That was told when it was asked for.
+        Err(Error::Interrupted) => Ok(interrupt::exit_code()),
         Err(Error::OutOfMemory(message)) => Err(OutOfMemory(message).into()),
         Err(error) => Err(error.into()),
     }

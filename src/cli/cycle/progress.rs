@@ -8,12 +8,17 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Shows what the loop does.
 pub struct Progress {
     wanted: bool,
     bar: ProgressBar,
+    schedule: Schedule,
+    /// Whether a step has run since the last cycle that was told.
+    worked: AtomicBool,
+    /// When that was.
+    told: Mutex<Instant>,
     headed: AtomicBool,
     running: Running,
     /// Why a row could not be printed. The loop goes on all the same: it may have run for days.
@@ -44,7 +49,16 @@ impl Progress {
         } else {
             ProgressBar::hidden()
         };
-        Self { wanted, bar, headed: AtomicBool::new(false), running, failed: Mutex::default() }
+        Self {
+            wanted,
+            bar,
+            schedule: schedule.clone(),
+            worked: AtomicBool::new(false),
+            told: Mutex::new(Instant::now()),
+            headed: AtomicBool::new(false),
+            running,
+            failed: Mutex::default(),
+        }
     }
 
     /// The work is over.
@@ -54,6 +68,16 @@ impl Progress {
     pub fn finish(&self) -> Result<(), PrintError> {
         self.bar.finish_and_clear();
         self.failed.lock().expect("no panic while it is held").take().map_or(Ok(()), Err)
+    }
+
+    /// Says when the end is expected, after a cycle: the time of the others is as their complexity to that of this one.
+    fn expect(&self, cycle: u32) {
+        let took = std::mem::replace(&mut *self.told.lock().expect("no panic while it is held"), Instant::now());
+        let Some(last) = self.schedule.last() else { return };
+        let worked = self.worked.swap(false, Relaxed);
+        let left = remaining(&self.schedule, cycle, last).filter(|_| worked);
+        let left = left.map(|share| format!(", about {} left", duration(took.elapsed().as_secs_f64() * share)));
+        self.bar.set_prefix(format!(" of {}{}", last + 1, left.unwrap_or_default()));
     }
 
     /// Something that stays above the bar.
@@ -70,7 +94,7 @@ fn follow(bar: ProgressBar, running: Running) {
     std::thread::spawn(move || {
         while !bar.is_finished() {
             let (step, log) = running.lock().expect("no panic while it is held").clone();
-            let line = last_line(&log).unwrap_or_default();
+            let line = last_line(&log).unwrap_or_default().replace(char::is_control, " ");
             bar.set_message(format!("{step}  {}", line.split_whitespace().collect::<Vec<_>>().join(" ")));
             std::thread::sleep(LOOK);
         }
@@ -81,6 +105,7 @@ impl Observer for Progress {
     fn begin(&self, step: &str, log: &Path) {
         let number = step.strip_prefix("cycle-").and_then(|rest| rest.split('/').next()).and_then(|n| n.parse().ok());
         self.bar.set_position(number.unwrap_or(0));
+        self.worked.store(true, Relaxed);
         let name = step.rsplit('/').next().unwrap_or(step).to_owned();
         self.bar.set_message(name.clone());
         *self.running.lock().expect("no panic while it is held") = (name, log.to_owned());
@@ -98,6 +123,7 @@ impl Observer for Progress {
         if !self.wanted {
             return;
         }
+        self.expect(cycle.cycle);
         if !self.headed.swap(true, Relaxed) {
             let names: Vec<String> = cycle.functionals.keys().map(|name| format!("{name:>12}")).collect();
             self.tell(&format!(
@@ -121,5 +147,44 @@ impl Observer for Progress {
             cycle.tets,
             values.concat()
         ));
+    }
+}
+
+/// The time of the cycles to come, up to the adaptation `last`, in that of the one that ended with the solve of `cycle`. None of the first solve, on
+/// a mesh of no complexity.
+fn remaining(schedule: &Schedule, cycle: u32, last: u32) -> Option<f64> {
+    let this = schedule.of_cycle(cycle.checked_sub(1).filter(|&before| before > 0)?);
+    Some((cycle..=last).map(|next| schedule.of_cycle(next) / this).sum())
+}
+
+/// Seconds for people.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        _ if seconds < 90.0 => format!("{seconds:.0} s"),
+        _ if seconds < 5400.0 => format!("{:.0} min", seconds / 60.0),
+        _ => format!("{:.1} h", seconds / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_grows_with_the_complexity() {
+        let schedule = Schedule {
+            complexity: 100.0,
+            factor: 2.0,
+            every: 1,
+            max_complexity: Some(800.0),
+            cycles: None,
+            converged: None,
+        };
+        assert_eq!(schedule.last(), Some(4));
+        assert_eq!(remaining(&schedule, 1, 4), None);
+        // After the first adaptation and the second solve: 2 + 4 + 8 times as much.
+        assert_eq!(remaining(&schedule, 2, 4), Some(14.0));
+        assert_eq!(remaining(&schedule, 5, 4), Some(0.0));
+        assert_eq!([20.0, 600.0, 7200.0].map(duration), ["20 s", "10 min", "2.0 h"]);
     }
 }

@@ -1,7 +1,8 @@
 //! `geo-adapt field error`.
 use super::super::Outcome;
+use super::super::figures::FigureArguments;
 use super::super::files::reading::Carrier;
-use super::super::files::{Files, Outputs};
+use super::super::files::{Files, JSON, Outputs};
 use super::super::metric::common::{self, RunArguments};
 use super::super::table::{Table, figure};
 use super::super::transfer::{components, rows};
@@ -30,9 +31,8 @@ pub struct Arguments {
     /// L^P norm of the difference over the truth's mesh: 1 to inf
     #[arg(long, value_name = "P", default_value = "2", allow_negative_numbers = true)]
     norm: Norm,
-    /// Write the figures as JSON
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArguments,
     #[command(flatten)]
     run: RunArguments,
 }
@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let [truth, true_field] = [&truth[0], &truth[1]];
     let mut files =
         Files::new().reads_meshes([mesh, truth]).reads_fields([field], mesh).reads_fields([true_field], truth);
-    let json = common::report(&mut files, arguments.report.as_ref())?;
+    let json = arguments.figures.target(&mut files, JSON)?;
     let pool = run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let coarse = common::mesh(run, team, mesh)?;
@@ -101,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut outputs = Outputs::new();
     outputs.json(json.as_ref(), &report)?;
     outputs.commit()?;
-    run.print(&report.text())?;
+    arguments.figures.print(&report, || report.text())?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,7 +1,8 @@
 //! `geo-adapt field evaluate`.
 use super::super::Outcome;
+use super::super::figures::FigureArguments;
 use super::super::files::reading::Fields;
-use super::super::files::{Files, Outputs};
+use super::super::files::{Files, JSON, Outputs};
 use super::super::metric::common::{self, RunArguments};
 use super::super::table::{Table, figure};
 use crate::mesh::io::{FieldKind, Solution, SolutionField};
@@ -23,9 +24,8 @@ pub struct Arguments {
     /// Where the field goes: .sol or .solb; or with the mesh: .vtu, or another format that `convert` knows and that holds fields
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
     output: PathBuf,
-    /// Write the error as JSON
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArguments,
     #[command(flatten)]
     run: RunArguments,
 }
@@ -47,7 +47,7 @@ struct Report {
 pub fn run(arguments: &Arguments) -> Outcome {
     let mut files = Files::new().reads_meshes([&arguments.mesh]);
     let target = files.writes_fields(&arguments.output, "-o")?;
-    let json = common::report(&mut files, arguments.report.as_ref())?;
+    let json = arguments.figures.target(&mut files, JSON)?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let data = common::mesh(&arguments.run, team, &arguments.mesh)?;
@@ -75,10 +75,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     outputs.json(json.as_ref(), &report)?;
     outputs.commit()?;
-    let mut table = Table::new();
-    table.row("vertices", report.vertices);
-    table.row("L2 interpolation error", figure(report.error));
-    table.row("written", arguments.output.display());
-    arguments.run.print(table.text())?;
+    arguments.figures.print(&report, || {
+        let mut table = Table::new();
+        table.row("vertices", report.vertices);
+        table.row("L2 interpolation error", figure(report.error));
+        table.row("written", arguments.output.display());
+        table.text().into()
+    })?;
     Ok(ExitCode::SUCCESS)
 }

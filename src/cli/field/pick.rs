@@ -2,7 +2,7 @@
 use super::super::files::reading::{self, Carrier, Fields};
 use super::super::files::{Files, Outputs};
 use super::super::metric::common::Failure;
-use super::super::print;
+use super::super::say;
 use crate::mesh::io::{FieldKind, Solution, SolutionField};
 use crate::tasks::Team;
 use std::path::PathBuf;
@@ -97,7 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let on = mesh.as_ref().map(|(mesh, names)| (mesh, names));
     outputs.fields(Team::alone(), &target, found, on)?.iter().for_each(crate::cli::note);
     outputs.commit()?;
-    print(&format!(
+    say(&format!(
         "{}: {} scalars at {} vertices\n",
         arguments.output.display(),
         arguments.take.len(),

@@ -2,7 +2,7 @@
 //!
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
 use crate::cli::files::reading::{self, Carrier, Fields};
-use crate::cli::files::{Files, JSON, On, Outputs, Target};
+use crate::cli::files::{Files, On, Outputs, Target};
 use crate::cli::terminal::PrintError;
 use crate::formats::Dataset;
 use crate::mesh::TetMesh;
@@ -15,15 +15,12 @@ use std::path::{Path, PathBuf};
 /// An error that ends the subcommand with code 2.
 pub type Failure = Box<dyn std::error::Error>;
 
-/// Threads, and how much is told.
+/// Threads.
 #[derive(clap::Args)]
 pub struct RunArguments {
     /// Threads [default: all cores]. The result is the same bit for bit on any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     threads: Option<u16>,
-    /// No table and no notes; errors only
-    #[arg(short, long)]
-    pub quiet: bool,
 }
 
 impl RunArguments {
@@ -34,14 +31,12 @@ impl RunArguments {
 
     /// Shows notes on standard error, unless quiet.
     pub fn note(&self, notices: &[String]) {
-        for notice in notices.iter().filter(|_| !self.quiet) {
-            crate::cli::note(notice);
-        }
+        notices.iter().for_each(crate::cli::note);
     }
 
     /// Prints a table, unless quiet.
     pub fn print(&self, text: &str) -> Result<(), PrintError> {
-        if self.quiet { Ok(()) } else { super::super::print(text) }
+        super::super::say(text)
     }
 }
 
@@ -58,11 +53,6 @@ impl OutputArgument {
     pub fn target(&self, files: &mut Files) -> Result<Target, String> {
         files.writes_fields(&self.output, "-o")
     }
-}
-
-/// A report, where one is asked for.
-pub fn report(files: &mut Files, path: Option<&PathBuf>) -> Result<Option<Target>, String> {
-    path.map(|path| files.writes(path, "--report", JSON)).transpose()
 }
 
 /// Writes M = exp of these logarithms, and tells what the format cannot carry.

@@ -1,6 +1,7 @@
 //! `geo-adapt metric geometry`.
-use super::common::{self, Failure, GradationArgument, LimitArguments, OutputArgument, RunArguments};
-use crate::cli::files::{Files, Outputs, reading};
+use super::common::{Failure, GradationArgument, LimitArguments, OutputArgument, RunArguments};
+use crate::cli::figures::FigureArguments;
+use crate::cli::files::{Files, JSON, Outputs, reading};
 use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::{Table, figure, place};
 use crate::cli::{Outcome, load, positive};
@@ -41,9 +42,8 @@ pub struct Arguments {
     /// How far a vertex may be from the model, in its units [default: 1e-6 of its diagonal, or twice what the model states for an entity]
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// Write what was found as JSON; there the indices count from 0
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArguments,
     #[command(flatten)]
     run: RunArguments,
 }
@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_models(&arguments.cad);
     files = files.reads_any(&arguments.surface.surface);
     let target = arguments.output.target(&mut files)?;
-    let json = common::report(&mut files, arguments.report.as_ref())?;
+    let json = arguments.figures.target(&mut files, JSON)?;
     let limits = arguments.limits.limits()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
@@ -118,7 +118,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let (logs, summary) = sizing::geometry_metric(team, mesh, &lies, &model, &options);
     let metric = start.elapsed().as_secs_f64() - read_and_classify;
     let mut outputs = Outputs::new();
-    arguments.run.note(&outputs.logs(team, &target, &logs, common::on(data))?);
+    arguments.run.note(&outputs.logs(team, &target, &logs, super::common::on(data))?);
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         input: &arguments.mesh,
@@ -131,7 +131,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     outputs.json(json.as_ref(), &report)?;
     outputs.commit()?;
-    arguments.run.print(&describe(&report, !mesh.tets.is_empty()))?;
+    arguments.figures.print(&report, || describe(&report, !mesh.tets.is_empty()))?;
     Ok(ExitCode::SUCCESS)
 }
 

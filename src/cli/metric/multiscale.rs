@@ -2,8 +2,9 @@
 use super::common::{self, Amount, OutputArgument, RunArguments};
 use super::fields::MultiscaleArguments;
 use crate::cli::Outcome;
+use crate::cli::figures::FigureArguments;
 use crate::cli::files::reading::Carrier;
-use crate::cli::files::{Files, Outputs};
+use crate::cli::files::{Files, JSON, Outputs};
 use crate::cli::table::Table;
 use crate::metric::multiscale::Measure;
 use crate::metric::summary::Summary;
@@ -27,9 +28,8 @@ pub struct Arguments {
     amount: Amount,
     #[command(flatten)]
     multiscale: MultiscaleArguments,
-    /// Write what was done as JSON
-    #[arg(long, value_name = "FILE.json")]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArguments,
     #[command(flatten)]
     run: RunArguments,
 }
@@ -50,7 +50,7 @@ struct Report<'a> {
 pub fn run(arguments: &Arguments) -> Outcome {
     let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_fields(&arguments.fields, &arguments.mesh);
     let target = arguments.output.target(&mut files)?;
-    let json = common::report(&mut files, arguments.report.as_ref())?;
+    let json = arguments.figures.target(&mut files, JSON)?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     stage("start");
@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut outputs = Outputs::new();
     arguments.run.note(&outputs.logs(team, &target, &logs, common::on(&data))?);
     stage("written");
-    if json.is_none() && arguments.run.quiet {
+    if arguments.figures.are_not_wanted() {
         outputs.commit()?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -76,10 +76,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     outputs.json(json.as_ref(), &report)?;
     outputs.commit()?;
-    let mut table = Table::new();
-    report.multiscale.rows(&mut table);
-    super::show::rows(&mut table, &report.metric, None);
-    table.row("written", arguments.output.output.display());
-    arguments.run.print(table.text())?;
+    arguments.figures.print(&report, || {
+        let mut table = Table::new();
+        report.multiscale.rows(&mut table);
+        super::show::rows(&mut table, &report.metric, None);
+        table.row("written", arguments.output.output.display());
+        table.text().into()
+    })?;
     Ok(ExitCode::SUCCESS)
 }

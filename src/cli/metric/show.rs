@@ -1,6 +1,7 @@
 //! `geo-adapt metric show`.
 use super::common::{self, RunArguments};
 use crate::cli::Outcome;
+use crate::cli::figures::FigureArguments;
 use crate::cli::files::reading::Carrier;
 use crate::cli::files::{Files, JSON, Outputs};
 use crate::cli::table::{Table, figure};
@@ -17,9 +18,8 @@ pub struct Arguments {
     mesh: PathBuf,
     /// The metric at its vertices: .sol or .solb, or the name of one in the mesh's file
     metric: PathBuf,
-    /// Write the figures as JSON
-    #[arg(long, value_name = "FILE.json")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArguments,
     #[command(flatten)]
     run: RunArguments,
 }
@@ -36,7 +36,7 @@ struct Shown {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let mut files = Files::new().reads_meshes([&arguments.mesh]).reads_fields([&arguments.metric], &arguments.mesh);
-    let json = arguments.json.as_ref().map(|path| files.writes(path, "--json", JSON)).transpose()?;
+    let json = arguments.figures.target(&mut files, JSON)?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let data = common::mesh(&arguments.run, team, &arguments.mesh)?;
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut outputs = Outputs::new();
     outputs.json(json.as_ref(), &shown)?;
     outputs.commit()?;
-    arguments.run.print(&describe(&shown))?;
+    arguments.figures.print(&shown, || describe(&shown))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,6 +1,7 @@
 //! Any program: a command for the shell that is told where the mesh is and where its solution shall go.
 use super::{Job, Solver, handover};
 use crate::cycle::data::{Call, Solved, quoted, text};
+use crate::formats::{Dataset, Format};
 use regex_lite::Regex;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -115,6 +116,22 @@ impl Solver for Config {
     fn functionals(&self) -> Option<Vec<String>> {
         // A file may hold any.
         self.functionals.is_none().then(|| self.printed.keys().cloned().collect())
+    }
+
+    fn result(&self, data: &Dataset, folder: &Path) -> Result<Vec<PathBuf>, String> {
+        let mut files = Vec::new();
+        // What it reads, as it reads it: mesh, and solution before.
+        for name in [&self.mesh, &self.solution_in] {
+            let path = folder.join(name.file_name().unwrap_or(name.as_os_str()));
+            let own = ["meshb", "solb"].map(Some);
+            if own.contains(&path.extension().and_then(|ending| ending.to_str())) {
+                continue;
+            }
+            let is_fields = Format::of(&path).is_ok_and(Format::is_fields);
+            if is_fields { handover::write_fields(&path, data) } else { handover::write_mesh(&path, data) }?;
+            files.push(path);
+        }
+        Ok(files)
     }
 
     fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {

@@ -3,14 +3,16 @@ pub mod analytic;
 pub mod command;
 mod handover;
 pub mod openfoam;
+mod reference;
 pub mod su2;
 
 pub use super::data::{Call, FieldName, Solved};
 
 use crate::formats::{Dataset, NamedField};
-use crate::geometry::names;
+use crate::geometry::{Names, names};
 use crate::mesh::TetMesh;
 use crate::mesh::io::{read_mesh, read_solution};
+use reference::Reference;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -40,6 +42,40 @@ impl Choice {
     }
 }
 
+impl Choice {
+    /// Whether it has coefficients without reference values.
+    pub fn wants_reference(&self) -> bool {
+        match self {
+            Self::Openfoam(solver) => solver.flow.area.is_none() || solver.flow.length.is_none(),
+            Self::Su2(solver) => solver.flow.as_ref().is_some_and(|flow| flow.area.is_none() || flow.length.is_none()),
+            Self::Analytic(_) | Self::Command(_) => false,
+        }
+    }
+
+    /// The same with those of the walls of a mesh, where none are given; and a line that says which.
+    pub fn referenced(&self, mesh: &TetMesh, names: &Names) -> (Self, String) {
+        let mut choice = self.clone();
+        let (walls, area, length) = match &mut choice {
+            Self::Openfoam(solver) => (&solver.flow.walls, &mut solver.flow.area, &mut solver.flow.length),
+            Self::Su2(su2::Config { flow: Some(flow), .. }) => (&flow.walls, &mut flow.area, &mut flow.length),
+            _ => return (choice, String::new()),
+        };
+        let found = Reference::of(mesh, names, walls);
+        let of = if found.is_some() { "of the walls of the first mesh" } else { "for the walls have none along z" };
+        let found = found.unwrap_or(Reference { area: 1.0, length: 1.0 });
+        let mut said = Vec::new();
+        for (name, value, found, what) in
+            [("area", area, found.area, "the planform"), ("length", length, found.length, "the mean aerodynamic chord")]
+        {
+            if value.is_none() {
+                *value = Some(found);
+                said.push(format!("reference {name} {found:.6} ({what} {of})"));
+            }
+        }
+        (choice, format!("{}; give others in the flow of the configuration", said.join(", ")))
+    }
+}
+
 /// A solver, as the loop sees it. Errors are messages that name file, place and remedy.
 pub trait Solver {
     /// Refuses before the loop what would fail in it: a program or file that is not there. `base` is the folder of the configuration.
@@ -61,6 +97,15 @@ pub trait Solver {
     /// The functionals that it tells, where that is known before it runs.
     fn functionals(&self) -> Option<Vec<String>> {
         None
+    }
+
+    /// Writes the last mesh and solution into a folder as the solver reads them, beside the mesh and solution of libMeshb that are there.
+    /// The files, or folders.
+    ///
+    /// # Errors
+    /// When something cannot be written.
+    fn result(&self, _data: &Dataset, _folder: &Path) -> Result<Vec<PathBuf>, String> {
+        Ok(Vec::new())
     }
 
     /// Writes what the programs need into the folder of the job; which programs to start, in their order.

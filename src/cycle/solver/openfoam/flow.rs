@@ -31,14 +31,12 @@ pub struct Flow {
     /// Prandtl number.
     #[serde(default = "prandtl")]
     pub prandtl: f64,
-    /// Length of the Reynolds number, model units.
-    #[serde(default = "one")]
-    pub length: f64,
+    /// Length of the Reynolds number, model units. In a loop the mean aerodynamic chord of the walls without; else 1.
+    pub length: Option<f64>,
     /// Temperature of the walls, where a viscous flow has walls of a constant one; without, no heat goes through them.
     pub wall_temperature: Option<f64>,
-    /// Area of the coefficients, model units².
-    #[serde(default = "one")]
-    pub area: f64,
+    /// Area of the coefficients, model units². In a loop the walls' as seen along z without; else 1.
+    pub area: Option<f64>,
     /// Names of the walls, or references where they have none: "3".
     #[serde(default)]
     pub walls: Vec<String>,
@@ -96,8 +94,8 @@ impl Flow {
             ("gas_constant", self.r()),
             ("reynolds", self.reynolds.unwrap_or(1.0)),
             ("prandtl", self.prandtl),
-            ("length", self.length),
-            ("area", self.area),
+            ("length", self.length.unwrap_or(1.0)),
+            ("area", self.area.unwrap_or(1.0)),
             ("wall_temperature", self.wall_temperature.unwrap_or(1.0)),
         ];
         if let Some((name, value)) = positive.into_iter().find(|(_, value)| !(*value > 0.0 && value.is_finite())) {
@@ -157,7 +155,7 @@ impl Flow {
     /// Dynamic viscosity, 0 without a Reynolds number.
     pub fn viscosity(&self) -> f64 {
         let density = self.pressure / (self.r() * self.temperature);
-        self.reynolds.map_or(0.0, |reynolds| density * self.mach * self.sound() * self.length / reynolds)
+        self.reynolds.map_or(0.0, |reynolds| density * self.mach * self.sound() * self.length.unwrap_or(1.0) / reynolds)
     }
 
     /// What holds at the surface of that reference and name, if any list has it.

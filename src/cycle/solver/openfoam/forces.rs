@@ -56,7 +56,7 @@ impl Walls {
                 force = add(force, scale(slope, viscosity * size / height));
             }
         }
-        let unit = flow.dynamic_pressure() * flow.area;
+        let unit = flow.dynamic_pressure() * flow.area.unwrap_or(1.0);
         Coefficients { lift: dot(force, flow.upwards()) / unit, drag: dot(force, flow.downstream()) / unit }
     }
 

@@ -29,7 +29,7 @@ use crate::tasks::Team;
 use drive::{Outcome, PLAN, Plan, RESULT};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// `[solver.openfoam]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -227,6 +227,13 @@ impl Solver for Config {
 
     fn functionals(&self) -> Option<Vec<String>> {
         Some(FUNCTIONALS.map(String::from).into())
+    }
+
+    fn result(&self, data: &Dataset, folder: &Path) -> Result<Vec<PathBuf>, String> {
+        let case = folder.join(CASE);
+        // A folder by the slash at its end.
+        formats::write(&case.join(""), data).map_err(|error| error.to_string())?;
+        Ok(vec![case])
     }
 
     fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {

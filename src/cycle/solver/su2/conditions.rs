@@ -33,12 +33,10 @@ pub struct Conditions {
     /// Reynolds number of the reference length.
     #[serde(default = "million")]
     pub reynolds: f64,
-    /// Length of the Reynolds number and the moments, model units.
-    #[serde(default = "unit")]
-    pub length: f64,
-    /// Area of the coefficients, model units².
-    #[serde(default = "unit")]
-    pub area: f64,
+    /// Length of the Reynolds number and the moments, model units. In a loop the mean aerodynamic chord of the walls without.
+    pub length: Option<f64>,
+    /// Area of the coefficients, model units². In a loop the walls' as seen along z without.
+    pub area: Option<f64>,
     /// Names of the surfaces of the body.
     pub walls: Vec<String>,
     /// Of the far field.
@@ -50,10 +48,6 @@ pub struct Conditions {
 
 fn million() -> f64 {
     1e6
-}
-
-fn unit() -> f64 {
-    1.0
 }
 
 /// The options that do not depend on the flow: implicit, second order, a limiter for shocks, a CFL number that finds itself.
@@ -90,6 +84,7 @@ impl Conditions {
     /// The configuration.
     pub fn cfg(&self) -> Cfg {
         let mut cfg = Cfg::default();
+        let length = self.length.unwrap_or(1.0);
         let solver = match self.model {
             Model::Euler => "EULER",
             Model::Laminar => "NAVIER_STOKES",
@@ -105,8 +100,8 @@ impl Conditions {
             ("MACH_NUMBER", self.mach),
             ("AOA", self.angle_of_attack),
             ("SIDESLIP_ANGLE", self.sideslip),
-            ("REF_LENGTH", self.length),
-            ("REF_AREA", self.area),
+            ("REF_LENGTH", length),
+            ("REF_AREA", self.area.unwrap_or(1.0)),
         ] {
             cfg.set(key, &value.to_string());
         }
@@ -115,7 +110,7 @@ impl Conditions {
             cfg.set("MARKER_EULER", &list(&self.walls));
         } else {
             cfg.set("REYNOLDS_NUMBER", &self.reynolds.to_string());
-            cfg.set("REYNOLDS_LENGTH", &self.length.to_string());
+            cfg.set("REYNOLDS_LENGTH", &length.to_string());
             // Adiabatic: no heat through any of them.
             let walls: Vec<String> = self.walls.iter().map(|wall| format!("{wall}, 0.0")).collect();
             cfg.set("MARKER_HEATFLUX", &list(&walls));
@@ -142,8 +137,8 @@ mod tests {
             angle_of_attack: 3.06,
             sideslip: 0.0,
             reynolds: 1e6,
-            length: 0.64607,
-            area: 0.7532,
+            length: Some(0.64607),
+            area: Some(0.7532),
             walls: vec!["wing".into(), "tip".into()],
             farfield: vec!["farfield".into()],
             symmetry: vec![],

@@ -9,6 +9,7 @@ pub use conditions::{Conditions, Model};
 
 use super::{Job, Solver, find_program, handover};
 use crate::cycle::data::{Call, Solved};
+use crate::formats::Dataset;
 use cfg::Cfg;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -111,6 +112,13 @@ impl Solver for Config {
 
     fn functionals(&self) -> Option<Vec<String>> {
         Some(self.functionals.clone())
+    }
+
+    fn result(&self, data: &Dataset, folder: &Path) -> Result<Vec<PathBuf>, String> {
+        let (mesh, fields) = (folder.join(MESH), folder.join(RESTART).with_extension("csv"));
+        handover::write_mesh(&mesh, data)?;
+        handover::write_fields(&fields, data)?;
+        Ok(vec![mesh, fields])
     }
 
     fn prepare(&self, job: &Job<'_>) -> Result<Vec<Call>, String> {
