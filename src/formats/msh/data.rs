@@ -2,8 +2,8 @@
 use super::super::NamedField;
 use super::super::cells::cells_to_vertices;
 use super::super::error;
-use super::source::Source;
 use super::super::tags::Tags;
+use super::source::Source;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, FieldKind};
 use crate::tasks::Team;

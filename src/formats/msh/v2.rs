@@ -1,6 +1,6 @@
 //! Version 2.2: one list of nodes, one of elements, each with its physical group and its entity.
-use super::source::Source;
 use super::super::tags::Tags;
+use super::source::Source;
 use super::v4::refused;
 use super::{LINE, POINT, Raw, TETRAHEDRON, TRIANGLE};
 use crate::mesh::io::Error;

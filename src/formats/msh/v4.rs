@@ -1,6 +1,6 @@
 //! Version 4.1: nodes and elements in blocks by entity.
-use super::source::Source;
 use super::super::tags::Tags;
+use super::source::Source;
 use super::{LINE, POINT, Raw, TETRAHEDRON, TRIANGLE};
 use crate::mesh::io::Error;
 use crate::mesh::{OnEdge, OnFace, OnVertex};
