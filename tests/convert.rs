@@ -4,6 +4,7 @@ use geo_adapt::formats::{self, Dataset, NamedField};
 use geo_adapt::geometry::Label;
 use geo_adapt::mesh::io::{FieldKind, write_mesh};
 use geo_adapt::mesh::samples::cube;
+use geo_adapt::mesh::{OnFace, OnVertex};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -88,6 +89,56 @@ fn names_can_be_given() {
     assert!(table.contains("(3: tail)") && notes.contains("out.vtu: 1 colours"), "{table} {notes}");
     let names = formats::read(&place.path("out.vtu")).unwrap().content.names;
     assert_eq!(names.triangles[&3].name.as_deref(), Some("tail"));
+}
+
+#[test]
+fn a_mesh_is_brought_into_another_unit_with_its_metric() {
+    let place = Place::new();
+    let mut data = formats::read(&place.path("in.su2")).unwrap().content;
+    let values = data.mesh.vertices.iter().flat_map(|_| [4.0, 0.0, 9.0, 0.0, 0.0, 16.0]).collect();
+    data.fields = vec![density(27), NamedField { name: "metric".into(), kind: FieldKind::SymmetricTensor, values }];
+    formats::write(&place.path("a.vtu"), &data).unwrap();
+    let [_, notes] = place.good(&["a.vtu", "b.vtu", "--scale", "10", "--translate", "-1,0,0.5"]);
+    assert!(notes.contains("the field metric is in the new unit too"), "{notes}");
+    assert!(notes.contains("the field Density keeps its values"), "{notes}");
+    let found = formats::read(&place.path("b.vtu")).unwrap().content;
+    for (found, [x, y, z]) in found.mesh.vertices.iter().zip(&data.mesh.vertices) {
+        assert_eq!(*found, [10.0 * x - 1.0, 10.0 * y, 10.0 * z + 0.5]);
+    }
+    assert_eq!((&found.names, &found.fields[0]), (&data.names, &data.fields[0]));
+    assert_eq!(found.fields[1].values[..6], [0.04, 0.0, 0.09, 0.0, 0.0, 0.16]);
+    for wrong in [
+        ["--scale", "0"],
+        ["--scale", "-1"],
+        ["--translate", "1,2"],
+        ["--translate", "1,2,x"],
+        ["--translate", "1,2,nan"],
+    ] {
+        let done = place.run(&[&["a.vtu", "c.vtu"][..], &wrong].concat());
+        assert!(done.status.code() == Some(2) && !place.path("c.vtu").exists(), "{wrong:?}");
+    }
+}
+
+#[test]
+fn a_plain_mesh_has_no_association() {
+    let place = Place::new();
+    let mut mesh = cube(1);
+    mesh.corners = vec![0];
+    mesh.association.vertices.push(OnVertex { vertex: 0, id: 1 });
+    mesh.association.faces.push(OnFace { vertex: 1, id: 2, uv: [0.0; 2], r: 0.0 });
+    write_mesh(&place.path("a.mesh"), &mesh).unwrap();
+    place.good(&["a.mesh", "b.mesh", "--plain"]);
+    place.good(&["a.mesh", "c.mesh"]);
+    let text = |name: &str| std::fs::read_to_string(place.path(name)).unwrap();
+    assert!(text("c.mesh").contains("OnGeometric") && !text("b.mesh").contains("OnGeometric"));
+    mesh.association = Default::default();
+    assert_eq!(formats::read(&place.path("b.mesh")).unwrap().content.mesh, mesh);
+    // Moved, it lies on another model.
+    let [_, notes] = place.good(&["a.mesh", "d.mesh", "--translate", "0,0,1"]);
+    assert!(
+        notes.contains("the places on the model are left out") && !text("d.mesh").contains("OnGeometric"),
+        "{notes}"
+    );
 }
 
 #[test]

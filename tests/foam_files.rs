@@ -120,6 +120,17 @@ fn a_case_comes_back_from_text_and_from_bytes() {
 }
 
 #[test]
+fn a_name_of_several_references_is_one_patch() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = folder.path().join("case");
+    foam::write(&case, &data(), true).unwrap();
+    let boundary = fs::read_to_string(case.join("constant/polyMesh/boundary")).unwrap();
+    let lines: Vec<&str> = boundary.lines().map(str::trim).collect();
+    assert_eq!(lines.iter().filter(|line| line.starts_with("wall")).count(), 1, "{boundary}");
+    assert!(lines.contains(&"parts (3 18 5 18);") && lines.contains(&"nFaces 36;"), "{boundary}");
+}
+
+#[test]
 fn a_plain_mesh_has_no_zones_and_an_old_one_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let case = folder.path().join("case");

@@ -2,7 +2,7 @@
 use super::Outcome;
 use super::files::{Files, Outputs};
 use super::table::Table;
-use crate::formats::{self, Dataset, Format, Options};
+use crate::formats::{self, Dataset, Format, Options, Placement};
 use crate::geometry::{Label, names};
 use crate::mesh::io::FieldKind;
 use crate::tasks::{Plan, Team};
@@ -15,11 +15,10 @@ const LISTED: usize = 16;
 
 /// Arguments of `geo-adapt convert`.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Formats: .mesh, .meshb (with .solb and .names.json beside), .su2, .vtu, .msh (gmsh 4.1; reads 2.2 too), \
-                        .msh2 (gmsh 2.2), .ugrid, .b8.ugrid, .lb8.ugrid (with .mapbc beside), folders (cases of OpenFOAM; \
-                        a new one is named with a / at its end); fields alone: .sol, .solb, .csv, .dat (SU2)"
-)]
+#[command(after_help = "Formats: .mesh, .meshb (with .solb and .names.json beside), .su2, .vtu, .vtk (legacy), \
+                        .msh (gmsh 4.1; reads 2.2 too), .msh2 (gmsh 2.2), .inp (Abaqus, CalculiX), .bdf and .nas (Nastran), \
+                        .ugrid, .b8.ugrid, .lb8.ugrid (with .mapbc beside), folders (cases of OpenFOAM; \
+                        a new one is named with a / at its end); fields alone: .sol, .solb, .csv, .dat (SU2)")]
 pub struct Arguments {
     /// The mesh
     input: PathBuf,
@@ -31,14 +30,37 @@ pub struct Arguments {
     /// Names of the references, instead of the mesh's own: JSON, as bootstrap writes it
     #[arg(long, value_name = "FILE")]
     names: Option<PathBuf>,
-    /// Write text where the format would be binary (.vtu, .msh, OpenFOAM)
+    /// Write text where the format would be binary (.vtu, .vtk, .msh, OpenFOAM)
     #[arg(long)]
     text: bool,
+    /// Leave the association with a model out of .mesh and .meshb: there are readers, meshio's among them, that stop at its keywords
+    #[arg(long)]
+    plain: bool,
+    /// Multiply coordinates, about the origin: 0.001 from millimetres to metres. A metric goes with them; other fields keep their values
+    #[arg(long, value_name = "F", value_parser = super::positive, allow_negative_numbers = true)]
+    scale: Option<f64>,
+    /// Move by this, after --scale
+    #[arg(long, value_name = "X,Y,Z", value_parser = translation, allow_hyphen_values = true)]
+    translate: Option<Translation>,
+}
+
+/// A translation. (A type of its own, since clap would take an array for several arguments.)
+#[derive(Clone, Copy, Default)]
+struct Translation([f64; 3]);
+
+fn translation(text: &str) -> Result<Translation, String> {
+    let words: Vec<f64> = text.split(',').filter_map(|word| word.trim().parse().ok()).collect();
+    match words[..] {
+        [x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|x| x.is_finite()) => {
+            Ok(Translation([x, y, z]))
+        }
+        _ => Err("give three numbers: 0,0,1.5".into()),
+    }
 }
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let Arguments { input, output, fields, names, text } = arguments;
+    let Arguments { input, output, fields, names, text, plain, scale, translate } = arguments;
     let format = Format::of(output)?;
     let mut files = Files::new().reads_any([input]).reads(fields).reads(names);
     let target = files.writes_any(output, "the output")?;
@@ -50,6 +72,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     if let Some(path) = names {
         data.names = names::read_file(path)?;
+    }
+    if scale.is_some() || translate.is_some() {
+        let placement = Placement { scale: scale.unwrap_or(1.0), translation: translate.unwrap_or_default().0 };
+        notices.extend(placement.apply(&mut data));
+    }
+    if *plain {
+        data.mesh.association = Default::default();
     }
     let mut outputs = Outputs::new();
     let lost = outputs.dataset(Team::new(&pool, Plan::default()), &target, &data, Options { text: *text })?;

@@ -15,6 +15,10 @@ pub enum Format {
     Vtu,
     /// VTK's legacy files: .vtk.
     LegacyVtk,
+    /// Meshes of Abaqus and CalculiX: .inp.
+    Abaqus,
+    /// Nastran's bulk data: .bdf, .nas.
+    Nastran,
     /// gmsh's meshes: .msh, .msh2, .msh4; written as version 4.1, or 2.2.
     Msh {
         /// Whether version 4.1 is written.
@@ -33,7 +37,7 @@ pub enum Format {
 }
 
 /// What can be read and written.
-const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .msh, .msh2, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
+const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .msh, .msh2, .inp, .bdf, .nas, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
      a new one is named with a / at its end); fields alone .sol, .solb, .csv, .dat";
 
 /// Bytes of a file by which its format is known.
@@ -58,6 +62,8 @@ impl Format {
             "su2" => Self::Su2,
             "vtu" => Self::Vtu,
             "vtk" => Self::LegacyVtk,
+            "inp" => Self::Abaqus,
+            "bdf" | "nas" => Self::Nastran,
             "msh" | "msh4" => Self::Msh { is_new: true },
             "msh2" => Self::Msh { is_new: false },
             "ugrid" => {

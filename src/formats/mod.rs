@@ -1,10 +1,11 @@
 //! Meshes and fields in the files of other programs.
 //!
-//! Reading goes bytes → a reader a format (`su2`, `vtu`, `msh`, `ugrid`; `libmeshb` hands over to [`crate::mesh::io`]) → [`Dataset`] →
+//! Reading goes bytes → a reader a format (`su2`, `vtu`, `legacy_vtk`, `msh`, `ugrid`, `abaqus`, `nastran`; `libmeshb` hands over to [`crate::mesh::io`]) → [`Dataset`] →
 //! `check` (indices, numbers) → `orientation` (tetrahedra numbered the other way). Writing goes the way back; `unsupported` says what the
 //! format cannot carry.
 //! Cases of OpenFOAM (`foam`) are folders, with fields at cells. Columns of fields alone (`columns`: SU2's restarts) are read onto a given
 //! mesh.
+mod abaqus;
 mod cells;
 mod check;
 mod columns;
@@ -16,8 +17,11 @@ mod legacy_vtk;
 mod libmeshb;
 mod markers;
 mod msh;
+mod nastran;
 mod orientation;
+mod placement;
 mod scan;
+mod sets;
 mod su2;
 mod surfaces;
 mod tags;
@@ -30,6 +34,7 @@ pub use cells::{cells_to_vertices, vertices_to_cells};
 pub use dataset::{Dataset, NamedField};
 pub use format::Format;
 pub use msh::read_msh;
+pub use placement::Placement;
 pub use surfaces::read_surface;
 
 use crate::geometry::names;
@@ -77,6 +82,8 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
         Format::Su2 => su2::read(path, bytes)?,
         Format::Vtu => vtu::read(path, bytes)?,
         Format::LegacyVtk => legacy_vtk::read(path, bytes)?,
+        Format::Abaqus => abaqus::read(path, bytes)?,
+        Format::Nastran => nastran::read(path, bytes)?,
         Format::Msh { .. } => msh::read(path, bytes)?,
         Format::Ugrid(encoding) => ugrid::read(path, bytes, encoding)?,
         Format::Foam => return Err(error::at(path, "format", "a case of OpenFOAM is a folder of several files")),
@@ -181,6 +188,8 @@ pub fn add(
         Format::Libmeshb => libmeshb::write(batch, team, path, data)?,
         Format::Su2 => su2::write(batch, path, data)?,
         Format::Vtu => vtu::write(batch, team, path, data, options.text)?,
+        Format::Abaqus => abaqus::write(batch, path, data)?,
+        Format::Nastran => nastran::write(batch, path, data)?,
         Format::LegacyVtk => legacy_vtk::write(batch, path, data, options.text)?,
         Format::Foam => foam::add(batch, team, path, data, options.text)?,
         Format::Msh { is_new } => msh::write(batch, path, data, is_new, options.text)?,

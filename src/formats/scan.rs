@@ -34,6 +34,15 @@ impl<'a> Scan<'a> {
         Some(rest[..length.unwrap_or(rest.len())].trim_ascii())
     }
 
+    /// The rest of this line as it is, without its end; none at the end.
+    pub fn raw_line(&mut self) -> Option<&'a [u8]> {
+        let start = self.at;
+        self.line()?;
+        let line = &self.bytes[start..self.at];
+        let line = line.strip_suffix(b"\n").unwrap_or(line);
+        Some(line.strip_suffix(b"\r").unwrap_or(line))
+    }
+
     /// The next word of this line, a finite number; none where the line ends.
     pub fn real_here(&mut self) -> Result<Option<f64>, Error> {
         while let Some(&byte) = self.bytes.get(self.at) {

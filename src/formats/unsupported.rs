@@ -14,6 +14,7 @@ pub(super) fn notices(format: Format, data: &Dataset) -> Vec<String> {
     }
     let (edges, regions, fields, names) = match format {
         Format::Su2 | Format::Ugrid(_) => (false, false, false, [true, false, false]),
+        Format::Abaqus | Format::Nastran => (true, true, false, [true; 3]),
         _ => (true, true, true, [true; 3]),
     };
     let mut lost: Vec<String> = Vec::new();

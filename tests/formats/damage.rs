@@ -76,6 +76,16 @@ const TELLING: &[&[u8]] = &[
     b"binary",
     b"appended",
     b"$Nodes",
+    b"*ELEMENT, TYPE=C3D4",
+    b"*ELSET, ELSET=a",
+    b", GENERATE",
+    b"CTETRA  ",
+    b"GRID,",
+    b"\n+",
+    b"CELLS ",
+    b"POINT_DATA ",
+    b"FIELD a ",
+    b"METADATA\n",
     b"$Elements",
     b"$EndNodes",
     b"NPOIN= ",
@@ -229,13 +239,29 @@ fn no_bytes_make_su2_panic() {
 
 #[test]
 fn no_bytes_make_vtu_panic() {
-    survive([seeds(&[("a.vtu", false), ("b.vtu", true)]), foreign("vtk-")].concat(), mesh);
+    let by_vtk = foreign("vtk-").into_iter().filter(|(name, _)| name.ends_with("vtu")).collect();
+    survive([seeds(&[("a.vtu", false), ("b.vtu", true)]), by_vtk].concat(), mesh);
 }
 
 #[test]
 fn no_bytes_make_msh_panic() {
     let ours = seeds(&[("a.msh", false), ("b.msh", true), ("a.msh2", false), ("b.msh2", true)]);
     survive([ours, foreign("meshio-22.")].concat(), mesh);
+}
+
+#[test]
+fn no_bytes_make_legacy_vtk_panic() {
+    survive([seeds(&[("a.vtk", false), ("b.vtk", true)]), foreign("vtk-legacy")].concat(), mesh);
+}
+
+#[test]
+fn no_bytes_make_abaqus_panic() {
+    survive([seeds(&[("a.inp", false)]), foreign("gmsh-")].concat(), mesh);
+}
+
+#[test]
+fn no_bytes_make_nastran_panic() {
+    survive(seeds(&[("a.bdf", false)]), mesh);
 }
 
 #[test]

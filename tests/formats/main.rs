@@ -2,6 +2,7 @@
 mod damage;
 mod foreign;
 mod gmsh;
+mod other_solvers;
 mod round_trip;
 mod sample;
 mod su2;

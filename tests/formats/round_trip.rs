@@ -1,5 +1,5 @@
 //! What is written comes back, through every pair of formats.
-use crate::sample::{Place, dataset, read, sorted, surface};
+use crate::sample::{Place, dataset, labels, read, sorted, surface};
 use geo_adapt::formats::{self, Dataset};
 
 /// Files that carry meshes, whether as text, and what of a dataset comes back.
@@ -9,6 +9,9 @@ const MESHES: &[(&str, bool)] = &[
     ("a.su2", false),
     ("a.vtu", false),
     ("a.vtu", true),
+    ("a.vtk", false),
+    ("a.vtk", true),
+    ("a.inp", false),
     ("a.msh", false),
     ("a.msh", true),
     ("a.msh2", false),
@@ -26,6 +29,9 @@ fn kept(name: &str, mut data: Dataset) -> Dataset {
         data.mesh.tets.refs.fill(1);
         data.names.edges.clear();
         data.names.tetrahedra.clear();
+        data.fields.clear();
+    }
+    if name.ends_with("inp") {
         data.fields.clear();
     }
     data.mesh = sorted(data.mesh);
@@ -86,7 +92,7 @@ fn fields_alone_come_back() {
 #[test]
 fn what_could_not_be_read_again_is_not_written() {
     let place = Place::new();
-    for name in ["a.su2", "a.vtu", "a.csv", "a.meshb"] {
+    for name in ["a.su2", "a.vtu", "a.vtk", "a.inp", "a.bdf", "a.csv", "a.meshb"] {
         let refused = |change: fn(&mut Dataset)| {
             let mut data = dataset();
             change(&mut data);
@@ -109,7 +115,7 @@ fn a_mesh_numbered_the_other_way_is_turned() {
     let data = dataset();
     let mut turned = data.clone();
     turned.mesh.tets.nodes.iter_mut().for_each(|nodes| nodes.swap(0, 1));
-    for name in ["a.vtu", "a.su2", "a.meshb", "a.msh", "a.msh2", "a.b8.ugrid"] {
+    for name in ["a.vtu", "a.vtk", "a.inp", "a.bdf", "a.su2", "a.meshb", "a.msh", "a.msh2", "a.b8.ugrid"] {
         let (path, _) = place.write(name, &turned, false);
         let found = formats::read(&path).unwrap();
         assert_eq!(found.content.mesh.tets.nodes, data.mesh.tets.nodes, "{name}");
@@ -121,11 +127,47 @@ fn a_mesh_numbered_the_other_way_is_turned() {
 fn a_file_without_a_known_extension_is_known_by_its_content() {
     let place = Place::new();
     let data = Dataset { fields: Vec::new(), names: Default::default(), ..dataset() };
-    for name in ["a.meshb", "a.mesh", "a.su2", "a.vtu", "a.msh"] {
+    for name in ["a.meshb", "a.mesh", "a.su2", "a.vtu", "a.vtk", "a.msh"] {
         let (path, _) = place.write(name, &data, false);
         let other = place.path("out.1");
         std::fs::rename(path, &other).unwrap();
         assert_eq!(read(&other).mesh.vertices, data.mesh.vertices, "{name}");
     }
     assert!(formats::read(&place.text("out.2", "hello")).is_err());
+}
+
+/// Its coordinates have 16 characters.
+#[test]
+fn nastran_brings_back_all_but_the_last_digits() {
+    for data in [dataset(), surface()] {
+        let mut found = back("a.bdf", false, &data);
+        let mut wanted = data;
+        wanted.fields.clear();
+        wanted.mesh = sorted(wanted.mesh);
+        for (found, wanted) in found.mesh.vertices.iter_mut().zip(&wanted.mesh.vertices) {
+            assert!((0..3).all(|k| (found[k] - wanted[k]).abs() <= 1e-11 * wanted[k].abs()), "{found:?} {wanted:?}");
+            *found = *wanted;
+        }
+        assert_eq!(found, wanted);
+    }
+}
+
+/// The same name on several references is one name, and they stay what they are where the format can tell them apart.
+#[test]
+fn a_name_of_several_references_stays_one_name() {
+    let mut data = Dataset { fields: Vec::new(), ..dataset() };
+    data.names.triangles = labels(&[(3, "farfield"), (7, "farfield"), (21, "farfield")]);
+    for name in ["a.vtu", "a.vtk", "a.msh", "a.msh2", "a.inp", "a.bdf", "a.b8.ugrid", "a.meshb"] {
+        assert_eq!(back(name, false, &data).names.triangles, data.names.triangles, "{name}");
+    }
+    // A marker of SU2 has one reference.
+    assert_eq!(back("a.su2", false, &data).names.triangles, labels(&[(3, "farfield")]));
+    let text = |name: &str| {
+        let place = Place::new();
+        let (path, _) = place.write(name, &data, true);
+        String::from_utf8(std::fs::read(path).unwrap()).unwrap()
+    };
+    for name in ["a.inp", "a.su2", "a.msh"] {
+        assert!(text(name).contains("farfield") && !text(name).contains("farfield_"), "{name}");
+    }
 }

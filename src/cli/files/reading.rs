@@ -38,6 +38,9 @@ impl<'m> Carrier<'m> {
     }
 }
 
+/// A mesh with its names.
+type Named = (TetMesh, Names);
+
 /// Fields as they were read.
 #[derive(Debug, Default)]
 pub struct Fields {
@@ -46,7 +49,7 @@ pub struct Fields {
     /// What they are called; none where the file does not say.
     pub names: Vec<String>,
     /// The mesh that their file holds too, with its names.
-    pub mesh: Option<(TetMesh, Names)>,
+    pub mesh: Option<Named>,
 }
 
 impl Fields {
@@ -160,7 +163,7 @@ pub fn logs(
     asked: &Path,
     carrier: Carrier<'_>,
     vertices: Option<usize>,
-) -> Result<(Read<Vec<Sym3>>, Option<(TetMesh, Names)>), Failure> {
+) -> Result<(Read<Vec<Sym3>>, Option<Named>), Failure> {
     let Read { content: found, mut notices } = metric(team, asked, carrier)?;
     let logs = Field::logs_of_solution(team, asked, &found.solution, vertices)?;
     notices.extend(logs.notices);

@@ -16,6 +16,9 @@ pub struct Patch {
     pub kind: String,
     /// Its faces.
     pub faces: Range<usize>,
+    /// The references of its faces, each with their number, in their order, where there are several: what the entry `parts` says (we write
+    /// it; OpenFOAM passes over it).
+    pub parts: Vec<(i32, usize)>,
 }
 
 /// Cells or faces that have a name.
@@ -53,7 +56,13 @@ fn number_from_1(scanner: &Scanner, number: usize) -> Result<i32, Error> {
 pub(super) fn patches(scanner: &mut Scanner, faces: usize) -> Result<Vec<Patch>, Error> {
     let mut found = Vec::new();
     entries(scanner, |scanner, number, name| {
-        let mut patch = Patch { name, reference: number_from_1(scanner, number)?, kind: String::new(), faces: 0..0 };
+        let mut patch = Patch {
+            name,
+            reference: number_from_1(scanner, number)?,
+            kind: String::new(),
+            faces: 0..0,
+            parts: Vec::new(),
+        };
         let (mut start, mut count) = (0usize, 0usize);
         while scanner.peek() != Token::Mark(b'}') {
             match scanner.word()? {
@@ -61,6 +70,7 @@ pub(super) fn patches(scanner: &mut Scanner, faces: usize) -> Result<Vec<Patch>,
                 b"nFaces" => count = scanner.value()?,
                 b"startFace" => start = scanner.value()?,
                 b"reference" => patch.reference = scanner.value()?,
+                b"parts" => patch.parts = parts(scanner)?,
                 b"label" => patch.name = String::from_utf8_lossy(scanner.word()?).into_owned(),
                 _ => {
                     scanner.skip_entry()?;
@@ -78,9 +88,26 @@ pub(super) fn patches(scanner: &mut Scanner, faces: usize) -> Result<Vec<Patch>,
                 )));
             }
         };
+        // Where another program has changed the faces they are of one reference.
+        let mut total = 0usize;
+        patch.parts.iter().for_each(|part| total = total.saturating_add(part.1));
+        if total != count {
+            patch.parts.clear();
+        }
         found.push(patch);
         Ok(())
     })?;
+    Ok(found)
+}
+
+/// References with their numbers of faces: `(2 18 5 18)`.
+fn parts(scanner: &mut Scanner) -> Result<Vec<(i32, usize)>, Error> {
+    let mut found = Vec::new();
+    scanner.expect(b'(')?;
+    while scanner.peek() != Token::Mark(b')') {
+        found.push((scanner.value()?, scanner.value()?));
+    }
+    scanner.expect(b')')?;
     Ok(found)
 }
 
@@ -145,9 +172,21 @@ mod tests {
         let text = b"2 ( wall { type wall; inGroups 1(wall); nFaces 2; startFace 5; } \
             \"far field\" { startFace 7; nFaces 3; type patch; reference 12; x { y 1; } } )";
         let found = patches(&mut Scanner::new(Path::new("f"), text), 10).unwrap();
-        let patch =
-            |name: &str, reference, kind: &str, faces| Patch { name: name.into(), reference, kind: kind.into(), faces };
-        assert_eq!(found, [patch("wall", 1, "wall", 5..7), patch("far field", 12, "patch", 7..10)]);
+        let patch = |name: &str, reference, kind: &str, faces, parts: &[_]| Patch {
+            name: name.into(),
+            reference,
+            kind: kind.into(),
+            faces,
+            parts: parts.to_vec(),
+        };
+        assert_eq!(found, [patch("wall", 1, "wall", 5..7, &[]), patch("far field", 12, "patch", 7..10, &[])]);
+        let text = b"1 ( wall { type wall; nFaces 3; startFace 7; parts (4 1 9 2); reference 4; } )";
+        let found = patches(&mut Scanner::new(Path::new("f"), text), 10).unwrap();
+        assert_eq!(found, [patch("wall", 4, "wall", 7..10, &[(4, 1), (9, 2)])]);
+        // Another program has taken faces away.
+        let text = b"1 ( wall { type wall; nFaces 2; startFace 7; parts (4 1 9 2); reference 4; } )";
+        let found = patches(&mut Scanner::new(Path::new("f"), text), 10).unwrap();
+        assert_eq!(found, [patch("wall", 4, "wall", 7..9, &[])]);
         let few = patches(&mut Scanner::new(Path::new("f"), text), 9).unwrap_err().to_string();
         assert!(few.contains("patch far field has 3 faces from 7 on, but there are 9"));
     }

@@ -31,8 +31,12 @@ pub(super) fn read(folder: &Path) -> Result<(TetMesh, Names), Error> {
     let mut names = Names::default();
     let label = |name: &str| Label { name: Some(name.to_owned()), colour: None };
     for patch in &faces.patches {
-        patch.faces.clone().for_each(|face| mesh.triangles.push(faces.nodes[face], patch.reference));
-        names.triangles.insert(patch.reference, label(&patch.name));
+        let mut left = patch.faces.clone();
+        let whole = [(patch.reference, patch.faces.len())];
+        for &(reference, count) in if patch.parts.is_empty() { &whole[..] } else { &patch.parts } {
+            left.by_ref().take(count).for_each(|face| mesh.triangles.push(faces.nodes[face], reference));
+            names.triangles.insert(reference, label(&patch.name));
+        }
     }
     for zone in &faces.face_zones {
         // Faces of the boundary are there already.

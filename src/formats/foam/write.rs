@@ -88,9 +88,13 @@ fn write_faces(w: &mut dyn Write, nodes: &[[u32; 3]], text: bool) -> std::io::Re
 fn write_boundary(w: &mut dyn Write, patches: &[Patch], names: &Names) -> std::io::Result<()> {
     w.write_all(head_text("polyBoundaryMesh", "constant/polyMesh", "boundary", true).as_bytes())?;
     write!(w, "\n{}\n(\n", patches.len())?;
-    for Patch { name, reference, kind, faces } in patches {
+    for Patch { name, reference, kind, faces, parts } in patches {
         let (count, start) = (faces.len(), faces.start);
         writeln!(w, "    {name}\n    {{\n        type {kind};\n        nFaces {count};\n        startFace {start};")?;
+        if !parts.is_empty() {
+            let parts: Vec<String> = parts.iter().map(|(reference, count)| format!("{reference} {count}")).collect();
+            writeln!(w, "        parts ({});", parts.join(" "))?;
+        }
         writeln!(w, "        reference {reference};\n{}    }}", label_entry(names.triangles.get(reference), name))?;
     }
     w.write_all(b")\n")
@@ -200,20 +204,41 @@ impl Ordered {
                 boundary.entry(mesh.triangles.refs[side.triangle as usize]).or_default().push(side);
             }
         }
-        let words = words(&boundary.keys().copied().collect(), &names.triangles, unnamed_surface);
+        let joined = joined(boundary.keys().copied(), names, kind);
+        let words = words(&joined.keys().copied().collect(), &names.triangles, unnamed_surface);
         let mut patches = Vec::new();
-        for (reference, sides) in &boundary {
+        for (reference, of_name) in joined {
             let start = nodes.len();
-            for side in sides {
+            for side in of_name.iter().flat_map(|reference| &boundary[reference]) {
                 nodes.push(FACES[side.face as usize].map(|i| tets[side.tet as usize][i]));
                 owner.push(side.tet);
             }
-            let name = words[reference].clone();
-            let kind = kind(*reference, &name);
-            patches.push(Patch { name, reference: *reference, kind, faces: start..nodes.len() });
+            let name = words[&reference].clone();
+            let kind = kind(reference, &name);
+            let mut parts: Vec<_> = of_name.iter().map(|reference| (*reference, boundary[reference].len())).collect();
+            if parts.len() == 1 {
+                parts.clear();
+            }
+            patches.push(Patch { name, reference, kind, faces: start..nodes.len(), parts });
         }
         Ok(Self { nodes, owner, neighbour, patches, inside })
     }
+}
+
+/// References by the first of the same name and type, which become one patch: a name stays one name.
+fn joined(
+    references: impl Iterator<Item = i32>,
+    names: &Names,
+    kind: &dyn Fn(i32, &str) -> String,
+) -> BTreeMap<i32, Vec<i32>> {
+    let mut first: BTreeMap<(&str, String), i32> = BTreeMap::new();
+    let mut joined: BTreeMap<i32, Vec<i32>> = BTreeMap::new();
+    for reference in references {
+        let name = names.triangles.get(&reference).and_then(|label| label.name.as_deref());
+        let to = name.map_or(reference, |name| *first.entry((name, kind(reference, name))).or_insert(reference));
+        joined.entry(to).or_default().push(reference);
+    }
+    joined
 }
 
 /// Regions as zones of cells, unless there is but the one of reference 1 without a name; triangles inside as zones of faces.

@@ -8,7 +8,7 @@ pub(super) use write::write;
 use super::cells::cells_to_vertices;
 use super::format::vtk::{LINE, TETRAHEDRON, TRIANGLE, VERTEX, name};
 use super::scan::Scan;
-use super::vtu::{REFERENCES, name_pairs, of_array};
+use super::vtu::{BY_KIND, REFERENCES, name_pairs, of_array};
 use super::{Dataset, error};
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, Read};
@@ -213,7 +213,11 @@ impl<'a> Reader<'a> {
 
     /// A part of the cells, with its name and type before it.
     fn part(&mut self, name: &str, count: usize) -> Result<Vec<i64>, Error> {
-        let line = String::from_utf8_lossy(self.source.scan.line().unwrap_or_default()).into_owned();
+        let mut line = self.source.scan.line();
+        while line.is_some_and(<[u8]>::is_empty) {
+            line = self.source.scan.line();
+        }
+        let line = String::from_utf8_lossy(line.unwrap_or_default()).into_owned();
         match line.split_once(' ') {
             Some((key, kind)) if key.eq_ignore_ascii_case(name) => {
                 let kind = self.kind(kind.trim())?;
@@ -321,7 +325,9 @@ impl<'a> Reader<'a> {
 
     /// From arrays to fields: those at points, and those at tetrahedra where there is none of the name.
     fn fields(&mut self) {
-        let arrays = std::mem::take(&mut self.arrays);
+        let mut arrays = std::mem::take(&mut self.arrays);
+        // Files may have those of cells first.
+        arrays.sort_by_key(|array| array.at == At::Cells);
         let at_points = |name: &str| arrays.iter().any(|array| array.at == At::Points && array.name == name);
         for array in &arrays {
             let Array { name, at, width, is_real, values } = array;
@@ -347,7 +353,8 @@ impl<'a> Reader<'a> {
     /// References of vertices; other whole numbers are no fields.
     fn whole_numbers(&mut self, array: &Array) {
         let TetMesh { vertex_refs, vertices, .. } = &mut self.data.mesh;
-        if array.at == At::Cells && REFERENCES.contains(&array.name.as_str()) {
+        let is_known = REFERENCES.contains(&array.name.as_str()) || BY_KIND.contains(&array.name.as_str());
+        if array.at == At::Cells && is_known {
             return;
         }
         if array.at == At::Points && array.name == REFERENCES[0] && array.values.len() == vertices.len() {

@@ -1,7 +1,7 @@
 //! Writing a legacy file, version 3.0: any VTK, ParaView and meshio read it.
 use super::super::format::vtk::{LINE, TETRAHEDRON, TRIANGLE};
 use super::super::text::Text;
-use super::super::vtu::{REFERENCES, by_name, to_vtk};
+use super::super::vtu::{BY_KIND, REFERENCES, by_kind, by_name, to_vtk};
 use super::super::{Dataset, error};
 use super::values::encoded;
 use crate::mesh::TetMesh;
@@ -116,10 +116,15 @@ fn names(out: &mut Out, data: &Dataset) -> io::Result<()> {
     Ok(())
 }
 
-/// The references of all cells.
+/// The references of all cells, and of each kind of them.
 fn references(out: &mut Out, mesh: &TetMesh, cells: usize) -> io::Result<()> {
-    out.text.put(format_args!("FIELD FieldData 1\n{} 1 {cells} int\n", REFERENCES[0]));
-    out.ints([&mesh.tets.refs, &mesh.triangles.refs, &mesh.edges.refs].into_iter().flatten().copied())
+    let all = [&mesh.tets.refs, &mesh.triangles.refs, &mesh.edges.refs].into_iter().flatten().copied().collect();
+    out.text.put(format_args!("FIELD FieldData {}\n", 1 + BY_KIND.len()));
+    for (name, values) in [(REFERENCES[0], all)].into_iter().chain(BY_KIND.into_iter().zip(by_kind(mesh))) {
+        out.text.put(format_args!("{name} 1 {cells} int\n"));
+        out.ints(values)?;
+    }
+    Ok(())
 }
 
 /// References of vertices, and the fields.

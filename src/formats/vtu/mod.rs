@@ -4,7 +4,7 @@ mod decode;
 mod write;
 mod xml;
 
-pub(super) use write::{by_name, to_vtk, write};
+pub(super) use write::{by_kind, by_name, to_vtk, write};
 
 use super::cells::cells_to_vertices;
 use super::format::vtk::{self, LINE, TETRAHEDRON, TRIANGLE, VERTEX};
@@ -21,6 +21,10 @@ use xml::{Array, Kind, Piece};
 /// What the references of cells are called: by us, by meshio for libMeshb's, gmsh's and SU2's files, by VMTK.
 pub(super) const REFERENCES: [&str; 6] =
     ["reference", "medit:ref", "gmsh:physical", "gmsh:geometrical", "su2:tag", "CellEntityIds"];
+
+/// References of tetrahedra, triangles and edges alone, beside those of all cells, 0 for the others: a program that draws one kind of cells
+/// has them apart.
+pub(super) const BY_KIND: [&str; 3] = ["region", "surface", "edge"];
 
 /// Most values an item of an array that become fields, one each.
 const MOST: usize = 16;
@@ -225,7 +229,7 @@ impl<'a> Reader<'_, 'a> {
                     let of_tets = rows.flat_map(|(row, _)| row).copied().collect();
                     self.join(array, of_tets, false);
                 }
-                _ if REFERENCES.contains(&array.name.as_str()) => {}
+                _ if REFERENCES.contains(&array.name.as_str()) || BY_KIND.contains(&array.name.as_str()) => {}
                 _ => self.skip(array),
             }
         }
@@ -274,7 +278,7 @@ impl<'a> Reader<'_, 'a> {
 
 /// Adds what an array of field data says, if it is pairs of reference and dimension: that these are called as it is.
 pub(super) fn name_pairs(name: &str, width: usize, pairs: &[i64], names: &mut Names) {
-    if pairs.len() % 2 != 0 || (width != 2 && pairs.len() != 2) {
+    if !pairs.len().is_multiple_of(2) || (width != 2 && pairs.len() != 2) {
         return;
     }
     for &[reference, dimension] in pairs.as_chunks::<2>().0 {

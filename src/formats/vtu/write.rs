@@ -2,7 +2,7 @@
 use super::super::format::vtk::{LINE, TETRAHEDRON, TRIANGLE};
 use super::super::text::Text;
 use super::super::{Dataset, NamedField};
-use super::{REFERENCES, SYMMETRIC};
+use super::{BY_KIND, REFERENCES, SYMMETRIC};
 use crate::geometry::Names;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Batch, Error, FieldKind};
@@ -89,7 +89,8 @@ fn sections(data: &Dataset) -> Vec<Section<'_>> {
         at_points.push(named(REFERENCES[0], 1, Values::Int((&mesh.vertex_refs).into())));
     }
     let references = [&mesh.tets.refs, &mesh.triangles.refs, &mesh.edges.refs].into_iter().flatten();
-    let cells = vec![named(REFERENCES[0], 1, Values::Int(references.copied().collect()))];
+    let mut cells = vec![named(REFERENCES[0], 1, Values::Int(references.copied().collect()))];
+    cells.extend(BY_KIND.into_iter().zip(by_kind(mesh)).map(|(name, refs)| named(name, 1, Values::Int(refs.into()))));
     let points = vec![named("Points", 3, Values::Real(mesh.vertices.as_flattened().into()))];
     vec![
         Section { tag: "PointData", arrays: at_points },
@@ -97,6 +98,15 @@ fn sections(data: &Dataset) -> Vec<Section<'_>> {
         Section { tag: "Points", arrays: points },
         Section { tag: "Cells", arrays: topology(mesh) },
     ]
+}
+
+/// The references of each kind of cells, 0 for the other cells.
+pub(in super::super) fn by_kind(mesh: &TetMesh) -> [Vec<i32>; 3] {
+    let kinds = [&mesh.tets.refs, &mesh.triangles.refs, &mesh.edges.refs];
+    [0, 1, 2].map(|kind| {
+        let of = |(at, refs): (usize, &&Vec<i32>)| if at == kind { refs.to_vec() } else { vec![0; refs.len()] };
+        kinds.iter().enumerate().flat_map(of).collect()
+    })
 }
 
 fn field(field: &NamedField) -> Array<'_> {

@@ -1,5 +1,6 @@
 """Writes the files of this folder as VTK, meshio and PyVista write them. Run by hand: python write.py (needs pyvista==0.49.1, meshio==5.3.5)."""
 
+import subprocess
 from pathlib import Path
 
 import meshio
@@ -52,6 +53,64 @@ def write_by_vtk():
                 assert writer.Write() == 1
 
 
+def write_legacy_by_vtk():
+    """VTK's legacy writer in both versions and modes, and a surface."""
+    grid = vtk.vtkUnstructuredGrid()
+    points = vtk.vtkPoints()
+    points.SetData(numpy_to_vtk(POINTS, deep=True))
+    grid.SetPoints(points)
+    for kind, cells in ((vtk.VTK_TETRA, TETS), (vtk.VTK_TRIANGLE, TRIANGLES)):
+        for cell in cells:
+            grid.InsertNextCell(kind, len(cell), cell.tolist())
+
+    def attach(data, name, values):
+        array = numpy_to_vtk(np.asarray(values), deep=True)
+        array.SetName(name)
+        data.AddArray(array)
+
+    attach(grid.GetPointData(), "pressure", PRESSURE)
+    attach(grid.GetPointData(), "velocity", VELOCITY)
+    grid.GetPointData().SetActiveScalars("pressure")
+    grid.GetPointData().SetActiveVectors("velocity")
+    grid.GetPointData().GetArray("velocity").SetComponentName(0, "u")
+    attach(grid.GetCellData(), "reference", np.concatenate(REFERENCE).astype(np.int32))
+    attach(grid.GetCellData(), "density ρ %", np.concatenate(DENSITY))
+    for version, number in ((42, 42), (51, 51)):
+        for text in (False, True):
+            writer = vtk.vtkUnstructuredGridWriter()
+            writer.SetInputData(grid)
+            writer.SetFileVersion(number)
+            writer.SetFileTypeToASCII() if text else writer.SetFileTypeToBinary()
+            writer.SetFileName(str(FOLDER / f"vtk-legacy-{version}{'-ascii' * text}.vtk"))
+            assert writer.Write() == 1
+    surface = vtk.vtkGeometryFilter()
+    only = vtk.vtkUnstructuredGrid()
+    only.SetPoints(points)
+    for cell in TRIANGLES:
+        only.InsertNextCell(vtk.VTK_TRIANGLE, 3, cell.tolist())
+    attach(only.GetPointData(), "pressure", PRESSURE)
+    surface.SetInputData(only)
+    writer = vtk.vtkPolyDataWriter()
+    writer.SetInputConnection(surface.GetOutputPort())
+    writer.SetFileVersion(42)
+    writer.SetFileName(str(FOLDER / "vtk-legacy-polydata.vtk"))
+    assert writer.Write() == 1
+
+
+def write_by_gmsh():
+    """A cube with physical groups, by `gmsh -3` as .inp and .bdf."""
+    script = FOLDER / "cube.geo"
+    script.write_text(
+        "SetFactory(\"Built-in\");\nPoint(1) = {0, 0, 0, 1};\nline[] = Extrude {1, 0, 0} { Point{1}; Layers{1}; };\n"
+        "face[] = Extrude {0, 1, 0} { Curve{line[1]}; Layers{1}; };\nbody[] = Extrude {0, 0, 1} { Surface{face[1]}; };\n"
+        "Mesh.CharacteristicLengthMin = 1;\nPhysical Volume(\"fluid\") = {body[1]};\n"
+        "Physical Surface(\"inlet\") = {face[1]};\nPhysical Surface(\"walls\") = {body[0], body[2]};\n"
+    )
+    for ending in ("inp", "bdf"):
+        subprocess.run(["gmsh", "-3", "-v", "0", str(script), "-o", str(FOLDER / f"gmsh-cube.{ending}")], check=True)
+    script.unlink()
+
+
 def write_by_meshio():
     """meshio's writers."""
     mesh = meshio.Mesh(
@@ -82,4 +141,6 @@ def write_by_meshio():
 
 if __name__ == "__main__":
     write_by_vtk()
+    write_legacy_by_vtk()
+    write_by_gmsh()
     write_by_meshio()
