@@ -2,7 +2,7 @@
 use clap::Command;
 
 /// Commands, by the words that are typed for them, each with its examples.
-const EXAMPLES: [(&str, &[&str]); 30] = [
+const EXAMPLES: [(&str, &[&str]); 31] = [
     (
         "",
         &[
@@ -18,6 +18,7 @@ const EXAMPLES: [(&str, &[&str]); 30] = [
         &[
             "geo-adapt adapt a.meshb --cad wing.step --field mach.solb --complexity 50000 -o b.meshb",
             "geo-adapt adapt a.meshb --cad wing.step --metric sizes.solb -o b.meshb --report b.json",
+            "geo-adapt adapt flow.vtu --field Mach --vertices 100000 -o b.vtu",
             "geo-adapt adapt a.meshb --metric sizes.solb --freeze inlet,region:2 -o b.meshb",
         ],
     ),
@@ -42,7 +43,14 @@ const EXAMPLES: [(&str, &[&str]); 30] = [
         "convert",
         &["geo-adapt convert flow.vtu flow.meshb", "geo-adapt convert wing.su2 wing.vtu --fields restart_flow.dat"],
     ),
-    ("cycle", &["geo-adapt cycle --example command > loop.toml", "geo-adapt cycle loop.toml"]),
+    (
+        "cycle",
+        &[
+            "geo-adapt cycle --example command > loop.toml",
+            "geo-adapt cycle loop.toml --dry-run",
+            "geo-adapt cycle loop.toml",
+        ],
+    ),
     ("field", &["geo-adapt field evaluate a.meshb --function tanh3 -o u.solb"]),
     ("field error", &["geo-adapt field error coarse.meshb coarse.solb --truth fine.meshb fine.solb"]),
     ("field evaluate", &["geo-adapt field evaluate a.meshb --function tanh3 -o u.solb"]),
@@ -64,14 +72,22 @@ const EXAMPLES: [(&str, &[&str]); 30] = [
     ("metric implied", &["geo-adapt metric implied a.meshb -o own.solb"]),
     ("metric interpolate", &["geo-adapt metric interpolate old.meshb old.solb new.meshb -o new.solb"]),
     ("metric intersect", &["geo-adapt metric intersect m.solb g.solb -o both.solb"]),
+    ("metric isotropic", &["geo-adapt metric isotropic a.meshb sizes.sol -o m.solb"]),
     ("metric limit", &["geo-adapt metric limit m.solb --hmin 1e-4 --hmax 1 -o limited.solb"]),
     ("metric multiscale", &["geo-adapt metric multiscale a.meshb mach.solb --complexity 50000 -o m.solb"]),
     ("metric scale", &["geo-adapt metric scale a.meshb m.solb --complexity 50000 -o scaled.solb"]),
     ("metric show", &["geo-adapt metric show a.meshb m.solb"]),
-    ("model", &["geo-adapt model wing.step", "geo-adapt model wing.step --json"]),
+    ("model", &["geo-adapt model wing.step", "geo-adapt model wing.step --name inlet=3,7 --name wall=near:0,0,1"]),
     ("transfer", &["geo-adapt transfer old.meshb old.solb new.meshb -o new.solb --conservative"]),
     ("tune", &["geo-adapt tune a.meshb --cad wing.step --metric m.solb"]),
-    ("view", &["geo-adapt view a.meshb -o a.html", "geo-adapt view a.meshb --cut x=0.5 --color quality --png a.png"]),
+    (
+        "view",
+        &[
+            "geo-adapt view a.meshb -o a.html",
+            "geo-adapt view wing.step --png wing.png",
+            "geo-adapt view a.meshb --cut x=0.5 --color quality --png a.png",
+        ],
+    ),
 ];
 
 /// Adds the examples to the help of a command and of all below it.
