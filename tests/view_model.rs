@@ -79,25 +79,23 @@ fn the_picture_of_a_model_has_the_numbers_on_its_faces() {
         shown(folder.path(), &[&["a.igs", "--png", "a.png", "--size", "600x450", "--view", "0,0"], more].concat());
         Picture::read(&folder.path().join("a.png"))
     };
-    // From +x one face is seen; its label is in its middle.
-    let dark = |p: [i32; 3]| p.iter().all(|&x| x < 90);
-    let middle = |picture: &Picture| {
-        let x = 251;
-        (0..450 * 600)
-            .filter(|i| (x - 25..x + 25).contains(&(i % 600)) && (200..250).contains(&(i / 600)))
-            .filter(|&i| dark(picture.pixels[i].map(i32::from)))
-            .count()
+    // From +x one face is seen; its label is on it.
+    let without = picture(&["--numbers=no"]);
+    let label = |picture: &Picture| {
+        let differs = |i: &usize| picture.pixels[*i] != without.pixels[*i];
+        let found: Vec<usize> = (0..600 * 450).filter(differs).collect();
+        assert!(found.iter().all(|i| (140..360).contains(&(i % 600)) && (50..400).contains(&(i / 600))));
+        found.len()
     };
-    let (with, without) = (picture(&[]), picture(&["--numbers=no"]));
-    assert!(middle(&with) > 15 && middle(&without) == 0, "{} {}", middle(&with), middle(&without));
+    let number = label(&picture(&[]));
     // A name makes the label longer.
-    let side = program()
-        .current_dir(folder.path())
-        .args(["model", "a.igs", "--name", "outlet=near:2,1,1.5"])
-        .output()
-        .unwrap();
-    assert_eq!(side.status.code(), Some(0), "{}", String::from_utf8_lossy(&side.stderr));
-    assert!(middle(&picture(&[])) > 2 * middle(&with));
+    let arguments = ["model", "a.igs", "--name", "outlet=near:2,1,1.5"];
+    let named = program().current_dir(folder.path()).args(arguments).output().unwrap();
+    assert_eq!(named.status.code(), Some(0), "{}", String::from_utf8_lossy(&named.stderr));
+    let without = picture(&["--numbers=no"]);
+    let with = picture(&[]);
+    let longer = with.pixels.iter().zip(&without.pixels).filter(|(a, b)| a != b).count();
+    assert!(number > 20 && longer > 3 * number, "{number} {longer}");
 }
 
 #[test]

@@ -151,17 +151,17 @@ fn a_cut_along_the_plane_shows_the_field_as_it_is_there() {
         ["--field", "h.solb", "--cut", "1,2,0.5=1.73", "--hide", "1,2,3,4,5,6", "--no-wire", "--isolines", "0"];
     let colours = |more: &[&str]| {
         let picture = place.picture(&[&arguments[..], more].concat());
-        let mut seen: Vec<[i32; 3]> =
-            scene(&picture).into_iter().filter(|p| p.iter().max() != p.iter().min()).collect();
+        // Neither paper nor the frame about what is cut.
+        let mut seen: Vec<[i32; 3]> = scene(&picture).into_iter().filter(|p| p.iter().any(|&x| x < 200)).collect();
         let count = seen.len();
         seen.sort_unstable();
         let most = seen.chunk_by(|a, b| a == b).map(<[_]>::len).max().unwrap_or(0);
         (most, count)
     };
     let (most, all) = colours(&[]);
-    assert!(all > 30_000 && most as f64 > 0.95 * all as f64, "{most} of {all}");
+    assert!(all > 10_000 && most as f64 > 0.9 * all as f64, "{most} of {all}");
     let (most, all) = colours(&["--cut-style", "tets"]);
-    assert!((most as f64) < 0.5 * all as f64, "{most} of {all}");
+    assert!(all > 10_000 && (most as f64) < 0.5 * all as f64, "{most} of {all}");
 }
 
 #[test]

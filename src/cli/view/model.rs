@@ -50,13 +50,20 @@ fn triangles(model: &Model) -> Result<(TetMesh, Vec<String>), String> {
     use crate::surface::{Options, triangulate};
     use std::time::{Duration, Instant};
     /// How long the faces may take to be triangulated.
-    const LIMIT: Duration = Duration::from_secs(120);
+    const LIMIT: Duration = Duration::from_secs(600);
     /// Segments for a radian of curvature: as fine as is seen.
-    const SEGMENTS: f64 = 10.0;
+    const SEGMENTS: f64 = 6.0;
+    /// Edges as short as this are not divided further, of the diagonal: nobody sees it.
+    const LEAST: f64 = 1e-3;
     let Model::Occt(cad) = model else { return Err("it is no CAD model".into()) };
     let topology = model.topology();
     // Where triangles cross they are shown as they are.
-    let options = Options { rounds: 0, segments: SEGMENTS, ..Options::new(topology.diagonal()) };
+    let options = Options {
+        rounds: 0,
+        segments: SEGMENTS,
+        least: LEAST * topology.diagonal(),
+        ..Options::new(topology.diagonal())
+    };
     let start = Instant::now();
     let surface = triangulate(cad, &options, &|| start.elapsed() < LIMIT)
         .ok_or_else(|| format!("its faces are not triangulated after {} s", LIMIT.as_secs()))?;
