@@ -57,6 +57,11 @@ const COMMANDS: &[Case] = &[
     case("metric geometry a.meshb -o new.solb --report OUT", "json", &["a.meshb"]),
     case("metric grade a.meshb a.solb -o OUT", "solb", &["a.meshb", "a.solb"]),
     case("metric implied a.meshb -o OUT", "solb", &["a.meshb"]),
+    case(
+        "inspect a.meshb --metric a.solb --cad a.brep --report OUT",
+        "json",
+        &["a.meshb", "a.solb", "a.brep", "a.names.json"],
+    ),
     case("metric isotropic a.meshb a.solb -o OUT", "solb", &["a.meshb", "a.solb"]),
     case("metric interpolate a.meshb a.solb b.mesh -o OUT", "solb", &["a.meshb", "a.solb", "b.mesh"]),
     case("metric intersect a.meshb a.solb b.sol -o OUT", "solb", &["a.meshb", "a.solb", "b.sol"]),

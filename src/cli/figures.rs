@@ -35,10 +35,16 @@ impl FigureArguments {
     /// # Errors
     /// When they cannot be written.
     pub fn print(&self, figures: &impl Serialize, table: impl FnOnce() -> String) -> Result<(), Box<dyn Error>> {
-        if self.json {
-            return Ok(print(&(serde_json::to_string_pretty(figures)? + "\n"))?);
-        }
-        Ok(self.say(table)?)
+        if self.json || !super::terminal::is_quiet() { self.answer(figures, table) } else { Ok(()) }
+    }
+
+    /// The same, also when quiet: of a command that does nothing but measure for this answer.
+    ///
+    /// # Errors
+    /// When they cannot be written.
+    pub fn answer(&self, figures: &impl Serialize, table: impl FnOnce() -> String) -> Result<(), Box<dyn Error>> {
+        let text = if self.json { serde_json::to_string_pretty(figures)? + "\n" } else { table() };
+        Ok(print(&text)?)
     }
 
     /// Prints a table, unless quiet, or JSON is asked for instead.

@@ -105,7 +105,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut outputs = Outputs::new();
     outputs.json(json.as_ref(), &all)?;
     outputs.commit()?;
-    arguments.figures.print(&all, || tables)?;
+    arguments.figures.answer(&all, || tables)?;
     Ok(ExitCode::SUCCESS)
 }
 

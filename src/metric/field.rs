@@ -377,7 +377,7 @@ mod tests {
 
     #[test]
     fn errors_name_file_vertex_and_remedy() {
-        for wrong in [0.0, -2.0, f64::INFINITY, 1e200] {
+        for wrong in [0.0, -2.0, 1e200] {
             let (_folder, path) = write("scalar.solb", FieldKind::Scalar, vec![1.0, wrong]);
             let message = Field::read(&path, 2).unwrap_err().to_string();
             assert!(

@@ -37,7 +37,7 @@ impl Progress {
         let running = Running::default();
         let shown = wanted && std::io::IsTerminal::is_terminal(&std::io::stderr());
         let bar = if shown {
-            let template = "cycle {pos:>2}{prefix} [{bar:16}] {elapsed_precise} {wide_msg}";
+            let template = "cycle {pos:>2}{prefix} [{bar:10}] {elapsed:>4} {wide_msg}";
             let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
             let length = schedule.last().map_or(0, |last| u64::from(last) + 1);
             let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());

@@ -36,7 +36,7 @@ impl Reference {
             high = std::array::from_fn(|i| high[i].max(p[i]));
         }
         let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
-        if !(area > LEAST * extent * extent) {
+        if area <= LEAST * extent * extent {
             return None;
         }
         let chords = chords(&triangles, low[1], high[1]);
