@@ -9,6 +9,14 @@ const SIDES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
 /// An element, by its kind and place.
 type Element = (Kind, usize);
 
+/// What is known while sets name groups.
+struct Naming {
+    /// Elements of each group.
+    counts: BTreeMap<usize, usize>,
+    /// Groups that have the name of a set already.
+    is_renamed: BTreeSet<usize>,
+}
+
 impl Reader<'_> {
     /// Gives elements without a set the first one that they are in, a group the name of a set that is all of it, and makes triangles of the
     /// sides of surfaces.
@@ -28,12 +36,10 @@ impl Reader<'_> {
         for set in sets.iter().filter(|set| set.is_surface) {
             self.sides(set, &sets, &place, &mut known);
         }
-        let mut is_renamed = BTreeSet::new();
+        let mut naming = Naming { counts: self.counts(), is_renamed: BTreeSet::new() };
         for (set, elements) in sets.iter().zip(&members) {
             let found: BTreeSet<Element> = elements.iter().filter_map(|number| place.get(number)).copied().collect();
-            if !set.is_surface || !found.is_empty() {
-                self.name_elements(set, &found, &mut is_renamed);
-            }
+            self.name_elements(set, &found, &mut naming);
         }
     }
 
@@ -64,6 +70,15 @@ impl Reader<'_> {
         found
     }
 
+    /// How many elements each group has.
+    fn counts(&self) -> BTreeMap<usize, usize> {
+        let mut counts = BTreeMap::new();
+        for &group in self.tets.groups.iter().chain(&self.triangles.groups).chain(&self.edges.groups) {
+            *counts.entry(group).or_insert(0) += 1;
+        }
+        counts
+    }
+
     fn groups_of(&mut self, kind: Kind) -> &mut Vec<usize> {
         match kind {
             Kind::Tetrahedra => &mut self.tets.groups,
@@ -72,27 +87,31 @@ impl Reader<'_> {
         }
     }
 
-    /// A set of elements of a kind: those without a group are one now; groups that are all in it get its name, unless all of the kind are.
-    fn name_elements(&mut self, set: &Set, elements: &BTreeSet<Element>, is_renamed: &mut BTreeSet<usize>) {
-        for kind in Kind::ALL {
+    /// A set of elements by kind: those without a group are one now; groups that are all in it get its name, unless all of the kind are.
+    fn name_elements(&mut self, set: &Set, elements: &BTreeSet<Element>, naming: &mut Naming) {
+        // A surface names no solid.
+        for kind in Kind::ALL.into_iter().filter(|kind| !set.is_surface || *kind == Kind::Triangles) {
             let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
             for &(_, at) in elements.iter().filter(|(of, _)| *of == kind) {
                 inside.entry(self.groups_of(kind)[at]).or_default().push(at);
             }
-            let there: BTreeMap<usize, usize> = self.groups_of(kind).iter().fold(BTreeMap::new(), |mut all, &group| {
-                *all.entry(group).or_insert(0) += 1;
-                all
-            });
-            let is_all = there.len() > 1
-                && there.iter().all(|(group, count)| inside.get(group).is_some_and(|i| i.len() == *count));
+            let of_kind = |&(&group, &count): &(&usize, &usize)| self.groups[group].kind == kind && count > 0;
+            let mut there = naming.counts.iter().filter(of_kind);
+            let is_all = inside.len() > 1
+                && there.all(|(group, &count)| inside.get(group).is_some_and(|places| places.len() == count));
             for (group, places) in inside.into_iter().filter(|_| !is_all) {
                 let Group { name, noted, .. } = &self.groups[group];
                 if name.is_empty() && noted.is_none() {
                     let to = self.group(kind, &set.name, None);
+                    *naming.counts.entry(group).or_default() -= places.len();
+                    *naming.counts.entry(to).or_default() += places.len();
                     for at in places {
                         self.groups_of(kind)[at] = to;
                     }
-                } else if noted.is_none() && there.get(&group) == Some(&places.len()) && is_renamed.insert(group) {
+                } else if noted.is_none()
+                    && naming.counts.get(&group) == Some(&places.len())
+                    && naming.is_renamed.insert(group)
+                {
                     self.groups[group].name.clone_from(&set.name);
                 }
             }
