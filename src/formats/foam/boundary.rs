@@ -180,6 +180,8 @@ mod tests {
             parts: parts.to_vec(),
         };
         assert_eq!(found, [patch("wall", 1, "wall", 5..7, &[]), patch("far field", 12, "patch", 7..10, &[])]);
+        let few = patches(&mut Scanner::new(Path::new("f"), text), 9).unwrap_err().to_string();
+        assert!(few.contains("patch far field has 3 faces from 7 on, but there are 9"));
         let text = b"1 ( wall { type wall; nFaces 3; startFace 7; parts (4 1 9 2); reference 4; } )";
         let found = patches(&mut Scanner::new(Path::new("f"), text), 10).unwrap();
         assert_eq!(found, [patch("wall", 4, "wall", 7..10, &[(4, 1), (9, 2)])]);
@@ -187,8 +189,6 @@ mod tests {
         let text = b"1 ( wall { type wall; nFaces 2; startFace 7; parts (4 1 9 2); reference 4; } )";
         let found = patches(&mut Scanner::new(Path::new("f"), text), 10).unwrap();
         assert_eq!(found, [patch("wall", 4, "wall", 7..9, &[])]);
-        let few = patches(&mut Scanner::new(Path::new("f"), text), 9).unwrap_err().to_string();
-        assert!(few.contains("patch far field has 3 faces from 7 on, but there are 9"));
     }
 
     #[test]

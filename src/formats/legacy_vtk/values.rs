@@ -108,6 +108,8 @@ pub(super) fn decoded(word: &str) -> String {
     let mut at = 0;
     while at < bytes.len() {
         let code = bytes[at..].strip_prefix(b"%").and_then(|rest| std::str::from_utf8(rest.get(..2)?).ok());
+        // from_str_radix would take a sign.
+        let code = code.filter(|code| code.bytes().all(|digit| digit.is_ascii_hexdigit()));
         match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
             Some(byte) => {
                 found.push(byte);
