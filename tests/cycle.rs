@@ -136,7 +136,7 @@ fn a_loop_refines_to_the_complexity_and_tells_the_error() {
     assert_eq!((whole.fields[0].name.as_str(), &whole.fields[0].values), ("u", &solution.fields[0].values));
     let rows = std::fs::read_to_string(result.join("functionals.csv")).unwrap();
     let rows: Vec<Vec<&str>> = rows.lines().map(|row| row.split(',').collect()).collect();
-    assert_eq!(rows[0], ["cycle", "complexity", "vertices", "tetrahedra", "error", "seconds"]);
+    assert_eq!(rows[0], ["cycle", "complexity", "vertices", "tetrahedra", "error"]);
     assert_eq!(rows[1..].iter().map(|row| row[4].parse::<f64>().unwrap()).collect::<Vec<_>>(), errors);
     // What is in the folders is what is told, and each command can be typed again.
     let last = place.path("out/cycle-03/adapt/mesh.meshb");

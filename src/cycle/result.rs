@@ -72,7 +72,7 @@ fn dataset(layout: &Layout, cycle: u32, solved: &SolveResult) -> Result<Dataset,
     Ok(Dataset { mesh, names: names::read(&layout.mesh(cycle))?, fields: fields.collect() })
 }
 
-/// A row a cycle, with the functionals.
+/// A row a cycle, with the functionals. Without times, so that it is the same file however often the loop was ended; the report has them.
 fn table(history: &History) -> String {
     let names: Vec<&String> = history.cycles.first().map_or_else(Vec::new, |cycle| cycle.functionals.keys().collect());
     let quoted = |name: &str| {
@@ -80,15 +80,14 @@ fn table(history: &History) -> String {
     };
     let mut text = String::from("cycle,complexity,vertices,tetrahedra");
     names.iter().for_each(|name| text += &format!(",{}", quoted(name)));
-    text += ",seconds\n";
+    text += "\n";
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     for cycle in &history.cycles {
         let _ = write!(text, "{},{},{},{}", cycle.cycle, number(cycle.complexity), cycle.vertices, cycle.tets);
         for &name in &names {
             text += &format!(",{}", number(cycle.functionals.get(name).copied()));
         }
-        let seconds: f64 = cycle.seconds.values().sum();
-        let _ = writeln!(text, ",{seconds:.2}");
+        text += "\n";
     }
     text
 }
@@ -106,14 +105,13 @@ mod tests {
             vertices: 8,
             tets: 6,
             functionals: [("drag".to_owned(), drag), ("p, mean".to_owned(), 1.5)].into(),
-            seconds: [("solve", 1.0), ("adapt", 0.25)].into(),
             ..Cycle::default()
         };
         let cycles = vec![cycle(1, None, 0.25), cycle(2, Some(100.0), 1e-3)];
         let text = table(&History { cycles, ..History::default() });
         assert_eq!(
             text,
-            "cycle,complexity,vertices,tetrahedra,drag,\"p, mean\",seconds\n1,,8,6,0.25,1.5,1.25\n2,100,8,6,0.001,1.5,1.25\n"
+            "cycle,complexity,vertices,tetrahedra,drag,\"p, mean\"\n1,,8,6,0.25,1.5\n2,100,8,6,0.001,1.5\n"
         );
     }
 }
