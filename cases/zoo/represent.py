@@ -19,12 +19,12 @@ def flaws(inspected, name):
 
 
 def wanted(model):
-    """Numbers (from 1) of the faces, edges and vertices that a mesh must have; `model` as `geo-adapt model --json` lists it.
+    """Numbers of the faces, edges and vertices that a mesh must have; `model` as `geo-adapt model --json` lists it, from 1.
 
     Seams and degenerate edges are no ridges; a vertex is a corner where an edge ends that does not close there.
     """
     edges = {i: edge for i, edge in enumerate(model["edges"], 1) if not edge["degenerate"] and not edge["seam"]}
-    corners = {end + 1 for edge in edges.values() for end in set(edge["vertices"]) if len(set(edge["vertices"])) == 2}
+    corners = {end for edge in edges.values() for end in set(edge["vertices"]) if len(set(edge["vertices"])) == 2}
     return {"face": set(range(1, len(model["faces"]) + 1)), "edge": set(edges), "vertex": corners}
 
 
