@@ -20,7 +20,7 @@ def edge(*vertices, degenerate=False, seam=False):
 
 # A cone on a cylinder's rim: the seam, the rim (closed), the apex; and a line between two corners.
 MODEL = {"solids": 1, "faces": [{}, {}], "vertices": [{}, {}, {}, {}], "diagonal": 10.0, "tolerance": 1e-5,
-         "edges": [edge(0, 1, seam=True), edge(0, 0), edge(1, 1, degenerate=True), edge(2, 3)]}
+         "edges": [edge(1, 2, seam=True), edge(1, 1), edge(2, 2, degenerate=True), edge(3, 4)]}
 
 
 def mesh(faces=(1, 2), edges=(2, 4), corners=(3, 4), regions=(1,)):
