@@ -158,7 +158,7 @@ mod tests {
             assert_eq!(real(text.as_bytes()), Ok(value), "{text}");
         }
         assert!(real(b"1-").is_err() && real(b"x").is_err() && real(b"").is_err());
-        for x in [0.0, -1.0 / 3.0, 1e-300, -1.234567890123456e-7, 1e22, 123456789.123456789, -2e15 / 3.0, 0.1] {
+        for x in [0.0, -1.0 / 3.0, 1e-300, -1.234567890123456e-7, 1e22, 123_456_789.123_456_79, -2e15 / 3.0, 0.1] {
             let text = in_16(x);
             let found = real(text.as_bytes()).unwrap();
             assert!(text.len() <= 16 && text.contains('.') && (found - x).abs() <= 2e-9 * x.abs(), "{x}: {text}");
