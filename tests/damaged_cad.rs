@@ -130,6 +130,20 @@ fn a_face_that_goes_round_too_often_is_refused() {
     }
 }
 
+/// OpenCASCADE's classifier crashes where an edge has no end in the parameters of its face. That was in our own process.
+#[test]
+fn a_boundary_that_goes_to_infinity_is_refused() {
+    let valid = fs::read_to_string(data("blade.brep")).expect("a file of the tests");
+    let pole = " 1.2053474510301097 0.00665";
+    assert!(valid.contains(pole), "another file");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let damaged = valid.replacen(pole, " 1.20534E4510301097 0.00665", 1);
+    fs::write(folder.path().join("damaged.brep"), damaged).expect("the folder is ours");
+    let output = run(folder.path(), &["model", "damaged.brep"]);
+    ends_well(&output, "a pole at infinity", None);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("damaged.brep: is damaged"), "{output:?}");
+}
+
 #[test]
 fn damaged_step_files_end_well() {
     survives("capped-cylinder.step", "step");

@@ -27,6 +27,7 @@ fn read(file: &OsString, target: &OsString) -> Result<(), String> {
         Error::Open { source, .. } => source.to_string(),
         Error::Classification(error) => error.to_string(),
     })?;
+    model.try_trimming();
     // Where there is no room for it the parent reads the model again: now it is known to be harmless.
     let _ = model.save(Path::new(target));
     Ok(())

@@ -25,6 +25,15 @@ pub enum Evaluator<'a> {
 }
 
 impl Model {
+    /// Does what OpenCASCADE crashes on for some damaged models; a process that must live does the like only after another has done this.
+    pub fn try_trimming(&self) {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.try_trimming(),
+            Model::Discrete(_) => {}
+        }
+    }
+
     /// Reads a model file; the format follows from the extension (.step .stp .iges .igs .brep .egads).
     #[cfg(feature = "occt")]
     pub fn read(path: &std::path::Path) -> Result<Self, super::Error> {

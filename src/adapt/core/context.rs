@@ -5,7 +5,7 @@ use super::store::{Store, Torn};
 use super::voids::Voids;
 use crate::geometry::{Evaluate, Geometry, Model, SurfaceKind};
 use crate::mesh::vector::Vec3;
-use crate::metric::Source;
+use crate::metric::{Background, Source};
 use crate::tasks::{GRAIN, Team};
 
 /// √2 and 1/√2: an edge between them has unit length.
@@ -86,6 +86,8 @@ pub struct Context<'m> {
     pub store: Store,
     /// Where new vertices take their metric from.
     pub source: &'m Source,
+    /// The metric on the way to that of the source, in a stage.
+    pub stage: Option<Box<Background>>,
     /// The model the boundary lies on.
     pub model: &'m Model,
     /// Outward normals of the faces that are planes.
@@ -114,6 +116,7 @@ impl<'m> Context<'m> {
         Self {
             store,
             source,
+            stage: None,
             model,
             planes,
             required: Required::default(),

@@ -21,6 +21,7 @@ pub mod refusal;
 pub mod required;
 pub mod ridges;
 pub mod shell;
+pub mod stages;
 pub mod stamped;
 pub mod star;
 pub mod store;

@@ -1,5 +1,6 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
 mod growth;
+mod stages;
 mod surface_bounds;
 mod thinning;
 mod voids;
@@ -177,6 +178,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         if self.crowded {
             self.thin();
         }
+        self.come_near();
         for _ in 0..SIZE_PASSES {
             if self.size_pass() || self.overgrown || self.observer.stop() {
                 break;

@@ -182,6 +182,15 @@ impl OcctModel {
         load::read_saved(path)
     }
 
+    /// Has OpenCASCADE prepare the trimming of each face, on which it crashes for some damaged boundaries. A process that must live does that
+    /// only after another has.
+    pub fn try_trimming(&self) {
+        let mut evaluator = self.evaluator();
+        for (number, face) in self.topology.faces.iter().enumerate() {
+            evaluator.inside_by_occt(number as u32, face.range.map(|[low, high]| 0.5 * (low + high)));
+        }
+    }
+
     /// What OpenCASCADE's own check finds wrong with faces, in words; nothing where the check itself fails.
     pub fn flaws(&self) -> Vec<(u32, String)> {
         let found = self.occt.flaws().unwrap_or_default();

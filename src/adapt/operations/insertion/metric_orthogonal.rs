@@ -86,7 +86,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let (from, metric) = (self.store.position(v), self.store.metric(v));
         let mut hint = self.store.hint(v);
-        let metric_at = |p: Vec3, hint: &mut u32| self.context.source.log_at(p, hint).exp();
+        let metric_at = |p: Vec3, hint: &mut u32| self.context.log_at(p, hint).exp();
         // The metric changes on the way.
         let there = metric_at(add(from, step), &mut hint);
         let point = add(from, scale(step, 1.0 / edge_length(step, &metric, &there)));

@@ -160,7 +160,7 @@ impl<A: Access> Worker<'_, '_, A> {
     ) -> Result<(), Refusal> {
         let placed = self.place(held.placed.entity, target, &[v]);
         let mut hint = held.hint;
-        let log = self.context.source.log_at(placed.point, &mut hint);
+        let log = self.context.log_at(placed.point, &mut hint);
         if !patch.falls_below(limit, placed.point, &log) {
             return Err(Refusal::Shape);
         }

@@ -1,0 +1,125 @@
+//! Stages: where a metric asks for cells many times as flat as those of the mesh, the mesh comes to it by factors that it can represent.
+//!
+//! What that saves, and how the factors were chosen: docs/decisions/stages.md.
+use super::Pipeline;
+
+/// In a stage sizes shrink by no more than this factor, beyond the direction in which they shrink least.
+const FACTOR: f64 = 4.0;
+
+/// There are stages where the source's complexity is so many times that of a stage of this factor.
+const ENTRY: (f64, f64) = (3.0, 16.0);
+
+/// There is another stage where the source's complexity is so many times its own.
+const MUCH: f64 = 1.3;
+
+/// Each stage has so many times the complexity of the one before, else it is the last: what is frozen stays coarse.
+const FINER: f64 = 1.1;
+
+/// Most stages, which is more than the range of doubles has room for.
+const STAGES: usize = 600;
+
+/// Most passes in a stage.
+const PASSES: usize = 3;
+
+impl Pipeline<'_, '_> {
+    /// Brings the mesh near to its metric, in stages.
+    pub(super) fn come_near(&mut self) {
+        let asked_for = |pipeline: &Self, (much, factor): (f64, f64)| {
+            let stage = pipeline.context.stage(pipeline.team(), factor);
+            stage.filter(|stage| stage.wanted > much * stage.complexity)
+        };
+        if asked_for(self, ENTRY).is_none() {
+            return;
+        }
+        let mut before = 0.0;
+        for _ in 0..STAGES {
+            let Some(stage) = asked_for(self, (MUCH, FACTOR)).filter(|stage| stage.complexity > FINER * before) else {
+                break;
+            };
+            before = stage.complexity;
+            self.context.begin_stage(self.team(), stage);
+            self.collapse();
+            for _ in 0..PASSES {
+                let is_settled = self.size_pass();
+                self.pass += 1;
+                if is_settled || self.overgrown || self.observer.stop() {
+                    break;
+                }
+            }
+            self.context.end_stage(self.team());
+            self.keep_order();
+            if self.overgrown || self.observer.stop() {
+                break;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::core::ids::VertexId;
+    use crate::adapt::operations::reconnection::criteria::Criterion;
+    use crate::adapt::schedule::work::{Kind, Silent};
+    use crate::adapt::schedule::{Execution, Grains, Scheduler};
+    use crate::adapt::tests::bench::{Bench, Sample, Shape, sample};
+    use crate::metric::{Background, Source, Sym3};
+    use crate::tasks::{Plan, Pool};
+
+    /// A cube of 216 vertices, with sizes of 0.5 along a wall and of 1e-4 to 0.5 away from it.
+    fn layer() -> Sample {
+        let mut sample = sample(Shape::Cube, 5, 1.0);
+        let size = |z: f64| (1e-4 + z).min(0.5);
+        let log = |z: f64| Sym3::diagonal(4.0, 4.0, size(z).powi(-2)).ln();
+        let logs = sample.mesh.vertices.iter().map(|p| log(p[2])).collect();
+        let background = Background::new(sample.mesh.vertices.clone(), sample.mesh.tets.nodes.clone(), logs);
+        sample.source = Source::Background(background);
+        sample
+    }
+
+    fn with_pipeline(bench: &mut Bench<'_>, act: impl FnOnce(&mut Pipeline<'_, '_>)) {
+        let pool = Pool::new(1).unwrap();
+        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
+        let execution = Execution { pool: &pool, scheduler, plan, grains };
+        act(&mut Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new()));
+    }
+
+    #[test]
+    fn a_stage_shrinks_sizes_by_its_factor_at_most_and_ends_with_the_metric_of_the_source() {
+        let sample = layer();
+        let mut bench = Bench::new(&sample, 1, 3);
+        let logs = |pipeline: &Pipeline<'_, '_>| -> Vec<Sym3> {
+            let store = &pipeline.context.store;
+            store.live_vertices().map(|v: VertexId| store.log(v)).collect()
+        };
+        with_pipeline(&mut bench, |pipeline| {
+            let source = logs(pipeline);
+            let stage = pipeline.context.stage(pipeline.team(), FACTOR).unwrap();
+            assert!(stage.wanted > 10.0 * stage.complexity, "{} {}", stage.wanted, stage.complexity);
+            pipeline.context.begin_stage(pipeline.team(), stage);
+            // The cells have edges of 0.2 to 0.35.
+            for log in logs(pipeline) {
+                let [least, _, greatest] = log.exp().sizes();
+                let (least, greatest) = (least.min(greatest), least.max(greatest));
+                assert!(least > 0.2 / FACTOR / 2.0 && greatest < 0.51, "{least} {greatest}");
+            }
+            pipeline.context.end_stage(pipeline.team());
+            for (before, after) in source.iter().zip(logs(pipeline)) {
+                assert!(before.0.iter().zip(after.0).all(|(before, after)| (before - after).abs() < 1e-9));
+            }
+        });
+        bench.check("a stage without passes");
+    }
+
+    #[test]
+    fn few_of_the_vertices_of_a_thin_layer_are_inserted_in_vain() {
+        let sample = layer();
+        let mut bench = Bench::new(&sample, 1, 3);
+        with_pipeline(&mut bench, |pipeline| {
+            pipeline.run();
+            let (inserted, left) = (pipeline.work[Kind::Split as usize].counts.done as f64, pipeline.live() as f64);
+            assert!(left > 500.0 && inserted < 1.8 * left, "{inserted} {left}");
+        });
+        bench.check("a thin layer");
+    }
+}
