@@ -15,6 +15,11 @@ pub enum Format {
     Vtu,
     /// VTK's legacy files: .vtk.
     LegacyVtk,
+    /// XDMF: .xdmf, .xmf, with the arrays in .h5 beside it.
+    Xdmf {
+        /// Whether one grid of mixed cells is written.
+        is_mixed: bool,
+    },
     /// Meshes of Abaqus and CalculiX: .inp.
     Abaqus,
     /// Nastran's bulk data: .bdf, .nas.
@@ -37,7 +42,7 @@ pub enum Format {
 }
 
 /// What can be read and written.
-const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .msh, .msh2, .inp, .bdf, .nas, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
+const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .xdmf, .xmf, .msh, .msh2, .inp, .bdf, .nas, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
      a new one is named with a / at its end); fields alone .sol, .solb, .csv, .dat";
 
 /// Bytes of a file by which its format is known.
@@ -62,6 +67,8 @@ impl Format {
             "su2" => Self::Su2,
             "vtu" => Self::Vtu,
             "vtk" => Self::LegacyVtk,
+            "xdmf" | "xdmf3" => Self::Xdmf { is_mixed: false },
+            "xmf" => Self::Xdmf { is_mixed: true },
             "inp" => Self::Abaqus,
             "bdf" | "nas" => Self::Nastran,
             "msh" | "msh4" => Self::Msh { is_new: true },
@@ -99,6 +106,7 @@ impl Format {
                 }
                 () if holds(b"$MeshFormat") => Ok(Self::Msh { is_new: true }),
                 () if holds(b"<VTKFile") => Ok(Self::Vtu),
+                () if holds(b"<Xdmf") => Ok(Self::Xdmf { is_mixed: false }),
                 () if head.starts_with(b"# vtk DataFile") => Ok(Self::LegacyVtk),
                 () if holds(b"NDIME=") => Ok(Self::Su2),
                 () => Err(error),
@@ -116,7 +124,7 @@ impl Format {
 
     /// Whether fields stand in the file of the mesh itself, at its vertices.
     pub fn holds_fields(self) -> bool {
-        matches!(self, Self::Vtu | Self::LegacyVtk | Self::Msh { .. })
+        matches!(self, Self::Vtu | Self::LegacyVtk | Self::Xdmf { .. } | Self::Msh { .. })
     }
 
     /// Whether files of the format hold fields and no mesh.

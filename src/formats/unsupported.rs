@@ -26,7 +26,7 @@ pub(super) fn notices(format: Format, data: &Dataset) -> Vec<String> {
         let found: BTreeSet<i32> = mesh.tets.refs.iter().copied().filter(|&region| region != 1).collect();
         count(if found.is_empty() { 0 } else { mesh.tets.len() }, "references of tetrahedra");
     }
-    if !matches!(format, Format::Vtu | Format::LegacyVtk) {
+    if !matches!(format, Format::Vtu | Format::LegacyVtk | Format::Xdmf { .. }) {
         count(mesh.vertex_refs.iter().filter(|&&reference| reference != 0).count(), "references of vertices");
     }
     if !fields {

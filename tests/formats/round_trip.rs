@@ -11,6 +11,10 @@ const MESHES: &[(&str, bool)] = &[
     ("a.vtu", true),
     ("a.vtk", false),
     ("a.vtk", true),
+    ("a.xdmf", false),
+    ("a.xdmf", true),
+    ("a.xmf", false),
+    ("a.xmf", true),
     ("a.inp", false),
     ("a.msh", false),
     ("a.msh", true),
@@ -92,7 +96,7 @@ fn fields_alone_come_back() {
 #[test]
 fn what_could_not_be_read_again_is_not_written() {
     let place = Place::new();
-    for name in ["a.su2", "a.vtu", "a.vtk", "a.inp", "a.bdf", "a.csv", "a.meshb"] {
+    for name in ["a.su2", "a.vtu", "a.vtk", "a.xdmf", "a.inp", "a.bdf", "a.csv", "a.meshb"] {
         let refused = |change: fn(&mut Dataset)| {
             let mut data = dataset();
             change(&mut data);
@@ -115,7 +119,9 @@ fn a_mesh_numbered_the_other_way_is_turned() {
     let data = dataset();
     let mut turned = data.clone();
     turned.mesh.tets.nodes.iter_mut().for_each(|nodes| nodes.swap(0, 1));
-    for name in ["a.vtu", "a.vtk", "a.inp", "a.bdf", "a.su2", "a.meshb", "a.msh", "a.msh2", "a.b8.ugrid"] {
+    for name in
+        ["a.vtu", "a.vtk", "a.xdmf", "a.xmf", "a.inp", "a.bdf", "a.su2", "a.meshb", "a.msh", "a.msh2", "a.b8.ugrid"]
+    {
         let (path, _) = place.write(name, &turned, false);
         let found = formats::read(&path).unwrap();
         assert_eq!(found.content.mesh.tets.nodes, data.mesh.tets.nodes, "{name}");
@@ -127,7 +133,7 @@ fn a_mesh_numbered_the_other_way_is_turned() {
 fn a_file_without_a_known_extension_is_known_by_its_content() {
     let place = Place::new();
     let data = Dataset { fields: Vec::new(), names: Default::default(), ..dataset() };
-    for name in ["a.meshb", "a.mesh", "a.su2", "a.vtu", "a.vtk", "a.msh"] {
+    for name in ["a.meshb", "a.mesh", "a.su2", "a.vtu", "a.vtk", "a.xdmf", "a.msh"] {
         let (path, _) = place.write(name, &data, false);
         let other = place.path("out.1");
         std::fs::rename(path, &other).unwrap();
@@ -157,7 +163,7 @@ fn nastran_brings_back_all_but_the_last_digits() {
 fn a_name_of_several_references_stays_one_name() {
     let mut data = Dataset { fields: Vec::new(), ..dataset() };
     data.names.triangles = labels(&[(3, "farfield"), (7, "farfield"), (21, "farfield")]);
-    for name in ["a.vtu", "a.vtk", "a.msh", "a.msh2", "a.inp", "a.bdf", "a.b8.ugrid", "a.meshb"] {
+    for name in ["a.vtu", "a.vtk", "a.xdmf", "a.xmf", "a.msh", "a.msh2", "a.inp", "a.bdf", "a.b8.ugrid", "a.meshb"] {
         assert_eq!(back(name, false, &data).names.triangles, data.names.triangles, "{name}");
     }
     // A marker of SU2 has one reference.
