@@ -20,6 +20,8 @@ pub enum Format {
         /// Whether one grid of mixed cells is written.
         is_mixed: bool,
     },
+    /// CGNS on HDF5: .cgns.
+    Cgns,
     /// Meshes of Abaqus and CalculiX: .inp.
     Abaqus,
     /// Nastran's bulk data: .bdf, .nas.
@@ -42,7 +44,7 @@ pub enum Format {
 }
 
 /// What can be read and written.
-const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .xdmf, .xmf, .msh, .msh2, .inp, .bdf, .nas, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
+const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .xdmf, .xmf, .cgns, .msh, .msh2, .inp, .bdf, .nas, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
      a new one is named with a / at its end); fields alone .sol, .solb, .csv, .dat";
 
 /// Bytes of a file by which its format is known.
@@ -82,10 +84,7 @@ impl Format {
             "sol" | "solb" => Self::Solution,
             "csv" => Self::Table,
             "dat" => Self::Restart,
-            "cgns" => {
-                let message = "CGNS is not read; write .vtu by ParaView, or .su2 by SU2";
-                return Err(error::at(path, "extension", message));
-            }
+            "cgns" => Self::Cgns,
             _ => return Err(error::at(path, "extension", format!("the format is not known; these are: {KNOWN}"))),
         })
     }
@@ -124,7 +123,7 @@ impl Format {
 
     /// Whether fields stand in the file of the mesh itself, at its vertices.
     pub fn holds_fields(self) -> bool {
-        matches!(self, Self::Vtu | Self::LegacyVtk | Self::Xdmf { .. } | Self::Msh { .. })
+        matches!(self, Self::Vtu | Self::LegacyVtk | Self::Xdmf { .. } | Self::Cgns | Self::Msh { .. })
     }
 
     /// Whether files of the format hold fields and no mesh.

@@ -1,12 +1,13 @@
 //! Meshes and fields in the files of other programs.
 //!
-//! Reading goes bytes → a reader a format (`su2`, `vtu`, `legacy_vtk`, `xdmf`, `msh`, `ugrid`, `abaqus`, `nastran`; `libmeshb` hands over to [`crate::mesh::io`]) → [`Dataset`] →
+//! Reading goes bytes → a reader a format (`su2`, `vtu`, `legacy_vtk`, `xdmf`, `cgns`, `msh`, `ugrid`, `abaqus`, `nastran`; `libmeshb` hands over to [`crate::mesh::io`]) → [`Dataset`] →
 //! `check` (indices, numbers) → `orientation` (tetrahedra numbered the other way). Writing goes the way back; `unsupported` says what the
 //! format cannot carry.
 //! Cases of OpenFOAM (`foam`) are folders, with fields at cells. Columns of fields alone (`columns`: SU2's restarts) are read onto a given
 //! mesh.
 mod abaqus;
 mod cells;
+mod cgns;
 mod check;
 mod columns;
 mod dataset;
@@ -84,6 +85,7 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
         Format::Su2 => su2::read(path, bytes)?,
         Format::Vtu => vtu::read(path, bytes)?,
         Format::Xdmf { .. } => xdmf::read(path, bytes)?,
+        Format::Cgns => cgns::read(path, bytes)?,
         Format::LegacyVtk => legacy_vtk::read(path, bytes)?,
         Format::Abaqus => abaqus::read(path, bytes)?,
         Format::Nastran => nastran::read(path, bytes)?,
@@ -194,6 +196,7 @@ pub fn add(
         Format::Su2 => su2::write(batch, path, data)?,
         Format::Vtu => vtu::write(batch, team, path, data, options.text)?,
         Format::Xdmf { is_mixed } => xdmf::write(batch, path, data, is_mixed, options.text)?,
+        Format::Cgns => cgns::write(batch, path, data)?,
         Format::Abaqus => abaqus::write(batch, path, data)?,
         Format::Nastran => nastran::write(batch, path, data)?,
         Format::LegacyVtk => legacy_vtk::write(batch, path, data, options.text)?,

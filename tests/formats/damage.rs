@@ -293,6 +293,11 @@ fn no_bytes_make_xdmf_with_its_arrays_panic() {
 }
 
 #[test]
+fn no_bytes_make_cgns_panic() {
+    survive(seeds(&[("a.cgns", false)]), mesh);
+}
+
+#[test]
 fn no_bytes_make_abaqus_panic() {
     survive([seeds(&[("a.inp", false)]), foreign("gmsh-")].concat(), mesh);
 }

@@ -15,6 +15,7 @@ const MESHES: &[(&str, bool)] = &[
     ("a.xdmf", true),
     ("a.xmf", false),
     ("a.xmf", true),
+    ("a.cgns", false),
     ("a.inp", false),
     ("a.msh", false),
     ("a.msh", true),
@@ -96,7 +97,7 @@ fn fields_alone_come_back() {
 #[test]
 fn what_could_not_be_read_again_is_not_written() {
     let place = Place::new();
-    for name in ["a.su2", "a.vtu", "a.vtk", "a.xdmf", "a.inp", "a.bdf", "a.csv", "a.meshb"] {
+    for name in ["a.su2", "a.vtu", "a.vtk", "a.xdmf", "a.cgns", "a.inp", "a.bdf", "a.csv", "a.meshb"] {
         let refused = |change: fn(&mut Dataset)| {
             let mut data = dataset();
             change(&mut data);
@@ -119,9 +120,20 @@ fn a_mesh_numbered_the_other_way_is_turned() {
     let data = dataset();
     let mut turned = data.clone();
     turned.mesh.tets.nodes.iter_mut().for_each(|nodes| nodes.swap(0, 1));
-    for name in
-        ["a.vtu", "a.vtk", "a.xdmf", "a.xmf", "a.inp", "a.bdf", "a.su2", "a.meshb", "a.msh", "a.msh2", "a.b8.ugrid"]
-    {
+    for name in [
+        "a.vtu",
+        "a.vtk",
+        "a.xdmf",
+        "a.xmf",
+        "a.cgns",
+        "a.inp",
+        "a.bdf",
+        "a.su2",
+        "a.meshb",
+        "a.msh",
+        "a.msh2",
+        "a.b8.ugrid",
+    ] {
         let (path, _) = place.write(name, &turned, false);
         let found = formats::read(&path).unwrap();
         assert_eq!(found.content.mesh.tets.nodes, data.mesh.tets.nodes, "{name}");
@@ -163,7 +175,9 @@ fn nastran_brings_back_all_but_the_last_digits() {
 fn a_name_of_several_references_stays_one_name() {
     let mut data = Dataset { fields: Vec::new(), ..dataset() };
     data.names.triangles = labels(&[(3, "farfield"), (7, "farfield"), (21, "farfield")]);
-    for name in ["a.vtu", "a.vtk", "a.xdmf", "a.xmf", "a.msh", "a.msh2", "a.inp", "a.bdf", "a.b8.ugrid", "a.meshb"] {
+    for name in
+        ["a.vtu", "a.vtk", "a.xdmf", "a.xmf", "a.cgns", "a.msh", "a.msh2", "a.inp", "a.bdf", "a.b8.ugrid", "a.meshb"]
+    {
         assert_eq!(back(name, false, &data).names.triangles, data.names.triangles, "{name}");
     }
     // A marker of SU2 has one reference.
