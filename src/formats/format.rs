@@ -1,4 +1,5 @@
 //! Which format a file has.
+use super::surfaces::Shape;
 use super::ugrid::Encoding;
 use super::{error, foam};
 use crate::mesh::io::{Error, read_head};
@@ -33,6 +34,8 @@ pub enum Format {
     },
     /// UGRID: .ugrid, .b8.ugrid, .lb8.ugrid.
     Ugrid(Encoding),
+    /// Triangles alone: .stl, .obj, .ply.
+    Surface(Shape),
     /// OpenFOAM's cases: folders.
     Foam,
     /// libMeshb's solutions: .sol, .solb.
@@ -44,7 +47,7 @@ pub enum Format {
 }
 
 /// What can be read and written.
-const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .xdmf, .xmf, .cgns, .msh, .msh2, .inp, .bdf, .nas, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
+const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .xdmf, .xmf, .cgns, .msh, .msh2, .inp, .bdf, .nas, .ugrid, .b8.ugrid, .lb8.ugrid, surfaces .stl, .obj, .ply, folders (OpenFOAM; \
      a new one is named with a / at its end); fields alone .sol, .solb, .csv, .dat";
 
 /// Bytes of a file by which its format is known.
@@ -81,6 +84,9 @@ impl Format {
                 let message = "the unformatted UGRID of Fortran is not read; write .b8.ugrid or .lb8.ugrid";
                 Self::Ugrid(Encoding::of(&word).ok_or_else(|| error::at(path, "extension", message))?)
             }
+            "stl" => Self::Surface(Shape::Stl),
+            "obj" => Self::Surface(Shape::Obj),
+            "ply" => Self::Surface(Shape::Ply),
             "sol" | "solb" => Self::Solution,
             "csv" => Self::Table,
             "dat" => Self::Restart,

@@ -38,7 +38,7 @@ pub use dataset::{Dataset, NamedField};
 pub use format::Format;
 pub use msh::read_msh;
 pub use placement::Placement;
-pub use surfaces::read_surface;
+pub use surfaces::{Shape, read_surface};
 
 use crate::geometry::names;
 use crate::mesh::io::{Batch, Error, Read};
@@ -91,6 +91,10 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
         Format::Nastran => nastran::read(path, bytes)?,
         Format::Msh { .. } => msh::read(path, bytes)?,
         Format::Ugrid(encoding) => ugrid::read(path, bytes, encoding)?,
+        Format::Surface(shape) => {
+            let Read { content: mesh, notices } = surfaces::read(path, bytes, shape)?;
+            Read { content: Dataset { mesh, ..Dataset::default() }, notices }
+        }
         Format::Foam => return Err(error::at(path, "format", "a case of OpenFOAM is a folder of several files")),
         Format::Solution | Format::Table | Format::Restart => {
             let message = "holds fields and no mesh: give the mesh, and this file by --fields";
@@ -197,6 +201,7 @@ pub fn add(
         Format::Vtu => vtu::write(batch, team, path, data, options.text)?,
         Format::Xdmf { is_mixed } => xdmf::write(batch, path, data, is_mixed, options.text)?,
         Format::Cgns => cgns::write(batch, path, data)?,
+        Format::Surface(shape) => surfaces::write(batch, team, path, data, shape, options.text)?,
         Format::Abaqus => abaqus::write(batch, path, data)?,
         Format::Nastran => nastran::write(batch, path, data)?,
         Format::LegacyVtk => legacy_vtk::write(batch, path, data, options.text)?,

@@ -3,6 +3,9 @@ mod obj;
 mod ply;
 mod soup;
 mod stl;
+mod write;
+
+pub(super) use write::write;
 
 use super::error;
 use crate::geometry::discrete::complete_boundary;
@@ -10,6 +13,26 @@ use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, Read};
 use crate::tasks::Team;
 use std::path::Path;
+
+/// A format of triangles alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// STL.
+    Stl,
+    /// Wavefront OBJ.
+    Obj,
+    /// PLY.
+    Ply,
+}
+
+/// Reads triangles of a shape.
+pub(super) fn read(path: &Path, bytes: &[u8], shape: Shape) -> Result<Read<TetMesh>, Error> {
+    match shape {
+        Shape::Stl => stl::read(path, bytes),
+        Shape::Obj => obj::read(path, bytes),
+        Shape::Ply => ply::read(path, bytes),
+    }
+}
 
 /// Reads a surface, by the extension: .stl, .obj, .ply, whose equal points become one vertex, or a mesh (.mesh, .meshb, .vtu, .msh,
 /// …), whose boundary is completed. Groups of OBJ are references from 1 on; STL and PLY have the reference 1.
