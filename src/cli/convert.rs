@@ -16,9 +16,9 @@ const LISTED: usize = 16;
 /// Arguments of `geo-adapt convert`.
 #[derive(clap::Args)]
 #[command(after_help = "Formats: .mesh, .meshb (with .solb and .names.json beside), .su2, .vtu, .vtk (legacy), \
-                        .msh (gmsh 4.1; reads 2.2 too), .msh2 (gmsh 2.2), .inp (Abaqus, CalculiX), .bdf and .nas (Nastran), \
+                        .xdmf (FEniCSx) and .xmf (meshio, ParaView) with .h5 beside, .cgns (on HDF5), .msh (gmsh 4.1; reads 2.2 too), .msh2 (gmsh 2.2), .inp (Abaqus, CalculiX), .bdf and .nas (Nastran), \
                         .ugrid, .b8.ugrid, .lb8.ugrid (with .mapbc beside), folders (cases of OpenFOAM; \
-                        a new one is named with a / at its end); fields alone: .sol, .solb, .csv, .dat (SU2)")]
+                        a new one is named with a / at its end); the surface alone: .stl, .obj, .ply; fields alone: .sol, .solb, .csv, .dat (SU2)")]
 pub struct Arguments {
     /// The mesh
     input: PathBuf,
@@ -30,7 +30,7 @@ pub struct Arguments {
     /// Names of the references, instead of the mesh's own: JSON, as bootstrap writes it
     #[arg(long, value_name = "FILE")]
     names: Option<PathBuf>,
-    /// Write text where the format would be binary (.vtu, .vtk, .msh, OpenFOAM)
+    /// Write text where the format would be binary (.vtu, .vtk, .xdmf, .msh, .ply, OpenFOAM)
     #[arg(long)]
     text: bool,
     /// Leave the association with a model out of .mesh and .meshb: there are readers, meshio's among them, that stop at its keywords

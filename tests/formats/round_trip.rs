@@ -191,3 +191,32 @@ fn a_name_of_several_references_stays_one_name() {
         assert!(text(name).contains("farfield") && !text(name).contains("farfield_"), "{name}");
     }
 }
+
+/// The surface, with normals outward: its volume is that of the mesh.
+#[test]
+fn a_surface_is_written_with_a_solid_or_group_for_each_reference() {
+    let data = dataset();
+    let place = Place::new();
+    for (name, text) in [("a.stl", false), ("a.obj", false), ("a.ply", false), ("b.ply", true)] {
+        let (path, notices) = place.write(name, &data, text);
+        assert!(notices.iter().any(|notice| notice.contains("48 tetrahedra")), "{notices:?}");
+        let found = read(&path).mesh;
+        assert_eq!((found.vertices.len(), found.triangles.len()), (26, 48), "{name}");
+        let volume: f64 = found
+            .triangles
+            .nodes
+            .iter()
+            .map(|nodes| {
+                let [a, b, c] = nodes.map(|v| found.vertices[v as usize]);
+                (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3])).sum::<f64>()
+                    / 6.0
+            })
+            .sum();
+        assert!((volume - 1.0 / 27.0).abs() < 1e-6, "{name}: {volume}");
+        let bytes = std::fs::read(&path).unwrap();
+        let words = String::from_utf8_lossy(&bytes);
+        for word in ["wing", "far-field", "symmetry"] {
+            assert!(words.contains(word), "{name}");
+        }
+    }
+}

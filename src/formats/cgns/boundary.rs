@@ -4,6 +4,9 @@ use crate::mesh::TetMesh;
 use crate::mesh::io::Error;
 use std::collections::HashSet;
 
+/// What no condition is of, until it has its section's.
+const NONE: i32 = i32::MIN;
+
 /// Gives the elements of a zone their references, and these names.
 pub(super) fn refer(
     zone: &Node<'_>,
@@ -22,16 +25,8 @@ pub(super) fn refer(
         }
         return Ok(());
     }
-    let several = |wanted| {
-        sections.iter().filter(|section| section.elements.first().is_some_and(|&e| dimension(e) == wanted)).count() > 1
-    };
-    let by_section = [false, true, true, several(3)];
-    for section in sections {
-        for &element in section.elements.iter().filter(|&&element| by_section[dimension(element)]) {
-            let reference = labels.reference(dimension(element), &section.name);
-            set(mesh, element, reference);
-        }
-    }
+    let all = || sections.iter().flat_map(|section| section.elements.iter().map(move |&element| (section, element)));
+    all().for_each(|(_, element)| set(mesh, element, NONE));
     for conditions in zone.labelled("ZoneBC_t")? {
         for condition in conditions.labelled("BC_t")? {
             let name = condition.text_of("FamilyName").filter(|name| !name.is_empty());
@@ -42,7 +37,17 @@ pub(super) fn refer(
             }
         }
     }
-    forget_unused(mesh, labels);
+    // One section of tetrahedra is no region that needs a name.
+    let volumes =
+        sections.iter().filter(|section| section.elements.first().is_some_and(|&e| dimension(e) == 3)).count();
+    for (section, element) in all() {
+        if reference(mesh, element) != NONE {
+            continue;
+        }
+        let dimension = dimension(element);
+        let given = if dimension == 3 && volumes == 1 { 1 } else { labels.reference(dimension, &section.name) };
+        set(mesh, element, given);
+    }
     Ok(())
 }
 
@@ -80,12 +85,6 @@ fn elements_of(condition: &Node<'_>, base: usize, sections: &[Section], mesh: &T
     Ok(found)
 }
 
-/// Sections whose elements are all in conditions need no name.
-fn forget_unused(mesh: &TetMesh, labels: &mut Labels) {
-    let used: HashSet<i32> = mesh.triangles.refs.iter().copied().collect();
-    labels.names.triangles.retain(|reference, _| used.contains(reference));
-}
-
 fn dimension(element: Element) -> usize {
     match element {
         Element::Tet(_) => 3,
@@ -101,5 +100,14 @@ fn set(mesh: &mut TetMesh, element: Element, reference: i32) {
         Element::Triangle(at) => mesh.triangles.refs[at] = reference,
         Element::Edge(at) => mesh.edges.refs[at] = reference,
         Element::Other => {}
+    }
+}
+
+fn reference(mesh: &TetMesh, element: Element) -> i32 {
+    match element {
+        Element::Tet(at) => mesh.tets.refs[at],
+        Element::Triangle(at) => mesh.triangles.refs[at],
+        Element::Edge(at) => mesh.edges.refs[at],
+        Element::Other => 1,
     }
 }

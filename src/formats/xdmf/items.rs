@@ -121,7 +121,7 @@ impl<'p> Items<'p> {
     pub fn are_whole(&self, item: &Item<'_>, numbers: &Numbers<'_>) -> bool {
         match numbers {
             Numbers::Array(array) => array.is_whole,
-            Numbers::Words(words) => item.says_whole.unwrap_or_else(|| words.iter().all(|word| is_whole(word))),
+            Numbers::Words(words) => item.says_whole.unwrap_or_else(|| words.iter().all(is_whole)),
         }
     }
 
