@@ -28,6 +28,8 @@ pub(in super::super) fn write(
     as_text: bool,
 ) -> Result<Vec<String>, Error> {
     let mut surface = Dataset { mesh: data.mesh.clone(), names: data.names.clone(), fields: Vec::new() };
+    // As one region: what lies between regions is not the outside.
+    surface.mesh.tets.refs.fill(1);
     complete_boundary(team, &mut surface.mesh);
     turn_outward(&mut surface);
     surface.mesh.tets = Default::default();
