@@ -2,6 +2,7 @@
 use super::Outcome;
 use super::files::{Files, Outputs};
 use super::table::Table;
+use super::translation::Translation;
 use crate::formats::{self, Dataset, Format, Options, Placement};
 use crate::geometry::{Label, names};
 use crate::mesh::io::FieldKind;
@@ -40,22 +41,8 @@ pub struct Arguments {
     #[arg(long, value_name = "F", value_parser = super::positive, allow_negative_numbers = true)]
     scale: Option<f64>,
     /// Move by this, after --scale
-    #[arg(long, value_name = "X,Y,Z", value_parser = translation, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     translate: Option<Translation>,
-}
-
-/// A translation. (A type of its own, since clap would take an array for several arguments.)
-#[derive(Clone, Copy, Default)]
-struct Translation([f64; 3]);
-
-fn translation(text: &str) -> Result<Translation, String> {
-    let words: Vec<f64> = text.split(',').filter_map(|word| word.trim().parse().ok()).collect();
-    match words[..] {
-        [x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|x| x.is_finite()) => {
-            Ok(Translation([x, y, z]))
-        }
-        _ => Err("give three numbers: 0,0,1.5".into()),
-    }
 }
 
 /// Runs the subcommand.

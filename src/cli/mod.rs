@@ -32,6 +32,7 @@ mod surface;
 mod table;
 mod terminal;
 mod transfer;
+mod translation;
 mod tune;
 mod value_enums;
 mod view;
