@@ -91,10 +91,7 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
         Format::Nastran => nastran::read(path, bytes)?,
         Format::Msh { .. } => msh::read(path, bytes)?,
         Format::Ugrid(encoding) => ugrid::read(path, bytes, encoding)?,
-        Format::Surface(shape) => {
-            let Read { content: mesh, notices } = surfaces::read(path, bytes, shape)?;
-            Read { content: Dataset { mesh, ..Dataset::default() }, notices }
-        }
+        Format::Surface(shape) => surfaces::read(path, bytes, shape)?,
         Format::Foam => return Err(error::at(path, "format", "a case of OpenFOAM is a folder of several files")),
         Format::Solution | Format::Table | Format::Restart => {
             let message = "holds fields and no mesh: give the mesh, and this file by --fields";

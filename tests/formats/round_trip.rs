@@ -220,3 +220,33 @@ fn a_surface_is_written_with_a_solid_or_group_for_each_reference() {
         }
     }
 }
+
+/// What the solids of STL, the groups of OBJ and the comments of PLY say comes back; STL has no place for numbers.
+#[test]
+fn names_of_surfaces_come_back() {
+    let mut data = surface();
+    data.fields.clear();
+    data.names.triangles = labels(&[(3, "wing"), (7, "far-field"), (21, "far-field"), (11, "42")]);
+    let wanted = sorted(data.mesh.clone());
+    for (name, text) in [("a.obj", false), ("a.ply", false), ("a.ply", true)] {
+        let found = back(name, text, &data);
+        assert_eq!(found.mesh.triangles.refs, wanted.triangles.refs, "{name}");
+        assert_eq!(found.names.triangles, data.names.triangles, "{name}");
+    }
+    let found = back("a.stl", false, &data);
+    let mut of_name = std::collections::BTreeMap::new();
+    for &reference in &found.mesh.triangles.refs {
+        let name = found.names.triangles.get(&reference).and_then(|label| label.name.clone());
+        *of_name.entry((name.clone(), if name.is_none() { reference } else { 0 })).or_insert(0) += 1;
+    }
+    let count = |references: &[i32]| wanted.triangles.refs.iter().filter(|at| references.contains(at)).count();
+    let called = |name: &str| (Some(name.to_owned()), 0);
+    let expected = [
+        ((None, 6), count(&[6])),
+        ((None, 8), count(&[8])),
+        (called("42"), count(&[11])),
+        (called("far-field"), count(&[7, 21])),
+        (called("wing"), count(&[3])),
+    ];
+    assert_eq!(of_name, expected.into());
+}

@@ -1,5 +1,5 @@
 //! Writing triangles: the boundary of a mesh, those of a reference together.
-use super::super::sets::{Kind, groups, meaning};
+use super::super::sets::{Kind, Meaning, groups, meaning};
 use super::super::text::Text;
 use super::super::{Dataset, error};
 use super::Shape;
@@ -14,7 +14,7 @@ use std::path::Path;
 /// The triangles of a reference, and what it is called.
 struct Group {
     name: String,
-    reference: i32,
+    meaning: Meaning,
     nodes: Vec<[u32; 3]>,
 }
 
@@ -41,10 +41,10 @@ pub(in super::super) fn write(
     let parts: Vec<Group> = groups(&surface)
         .into_iter()
         .map(|((kind, reference), members)| {
-            let name = meaning(&surface, (kind, reference)).name;
-            let name = name.unwrap_or_else(|| format!("{}_{reference}", Kind::Triangles.unnamed()));
+            let meaning = meaning(&surface, (kind, reference));
+            let name = meaning.name.clone().unwrap_or_else(|| format!("{}_{reference}", Kind::Triangles.unnamed()));
             let nodes = members.iter().map(|&at| mesh.triangles.nodes[at as usize]).collect();
-            Group { name, reference, nodes }
+            Group { name, meaning, nodes }
         })
         .collect();
     let points = &mesh.vertices;
@@ -128,7 +128,7 @@ fn obj(to: &mut dyn Write, points: &[[f64; 3]], place: &[u32], parts: &[Group]) 
         text.hand_on()?;
     }
     for part in parts {
-        text.put(format_args!("g {}\n", one_word(&part.name)));
+        text.put(format_args!("# {}\ng {}\n", part.meaning.note(), one_word(&part.name)));
         for nodes in &part.nodes {
             let [a, b, c] = nodes.map(|v| place[v as usize] + 1);
             text.put(format_args!("f {a} {b} {c}\n"));
@@ -143,7 +143,7 @@ fn ply(to: &mut dyn Write, points: &[[f64; 3]], place: &[u32], parts: &[Group], 
     let format = if as_text { "ascii" } else { "binary_little_endian" };
     text.put(format_args!("ply\nformat {format} 1.0\n"));
     for part in parts {
-        text.put(format_args!("comment reference {} is {}\n", part.reference, part.name));
+        text.put(format_args!("comment {}\n", part.meaning.note()));
     }
     let faces: usize = parts.iter().map(|part| part.nodes.len()).sum();
     text.put(format_args!("element vertex {}\n", points.len()));
@@ -162,7 +162,7 @@ fn ply(to: &mut dyn Write, points: &[[f64; 3]], place: &[u32], parts: &[Group], 
     for part in parts {
         for nodes in &part.nodes {
             let [a, b, c] = nodes.map(|v| place[v as usize]);
-            let reference = part.reference;
+            let reference = part.meaning.reference;
             if as_text {
                 text.put(format_args!("3 {a} {b} {c} {reference}\n"));
             } else {
