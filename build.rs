@@ -39,7 +39,7 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 16] = [
+    const SOURCES: [&str; 17] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
         "cpp/connect.cpp",
@@ -52,6 +52,7 @@ mod occt {
         "cpp/evaluate.cpp",
         "cpp/outline.cpp",
         "cpp/splines.cpp",
+        "cpp/place.cpp",
         "cpp/write.cpp",
         "cpp/save.cpp",
         "cpp/check.cpp",

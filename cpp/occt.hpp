@@ -114,6 +114,9 @@ public:
   /// The model without edges and faces that are narrower than a length, sewn where it is no solid and gaps are narrower; what was done is told.
   std::shared_ptr<Model> healed(double length, rust::Vec<HealRecord>& done) const;
 
+  /// The model multiplied by a factor about the origin, then moved; its entities keep their numbers, and have no labels.
+  std::shared_ptr<Model> placed(double factor, const std::array<double, 3>& by) const;
+
   TopoDS_Face face(std::uint32_t index) const; // FORWARD, as its p-curves want it
   TopoDS_Edge edge(std::uint32_t index) const; // FORWARD
 

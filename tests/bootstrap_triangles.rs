@@ -125,6 +125,41 @@ fn surfaces_within_each_other_bound_solids_and_voids_in_turn() {
 }
 
 #[test]
+fn what_a_surface_calls_its_parts_is_what_the_mesh_calls_them() {
+    let place = Place::new();
+    let mut text = String::new();
+    // Sides of a box: two triangles each.
+    for (side, triangles) in cuboid([0.0; 3], [1.0; 3]).chunks(2).enumerate() {
+        let name = ["inlet", "outlet", "wall", "wall", "wall", "wall"][side];
+        text += &format!("solid {name}\n");
+        for corners in triangles {
+            text += "facet normal 0 0 0\nouter loop\n";
+            corners.iter().for_each(|[x, y, z]| text += &format!("vertex {x} {y} {z}\n"));
+            text += "endloop\nendfacet\n";
+        }
+        text += &format!("endsolid {name}\n");
+    }
+    let surface = place.path("duct.stl");
+    std::fs::write(&surface, text).unwrap();
+    for arguments in [&[][..], &["--no-adapt"]] {
+        let mesh = place.mesh(&surface, arguments);
+        let names = std::fs::read_to_string(place.path("out.names.json")).unwrap();
+        let names: serde_json::Value = serde_json::from_str(&names).unwrap();
+        for (reference, name, area) in [(1, "inlet", 1.0), (2, "outlet", 1.0), (3, "wall", 4.0)] {
+            assert_eq!(names["triangles"][reference.to_string()]["name"], name);
+            let of = mesh.triangles.iter().filter(|(_, at)| *at == reference);
+            let found: f64 = of
+                .map(|(nodes, _)| {
+                    let [a, b, c] = nodes.map(|v| mesh.vertices[v as usize]);
+                    0.5 * norm(geo_adapt::mesh::vector::area2(a, b, c))
+                })
+                .sum();
+            assert!((found - area).abs() < 1e-9, "{name}: {found}");
+        }
+    }
+}
+
+#[test]
 fn holes_crossings_and_what_it_cannot_do_are_told() {
     let place = Place::new();
     let told = |soup: &Soup, arguments: &[&str]| {

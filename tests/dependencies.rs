@@ -15,8 +15,8 @@ fn packages(options: &[&str]) -> Vec<String> {
 }
 
 /// What only the command line, the loop, the pages and the files of other programs need.
-const OF_THE_PROGRAM: [&str; 9] =
-    ["clap", "indicatif", "ctrlc", "toml", "png", "regex-lite", "base64", "flate2", "quick-xml"];
+const OF_THE_PROGRAM: [&str; 10] =
+    ["clap", "indicatif", "ctrlc", "toml", "png", "regex-lite", "base64", "flate2", "hdf5-pure", "quick-xml"];
 
 #[test]
 fn the_library_alone_has_no_package_of_the_program() {

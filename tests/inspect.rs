@@ -136,6 +136,15 @@ fn invalid_meshes_end_with_1() {
         mesh.triangles.refs.pop();
     };
     assert_eq!(kind_of(&pop), ["open-boundary"]);
+    // What is wrong where counts from 1.
+    let mut flat = good.clone();
+    flat.tets.nodes[2].swap(1, 2);
+    let found = inspect_json(&save(folder.path(), &flat), &[], 1);
+    let first = &found["flaws"].as_array().unwrap().iter().find(|f| f["kind"] == "inverted-tet").unwrap()["first"][0];
+    assert_eq!((&first["index"], first["nodes"].as_array().unwrap().len()), (&3.into(), 4));
+    let nodes: Vec<u64> = flat.tets.nodes[2].iter().map(|&v| u64::from(v) + 1).collect();
+    assert_eq!(first["nodes"], serde_json::json!(nodes));
+    assert_eq!(found["worst_tet"]["index"], 3);
     assert_eq!(kind_of(&|mesh| mesh.triangles.push(mesh.triangles.nodes[0], 1)), ["duplicate-triangle"]);
     let hang = |mesh: &mut TetMesh| {
         mesh.vertices.push([5.0; 3]);

@@ -360,6 +360,82 @@ fn names_that_fit_no_face_are_refused() {
 }
 
 #[test]
+fn a_model_in_other_units_keeps_its_numbers_and_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = |name: &str| folder.path().join(name);
+    // Planes and a cylinder; a cone with its apex; a torus alone; splines; names and colours of its own.
+    for name in ["capped-cylinder.step", "cone-apex.brep", "torus.brep", "block-inches.igs", "cadquery-names.step"] {
+        std::fs::copy(data(name), here(name)).unwrap();
+        let bytes = std::fs::read(here(name)).unwrap();
+        let named = run_in(folder.path(), &["model", name, "--name", "first=1"]);
+        assert_eq!(named.status.code(), Some(0), "{}", String::from_utf8_lossy(&named.stderr));
+        let made =
+            run_in(folder.path(), &["model", name, "--scale", "0.001", "--translate", "1,-2,0.5", "-o", "m.brep"]);
+        assert_eq!(made.status.code(), Some(0), "{name}: {}", String::from_utf8_lossy(&made.stderr));
+        assert!(String::from_utf8_lossy(&made.stdout).contains("m.brep"), "{name}");
+        assert_eq!(std::fs::read(here(name)).unwrap(), bytes, "{name}");
+        let (before, after) = (listing(&here(name)), listing(&here("m.brep")));
+        assert_eq!((&before["names"], &before["solids"]), (&after["names"], &after["solids"]), "{name}");
+        let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9 * b.abs() + 1e-12, "{name}: {a} {b}");
+        let number = |value: &serde_json::Value| value.as_f64().unwrap_or(f64::NAN);
+        let moved = |a: Vec3, b: Vec3| {
+            let expected = [0, 1, 2].map(|i: usize| 1e-3 * b[i] + [1.0, -2.0, 0.5][i]);
+            assert!(distance(a, expected) < 1e-9, "{name}: {a:?} {expected:?}");
+        };
+        let both = |key: &str| {
+            let [a, b] = [&after, &before].map(|json| json[key].as_array().unwrap().clone());
+            assert_eq!(a.len(), b.len(), "{name}: {key}");
+            a.into_iter().zip(b)
+        };
+        for (a, b) in both("faces") {
+            for key in ["kind", "name", "colour", "neighbours", "edges"] {
+                assert_eq!(a[key], b[key], "{name}: {key}");
+            }
+            close(number(&a["area"]), 1e-6 * number(&b["area"]));
+            moved(vector(&a["centre"]), vector(&b["centre"]));
+            if a["closed"] == false {
+                assert!(distance(vector(&a["normal"]), vector(&b["normal"])) < 1e-6, "{name}: {a} {b}");
+            }
+        }
+        for (a, b) in both("edges") {
+            for key in ["kind", "vertices", "faces", "seam", "degenerate"] {
+                assert_eq!(a[key], b[key], "{name}: {key}");
+            }
+            if b["degenerate"] == false {
+                close(number(&a["length"]), 1e-3 * number(&b["length"]));
+            }
+        }
+        for (a, b) in both("vertices") {
+            moved(vector(&a["point"]), vector(&b["point"]));
+        }
+    }
+    // Other commands take it.
+    let made = run_in(folder.path(), &["bootstrap", "m.brep", "-o", "m.vtu", "--no-adapt", "-q"]);
+    assert_eq!(made.status.code(), Some(0), "{}", String::from_utf8_lossy(&made.stderr));
+}
+
+#[test]
+fn what_no_model_can_be_scaled_by_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(data("capped-cylinder.step"), folder.path().join("a.step")).unwrap();
+    let refusal = |arguments: &[&str]| {
+        let output = run_in(folder.path(), &[&["model", "a.step"], arguments].concat());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        message
+    };
+    for wrong in ["0", "-1", "inf", "a"] {
+        assert!(refusal(&["--scale", wrong, "-o", "b.brep"]).contains("positive"), "{wrong}");
+    }
+    assert!(refusal(&["--translate", "1,2", "-o", "b.brep"]).contains("0,0,1.5"));
+    assert!(refusal(&["--scale", "2", "-o", "b.step"]).contains("must end in .brep"));
+    assert!(refusal(&["--scale", "2"]).contains("--output"));
+    // A thousandth of the length within which OpenCASCADE takes points for one.
+    assert!(refusal(&["--scale", "1e-10", "-o", "b.brep"]).contains("a scale nearer to 1"));
+    assert!(!folder.path().join("b.brep").exists());
+}
+
+#[test]
 fn names_beside_a_brep_may_be_those_of_a_mesh() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::copy(data("duct.brep"), folder.path().join("a.brep")).unwrap();

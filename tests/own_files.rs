@@ -72,6 +72,7 @@ const COMMANDS: &[Case] = &[
     case("metric show a.meshb a.solb --report OUT", "json", &["a.meshb", "a.solb"]),
     case("transfer a.meshb f.solb b.mesh -o OUT", "solb", &["a.meshb", "f.solb", "b.mesh"]),
     case("transfer a.meshb f.solb b.mesh -o new.solb --report OUT", "json", &["a.meshb", "f.solb", "b.mesh"]),
+    case("model a.brep --scale 0.001 -o OUT", "brep", &["a.brep", "a.names.json"]),
     case("tune a.meshb --metric a.solb --report OUT", "json", &["a.meshb", "a.solb"]),
     case("view a.meshb --metric a.solb -o OUT", "html", &["a.meshb", "a.solb", "a.names.json"]),
     case("view a.meshb --png OUT", "png", &["a.meshb", "a.solb", "a.names.json"]),

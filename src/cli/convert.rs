@@ -2,6 +2,7 @@
 use super::Outcome;
 use super::files::{Files, Outputs};
 use super::table::Table;
+use super::translation::Translation;
 use crate::formats::{self, Dataset, Format, Options, Placement};
 use crate::geometry::{Label, names};
 use crate::mesh::io::FieldKind;
@@ -16,9 +17,9 @@ const LISTED: usize = 16;
 /// Arguments of `geo-adapt convert`.
 #[derive(clap::Args)]
 #[command(after_help = "Formats: .mesh, .meshb (with .solb and .names.json beside), .su2, .vtu, .vtk (legacy), \
-                        .msh (gmsh 4.1; reads 2.2 too), .msh2 (gmsh 2.2), .inp (Abaqus, CalculiX), .bdf and .nas (Nastran), \
+                        .xdmf (FEniCSx) and .xmf (meshio, ParaView) with .h5 beside, .cgns (on HDF5), .msh (gmsh 4.1; reads 2.2 too), .msh2 (gmsh 2.2), .inp (Abaqus, CalculiX), .bdf and .nas (Nastran), \
                         .ugrid, .b8.ugrid, .lb8.ugrid (with .mapbc beside), folders (cases of OpenFOAM; \
-                        a new one is named with a / at its end); fields alone: .sol, .solb, .csv, .dat (SU2)")]
+                        a new one is named with a / at its end); the surface alone: .stl, .obj, .ply; fields alone: .sol, .solb, .csv, .dat (SU2)")]
 pub struct Arguments {
     /// The mesh
     input: PathBuf,
@@ -30,7 +31,7 @@ pub struct Arguments {
     /// Names of the references, instead of the mesh's own: JSON, as bootstrap writes it
     #[arg(long, value_name = "FILE")]
     names: Option<PathBuf>,
-    /// Write text where the format would be binary (.vtu, .vtk, .msh, OpenFOAM)
+    /// Write text where the format would be binary (.vtu, .vtk, .xdmf, .msh, .ply, OpenFOAM)
     #[arg(long)]
     text: bool,
     /// Leave the association with a model out of .mesh and .meshb: there are readers, meshio's among them, that stop at its keywords
@@ -40,22 +41,8 @@ pub struct Arguments {
     #[arg(long, value_name = "F", value_parser = super::positive, allow_negative_numbers = true)]
     scale: Option<f64>,
     /// Move by this, after --scale
-    #[arg(long, value_name = "X,Y,Z", value_parser = translation, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     translate: Option<Translation>,
-}
-
-/// A translation. (A type of its own, since clap would take an array for several arguments.)
-#[derive(Clone, Copy, Default)]
-struct Translation([f64; 3]);
-
-fn translation(text: &str) -> Result<Translation, String> {
-    let words: Vec<f64> = text.split(',').filter_map(|word| word.trim().parse().ok()).collect();
-    match words[..] {
-        [x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|x| x.is_finite()) => {
-            Ok(Translation([x, y, z]))
-        }
-        _ => Err("give three numbers: 0,0,1.5".into()),
-    }
 }
 
 /// Runs the subcommand.

@@ -77,7 +77,14 @@ const EXAMPLES: [(&str, &[&str]); 31] = [
     ("metric multiscale", &["geo-adapt metric multiscale a.meshb mach.solb --complexity 50000 -o m.solb"]),
     ("metric scale", &["geo-adapt metric scale a.meshb m.solb --complexity 50000 -o scaled.solb"]),
     ("metric show", &["geo-adapt metric show a.meshb m.solb"]),
-    ("model", &["geo-adapt model wing.step", "geo-adapt model wing.step --name inlet=3,7 --name wall=near:0,0,1"]),
+    (
+        "model",
+        &[
+            "geo-adapt model wing.step",
+            "geo-adapt model wing.step --name inlet=3,7 --name wall=near:0,0,1",
+            "geo-adapt model part.step --scale 0.001 -o part-m.brep",
+        ],
+    ),
     ("transfer", &["geo-adapt transfer old.meshb old.solb new.meshb -o new.solb --conservative"]),
     ("tune", &["geo-adapt tune a.meshb --cad wing.step --metric m.solb"]),
     (

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// Where the figures go as JSON.
 #[derive(clap::Args)]
 pub struct FigureArguments {
-    /// Print the figures as JSON, instead of the table. Indices count from 0 there, and from 1 in text and messages
+    /// Print the figures as JSON, instead of the table. There too what has a number counts from 1
     #[arg(long)]
     json: bool,
     /// Write the figures as JSON, as --json prints them

@@ -10,6 +10,7 @@ use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Model, classify};
 use crate::mesh::TetMesh;
 use crate::mesh::io::Read;
+use crate::mesh::numbers::from_one;
 use crate::mesh::validity::{self, Validity};
 use crate::mesh::vector::{Vec3, add, scale};
 use crate::metric::{Analytic, Field, Statistics, Sym3};
@@ -41,6 +42,7 @@ pub struct Arguments {
 /// The tetrahedron of the least mean ratio.
 #[derive(Serialize)]
 struct WorstTet {
+    #[serde(serialize_with = "from_one")]
     index: usize,
     mean_ratio: f64,
     at: Vec3,

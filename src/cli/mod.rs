@@ -32,6 +32,7 @@ mod surface;
 mod table;
 mod terminal;
 mod transfer;
+mod translation;
 mod tune;
 mod value_enums;
 mod view;
@@ -72,7 +73,7 @@ enum Command {
     Man(man::Arguments),
     /// Make, combine and measure metrics
     Metric(metric::Arguments),
-    /// List the entities of a CAD model
+    /// List the entities of a CAD model, name its faces, or write it in another unit
     Model(model::Arguments),
     /// Run a case of OpenFOAM that `cycle` has prepared
     #[command(hide = true)]

@@ -53,7 +53,7 @@ impl SurfaceArguments {
         let Some(path) = &self.surface else { return Ok(None) };
         let read = read_surface(team, path).map_err(|error| error.to_string())?;
         notices.extend(read.notices);
-        let (surface, _) = Discrete::new(team, &read.content, &self.options())
+        let (surface, _) = Discrete::new(team, &read.content.mesh, &self.options())
             .map_err(|error| format!("{}: {error}", path.display()))?;
         Ok(Some(Model::Discrete(surface)))
     }

@@ -1,4 +1,5 @@
 //! Which format a file has.
+use super::surfaces::Shape;
 use super::ugrid::Encoding;
 use super::{error, foam};
 use crate::mesh::io::{Error, read_head};
@@ -15,6 +16,13 @@ pub enum Format {
     Vtu,
     /// VTK's legacy files: .vtk.
     LegacyVtk,
+    /// XDMF: .xdmf, .xmf, with the arrays in .h5 beside it.
+    Xdmf {
+        /// Whether one grid of mixed cells is written.
+        is_mixed: bool,
+    },
+    /// CGNS on HDF5: .cgns.
+    Cgns,
     /// Meshes of Abaqus and CalculiX: .inp.
     Abaqus,
     /// Nastran's bulk data: .bdf, .nas.
@@ -26,6 +34,8 @@ pub enum Format {
     },
     /// UGRID: .ugrid, .b8.ugrid, .lb8.ugrid.
     Ugrid(Encoding),
+    /// Triangles alone: .stl, .obj, .ply.
+    Surface(Shape),
     /// OpenFOAM's cases: folders.
     Foam,
     /// libMeshb's solutions: .sol, .solb.
@@ -37,7 +47,7 @@ pub enum Format {
 }
 
 /// What can be read and written.
-const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .msh, .msh2, .inp, .bdf, .nas, .ugrid, .b8.ugrid, .lb8.ugrid, folders (OpenFOAM; \
+const KNOWN: &str = ".mesh, .meshb, .su2, .vtu, .vtk, .xdmf, .xmf, .cgns, .msh, .msh2, .inp, .bdf, .nas, .ugrid, .b8.ugrid, .lb8.ugrid, surfaces .stl, .obj, .ply, folders (OpenFOAM; \
      a new one is named with a / at its end); fields alone .sol, .solb, .csv, .dat";
 
 /// Bytes of a file by which its format is known.
@@ -62,6 +72,8 @@ impl Format {
             "su2" => Self::Su2,
             "vtu" => Self::Vtu,
             "vtk" => Self::LegacyVtk,
+            "xdmf" | "xdmf3" => Self::Xdmf { is_mixed: false },
+            "xmf" => Self::Xdmf { is_mixed: true },
             "inp" => Self::Abaqus,
             "bdf" | "nas" => Self::Nastran,
             "msh" | "msh4" => Self::Msh { is_new: true },
@@ -72,13 +84,13 @@ impl Format {
                 let message = "the unformatted UGRID of Fortran is not read; write .b8.ugrid or .lb8.ugrid";
                 Self::Ugrid(Encoding::of(&word).ok_or_else(|| error::at(path, "extension", message))?)
             }
+            "stl" => Self::Surface(Shape::Stl),
+            "obj" => Self::Surface(Shape::Obj),
+            "ply" => Self::Surface(Shape::Ply),
             "sol" | "solb" => Self::Solution,
             "csv" => Self::Table,
             "dat" => Self::Restart,
-            "cgns" => {
-                let message = "CGNS is not read; write .vtu by ParaView, or .su2 by SU2";
-                return Err(error::at(path, "extension", message));
-            }
+            "cgns" => Self::Cgns,
             _ => return Err(error::at(path, "extension", format!("the format is not known; these are: {KNOWN}"))),
         })
     }
@@ -99,6 +111,7 @@ impl Format {
                 }
                 () if holds(b"$MeshFormat") => Ok(Self::Msh { is_new: true }),
                 () if holds(b"<VTKFile") => Ok(Self::Vtu),
+                () if holds(b"<Xdmf") => Ok(Self::Xdmf { is_mixed: false }),
                 () if head.starts_with(b"# vtk DataFile") => Ok(Self::LegacyVtk),
                 () if holds(b"NDIME=") => Ok(Self::Su2),
                 () => Err(error),
@@ -116,7 +129,7 @@ impl Format {
 
     /// Whether fields stand in the file of the mesh itself, at its vertices.
     pub fn holds_fields(self) -> bool {
-        matches!(self, Self::Vtu | Self::LegacyVtk | Self::Msh { .. })
+        matches!(self, Self::Vtu | Self::LegacyVtk | Self::Xdmf { .. } | Self::Cgns | Self::Msh { .. })
     }
 
     /// Whether files of the format hold fields and no mesh.

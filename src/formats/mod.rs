@@ -1,18 +1,20 @@
 //! Meshes and fields in the files of other programs.
 //!
-//! Reading goes bytes → a reader a format (`su2`, `vtu`, `legacy_vtk`, `msh`, `ugrid`, `abaqus`, `nastran`; `libmeshb` hands over to [`crate::mesh::io`]) → [`Dataset`] →
+//! Reading goes bytes → a reader a format (`su2`, `vtu`, `legacy_vtk`, `xdmf`, `cgns`, `msh`, `ugrid`, `abaqus`, `nastran`; `libmeshb` hands over to [`crate::mesh::io`]) → [`Dataset`] →
 //! `check` (indices, numbers) → `orientation` (tetrahedra numbered the other way). Writing goes the way back; `unsupported` says what the
 //! format cannot carry.
 //! Cases of OpenFOAM (`foam`) are folders, with fields at cells. Columns of fields alone (`columns`: SU2's restarts) are read onto a given
 //! mesh.
 mod abaqus;
 mod cells;
+mod cgns;
 mod check;
 mod columns;
 mod dataset;
 mod error;
 pub mod foam;
 mod format;
+mod hdf5;
 mod legacy_vtk;
 mod libmeshb;
 mod markers;
@@ -29,13 +31,14 @@ mod text;
 pub mod ugrid;
 mod unsupported;
 mod vtu;
+mod xdmf;
 
 pub use cells::{cells_to_vertices, vertices_to_cells};
 pub use dataset::{Dataset, NamedField};
 pub use format::Format;
 pub use msh::read_msh;
 pub use placement::Placement;
-pub use surfaces::read_surface;
+pub use surfaces::{Shape, read_surface};
 
 use crate::geometry::names;
 use crate::mesh::io::{Batch, Error, Read};
@@ -72,7 +75,7 @@ pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
     Ok(read)
 }
 
-/// As [`read`], from bytes of such a format, and nothing beside; `path` is what errors say.
+/// As [`read`], from bytes of such a format, and nothing beside but the arrays of XDMF; `path` is what errors say.
 ///
 /// # Errors
 /// [`Error::Content`], as there.
@@ -81,11 +84,14 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
         Format::Libmeshb => libmeshb::read(path, bytes)?,
         Format::Su2 => su2::read(path, bytes)?,
         Format::Vtu => vtu::read(path, bytes)?,
+        Format::Xdmf { .. } => xdmf::read(path, bytes)?,
+        Format::Cgns => cgns::read(path, bytes)?,
         Format::LegacyVtk => legacy_vtk::read(path, bytes)?,
         Format::Abaqus => abaqus::read(path, bytes)?,
         Format::Nastran => nastran::read(path, bytes)?,
         Format::Msh { .. } => msh::read(path, bytes)?,
         Format::Ugrid(encoding) => ugrid::read(path, bytes, encoding)?,
+        Format::Surface(shape) => surfaces::read(path, bytes, shape)?,
         Format::Foam => return Err(error::at(path, "format", "a case of OpenFOAM is a folder of several files")),
         Format::Solution | Format::Table | Format::Restart => {
             let message = "holds fields and no mesh: give the mesh, and this file by --fields";
@@ -112,6 +118,7 @@ pub fn read_files(path: &Path) -> Vec<PathBuf> {
     match Format::of(path) {
         Ok(Format::Foam) => foam::read_files(path),
         Ok(Format::Ugrid(_)) => vec![path.to_owned(), ugrid::names_path(path)],
+        Ok(Format::Xdmf { .. }) => [vec![path.to_owned()], xdmf::files(path)].concat(),
         // What has no ending that is known may be a mesh of libMeshb.
         Ok(Format::Libmeshb) | Err(_) => {
             vec![path.to_owned(), path.with_extension("solb"), path.with_extension("sol"), names::beside(path)]
@@ -129,6 +136,7 @@ pub fn written_files(path: &Path) -> Result<Vec<PathBuf>, Error> {
         Format::Foam => foam::written_files(path),
         Format::Libmeshb => vec![path.to_owned(), libmeshb::solution_path(path), names::beside(path)],
         Format::Ugrid(_) => vec![path.to_owned(), ugrid::names_path(path)],
+        Format::Xdmf { .. } => vec![path.to_owned(), xdmf::heavy_path(path)],
         _ => vec![path.to_owned()],
     })
 }
@@ -188,6 +196,9 @@ pub fn add(
         Format::Libmeshb => libmeshb::write(batch, team, path, data)?,
         Format::Su2 => su2::write(batch, path, data)?,
         Format::Vtu => vtu::write(batch, team, path, data, options.text)?,
+        Format::Xdmf { is_mixed } => xdmf::write(batch, path, data, is_mixed, options.text)?,
+        Format::Cgns => cgns::write(batch, path, data)?,
+        Format::Surface(shape) => surfaces::write(batch, team, path, data, shape, options.text)?,
         Format::Abaqus => abaqus::write(batch, path, data)?,
         Format::Nastran => nastran::write(batch, path, data)?,
         Format::LegacyVtk => legacy_vtk::write(batch, path, data, options.text)?,

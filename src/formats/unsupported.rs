@@ -14,11 +14,15 @@ pub(super) fn notices(format: Format, data: &Dataset) -> Vec<String> {
     }
     let (edges, regions, fields, names) = match format {
         Format::Su2 | Format::Ugrid(_) => (false, false, false, [true, false, false]),
+        Format::Surface(_) => (false, false, false, [true, false, false]),
         Format::Abaqus | Format::Nastran => (true, true, false, [true; 3]),
         _ => (true, true, true, [true; 3]),
     };
     let mut lost: Vec<String> = Vec::new();
     let mut count = |count: usize, what: &str| lost.extend((count > 0).then(|| format!("{count} {what}: left out")));
+    if matches!(format, Format::Surface(_)) {
+        count(mesh.tets.len(), "tetrahedra (it holds the surface)");
+    }
     if !edges {
         count(mesh.edges.len(), "edges");
     }
@@ -26,7 +30,7 @@ pub(super) fn notices(format: Format, data: &Dataset) -> Vec<String> {
         let found: BTreeSet<i32> = mesh.tets.refs.iter().copied().filter(|&region| region != 1).collect();
         count(if found.is_empty() { 0 } else { mesh.tets.len() }, "references of tetrahedra");
     }
-    if !matches!(format, Format::Vtu | Format::LegacyVtk) {
+    if !matches!(format, Format::Vtu | Format::LegacyVtk | Format::Xdmf { .. }) {
         count(mesh.vertex_refs.iter().filter(|&&reference| reference != 0).count(), "references of vertices");
     }
     if !fields {

@@ -1,5 +1,6 @@
-//! The entities of a boundary representation and how they touch. Indices count from 0; files and
-//! messages count from 1, in the order of OCCT's `TopExp::MapShapes`.
+//! The entities of a boundary representation and how they touch. Indices count from 0; files,
+//! messages and JSON count from 1, in the order of OCCT's `TopExp::MapShapes`.
+use crate::mesh::numbers::from_one;
 use crate::mesh::vector::Vec3;
 use serde::Serialize;
 
@@ -7,11 +8,11 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub enum Entity {
     /// A vertex of the model: the mesh vertex is fixed.
-    Vertex(u32),
+    Vertex(#[serde(serialize_with = "from_one")] u32),
     /// An edge of the model.
-    Edge(u32),
+    Edge(#[serde(serialize_with = "from_one")] u32),
     /// A face of the model.
-    Face(u32),
+    Face(#[serde(serialize_with = "from_one")] u32),
     /// Inside a solid.
     Interior,
 }
@@ -86,6 +87,7 @@ pub struct VertexEntity {
     /// Its point, model units.
     pub point: Vec3,
     /// Edges that end here.
+    #[serde(serialize_with = "from_one")]
     pub edges: Vec<u32>,
     /// Tolerance the model states for it.
     pub tolerance: f64,
@@ -97,8 +99,10 @@ pub struct EdgeEntity {
     /// Kind of curve.
     pub kind: CurveKind,
     /// First and last vertex (by increasing t); equal on a closed edge, none on a closed edge without vertices.
+    #[serde(serialize_with = "from_one")]
     pub vertices: [Option<u32>; 2],
     /// Faces beside it; a seam lists its face once.
+    #[serde(serialize_with = "from_one")]
     pub faces: Vec<u32>,
     /// First and last parameter.
     pub range: [f64; 2],
@@ -118,6 +122,7 @@ pub struct FaceEntity {
     /// Kind of surface.
     pub kind: SurfaceKind,
     /// Its edges, each once, seams and degenerate ones too.
+    #[serde(serialize_with = "from_one")]
     pub edges: Vec<u32>,
     /// Bounds of u and v.
     pub range: [[f64; 2]; 2],

@@ -3,6 +3,7 @@ use super::classify::Classification;
 use super::{Entity, Evaluate, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, Side, TriangleIndex};
+use crate::mesh::numbers::from_one;
 use crate::mesh::vector::{Vec3, add, area2, cross, distance, dot, norm, scale};
 use crate::tasks::{GRAIN, Team};
 use serde::Serialize;
@@ -15,7 +16,8 @@ const TRIANGLES: usize = 1 << 10;
 pub struct Farthest {
     /// Distance, model units.
     pub distance: f64,
-    /// Mesh vertex, from 0.
+    /// Mesh vertex, from 0; in JSON from 1.
+    #[serde(serialize_with = "from_one")]
     pub vertex: u32,
     /// What it is classified on.
     pub entity: Entity,
@@ -28,9 +30,11 @@ pub struct Farthest {
 pub struct Deviation {
     /// Angle between its normal and the model's at the point of its face closest to its centroid, degrees: 0 best, 180 worst.
     pub degrees: f64,
-    /// Triangle, from 0.
+    /// Triangle, from 0; in JSON from 1.
+    #[serde(serialize_with = "from_one")]
     pub triangle: u32,
-    /// Its face, from 0.
+    /// Its face, from 0; in JSON from 1.
+    #[serde(serialize_with = "from_one")]
     pub face: u32,
     /// Its centroid.
     pub at: Vec3,

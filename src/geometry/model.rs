@@ -134,6 +134,22 @@ impl Model {
         }
     }
 
+    /// The model multiplied by a factor about the origin, then moved. Its entities keep their numbers and names.
+    ///
+    /// # Errors
+    /// [`super::Error::Model`] when it is no CAD model or OpenCASCADE cannot transform it.
+    pub fn placed(&self, factor: f64, by: Vec3) -> Result<Self, super::Error> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.placed(factor, by).map(Model::Occt),
+            Model::Discrete(_) => {
+                let _ = (factor, by);
+                let message = "a mesh's own surface is no CAD model";
+                Err(super::Error::Model { path: "the scaled model".into(), message: message.into() })
+            }
+        }
+    }
+
     /// What OpenCASCADE's own check finds wrong with faces, in words. Slow on large models.
     pub fn flaws(&self) -> Vec<(u32, String)> {
         match self {

@@ -2,6 +2,7 @@
 use super::TetMesh;
 use super::adjacency::{FACES, MatchedFaces, NONE};
 use super::box_tree::{Bounds, BoxTree};
+use super::numbers::from_one;
 use super::triangle_pair::{Corners, crossing};
 use super::unfolded::are_unfolded;
 use super::vector::Vec3;
@@ -11,7 +12,8 @@ use serde::Serialize;
 /// Two triangles that cross.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Crossing {
-    /// The triangles, the lower number first.
+    /// The triangles, the lower number first; from 0, in JSON from 1.
+    #[serde(serialize_with = "from_one")]
     pub triangles: [usize; 2],
     /// Where they meet.
     pub at: Vec3,

@@ -1,4 +1,5 @@
 //! What can be wrong with a mesh, and how it is told.
+use super::numbers::from_one;
 use super::vector::Vec3;
 use serde::Serialize;
 
@@ -59,15 +60,17 @@ impl FlawKind {
     }
 }
 
-/// One of the offenders. Indices count from 0.
+/// One of the offenders. Indices count from 0; in JSON from 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Offender {
     /// Index of the element or vertex. For a face that is no element it is that of its tetrahedron; for an edge that is none, there is none.
+    #[serde(serialize_with = "from_one")]
     pub index: Option<usize>,
     /// Index of the other one, of two that cross.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "from_one")]
     pub other: Option<usize>,
     /// Its nodes; of two those of both.
+    #[serde(serialize_with = "from_one")]
     pub nodes: Vec<u32>,
     /// Its middle, or where the two meet; model units.
     pub at: Vec3,

@@ -9,6 +9,7 @@ pub mod hilbert;
 pub mod io;
 pub mod locate;
 mod matched_faces;
+pub mod numbers;
 pub mod predicate;
 pub mod quadrature;
 #[doc(hidden)]

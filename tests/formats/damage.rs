@@ -96,6 +96,10 @@ const TELLING: &[&[u8]] = &[
     b"<DataArray ",
     b"</DataArray>",
     b"<Piece ",
+    b"<Grid>",
+    b"</Grid>",
+    b"<DataItem Format=\"HDF\">",
+    b"Temporal",
     b"offset=\"",
     b"nonuniform",
     b"List<scalar>",
@@ -252,6 +256,45 @@ fn no_bytes_make_msh_panic() {
 #[test]
 fn no_bytes_make_legacy_vtk_panic() {
     survive([seeds(&[("a.vtk", false), ("b.vtk", true)]), foreign("vtk-legacy")].concat(), mesh);
+}
+
+#[test]
+fn no_bytes_make_xdmf_panic() {
+    survive(seeds(&[("a.xdmf", true), ("a.xmf", true)]), mesh);
+}
+
+/// The XML and the arrays beside it, each damaged with the other whole.
+#[test]
+fn no_bytes_make_xdmf_with_its_arrays_panic() {
+    let place = Place::new();
+    let mut files = Vec::new();
+    for main in ["a.xdmf", "b.xmf"] {
+        place.write(main, &dataset(), false);
+        files.extend([main.to_owned(), main[..1].to_owned() + ".h5"]);
+    }
+    let files: Vec<_> =
+        files.into_iter().map(|name| (name.clone(), std::fs::read(place.path(&name)).unwrap())).collect();
+    let whole = files.clone();
+    survive(files, |name, bytes| {
+        let damaged = place.text(name.to_str().unwrap(), bytes);
+        let main = if name.to_str().unwrap().starts_with('a') { "a.xdmf" } else { "b.xmf" };
+        let read = formats::read(&place.path(main));
+        let (_, valid) = whole.iter().find(|(file, _)| Path::new(file) == name).unwrap();
+        std::fs::write(damaged, valid).unwrap();
+        match read {
+            Ok(read) => Some(read.content),
+            Err(error) => {
+                let text = error.to_string();
+                assert!(text.starts_with(&*place.path("").to_string_lossy()) && text.len() < 600, "{text}");
+                None
+            }
+        }
+    });
+}
+
+#[test]
+fn no_bytes_make_cgns_panic() {
+    survive(seeds(&[("a.cgns", false)]), mesh);
 }
 
 #[test]

@@ -190,3 +190,30 @@ fn meshio_reads_what_we_write() {
         }
     }
 }
+
+/// Written by dolfinx 0.5: a mesh, tags of one side of a cube, a function at vertices in two steps of time (x + 2y, doubled), one at cells.
+#[test]
+fn what_fenicsx_writes_is_read() {
+    let found = read(&data("fenicsx.xdmf"));
+    assert_eq!((found.mesh.vertices.len(), found.mesh.tets.len(), found.mesh.triangles.len()), (27, 48, 8));
+    assert!(found.mesh.triangles.refs.iter().all(|&reference| reference == 7));
+    assert!(found.mesh.triangles.nodes.as_flattened().iter().all(|&v| found.mesh.vertices[v as usize][0] == 0.0));
+    assert_eq!(found.fields.iter().map(|field| field.name.as_str()).collect::<Vec<_>>(), ["pressure", "density"]);
+    for (point, value) in found.mesh.vertices.iter().zip(&found.fields[0].values) {
+        assert!((2.0 * (point[0] + 2.0 * point[1]) - value).abs() < 1e-12);
+    }
+}
+
+/// Written by meshio 5.3: cells of two kinds in one grid, chunks that are packed by gzip.
+#[test]
+fn what_meshio_writes_as_xdmf_is_read() {
+    let found = read(&data("meshio-mixed.xdmf"));
+    assert_eq!((found.mesh.vertices.len(), found.mesh.tets.len(), found.mesh.triangles.len()), (27, 48, 8));
+    assert!(found.mesh.tets.refs.iter().all(|&reference| reference == 4));
+    assert!(found.mesh.triangles.refs.iter().all(|&reference| reference == 3));
+    let v = found.fields.iter().find(|field| field.name == "v").unwrap();
+    assert!(
+        v.kind == FieldKind::Vector
+            && v.values.iter().zip(found.mesh.vertices.as_flattened()).all(|(a, b)| *a == 2.0 * b)
+    );
+}

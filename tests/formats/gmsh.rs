@@ -204,3 +204,13 @@ fn data_at_elements_and_odd_numbers_are_read() {
     assert_eq!(loose.content.fields[1].values.len(), 12);
     assert!(loose.notices.iter().any(|notice| notice.contains("1 nodes without elements are left out")));
 }
+
+/// Written by gmsh 4.15 of a box: six sections of triangles, each in a boundary condition of its family.
+#[test]
+fn what_gmsh_writes_as_cgns_is_read() {
+    let found = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/formats/gmsh.cgns"));
+    assert_eq!((found.mesh.vertices.len(), found.mesh.tets.len(), found.mesh.triangles.len()), (341, 1140, 540));
+    let names: Vec<_> = found.names.triangles.values().filter_map(|label| label.name.as_deref()).collect();
+    assert_eq!(found.names.triangles.keys().copied().collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6]);
+    assert!((1..=6).all(|k| names.contains(&&*format!("S_{k}"))), "{names:?}");
+}

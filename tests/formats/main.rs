@@ -1,4 +1,5 @@
 //! Meshes and fields in the files of other programs: what is written comes back, what others write is read.
+mod cgns;
 mod damage;
 mod foreign;
 mod gmsh;

@@ -11,6 +11,11 @@ const MESHES: &[(&str, bool)] = &[
     ("a.vtu", true),
     ("a.vtk", false),
     ("a.vtk", true),
+    ("a.xdmf", false),
+    ("a.xdmf", true),
+    ("a.xmf", false),
+    ("a.xmf", true),
+    ("a.cgns", false),
     ("a.inp", false),
     ("a.msh", false),
     ("a.msh", true),
@@ -92,7 +97,7 @@ fn fields_alone_come_back() {
 #[test]
 fn what_could_not_be_read_again_is_not_written() {
     let place = Place::new();
-    for name in ["a.su2", "a.vtu", "a.vtk", "a.inp", "a.bdf", "a.csv", "a.meshb"] {
+    for name in ["a.su2", "a.vtu", "a.vtk", "a.xdmf", "a.cgns", "a.inp", "a.bdf", "a.csv", "a.meshb"] {
         let refused = |change: fn(&mut Dataset)| {
             let mut data = dataset();
             change(&mut data);
@@ -115,7 +120,20 @@ fn a_mesh_numbered_the_other_way_is_turned() {
     let data = dataset();
     let mut turned = data.clone();
     turned.mesh.tets.nodes.iter_mut().for_each(|nodes| nodes.swap(0, 1));
-    for name in ["a.vtu", "a.vtk", "a.inp", "a.bdf", "a.su2", "a.meshb", "a.msh", "a.msh2", "a.b8.ugrid"] {
+    for name in [
+        "a.vtu",
+        "a.vtk",
+        "a.xdmf",
+        "a.xmf",
+        "a.cgns",
+        "a.inp",
+        "a.bdf",
+        "a.su2",
+        "a.meshb",
+        "a.msh",
+        "a.msh2",
+        "a.b8.ugrid",
+    ] {
         let (path, _) = place.write(name, &turned, false);
         let found = formats::read(&path).unwrap();
         assert_eq!(found.content.mesh.tets.nodes, data.mesh.tets.nodes, "{name}");
@@ -127,7 +145,7 @@ fn a_mesh_numbered_the_other_way_is_turned() {
 fn a_file_without_a_known_extension_is_known_by_its_content() {
     let place = Place::new();
     let data = Dataset { fields: Vec::new(), names: Default::default(), ..dataset() };
-    for name in ["a.meshb", "a.mesh", "a.su2", "a.vtu", "a.vtk", "a.msh"] {
+    for name in ["a.meshb", "a.mesh", "a.su2", "a.vtu", "a.vtk", "a.xdmf", "a.msh"] {
         let (path, _) = place.write(name, &data, false);
         let other = place.path("out.1");
         std::fs::rename(path, &other).unwrap();
@@ -157,7 +175,9 @@ fn nastran_brings_back_all_but_the_last_digits() {
 fn a_name_of_several_references_stays_one_name() {
     let mut data = Dataset { fields: Vec::new(), ..dataset() };
     data.names.triangles = labels(&[(3, "farfield"), (7, "farfield"), (21, "farfield")]);
-    for name in ["a.vtu", "a.vtk", "a.msh", "a.msh2", "a.inp", "a.bdf", "a.b8.ugrid", "a.meshb"] {
+    for name in
+        ["a.vtu", "a.vtk", "a.xdmf", "a.xmf", "a.cgns", "a.msh", "a.msh2", "a.inp", "a.bdf", "a.b8.ugrid", "a.meshb"]
+    {
         assert_eq!(back(name, false, &data).names.triangles, data.names.triangles, "{name}");
     }
     // A marker of SU2 has one reference.
@@ -170,4 +190,63 @@ fn a_name_of_several_references_stays_one_name() {
     for name in ["a.inp", "a.su2", "a.msh"] {
         assert!(text(name).contains("farfield") && !text(name).contains("farfield_"), "{name}");
     }
+}
+
+/// The surface, with normals outward: its volume is that of the mesh.
+#[test]
+fn a_surface_is_written_with_a_solid_or_group_for_each_reference() {
+    let data = dataset();
+    let place = Place::new();
+    for (name, text) in [("a.stl", false), ("a.obj", false), ("a.ply", false), ("b.ply", true)] {
+        let (path, notices) = place.write(name, &data, text);
+        assert!(notices.iter().any(|notice| notice.contains("48 tetrahedra")), "{notices:?}");
+        let found = read(&path).mesh;
+        assert_eq!((found.vertices.len(), found.triangles.len()), (26, 48), "{name}");
+        let volume: f64 = found
+            .triangles
+            .nodes
+            .iter()
+            .map(|nodes| {
+                let [a, b, c] = nodes.map(|v| found.vertices[v as usize]);
+                (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3])).sum::<f64>()
+                    / 6.0
+            })
+            .sum();
+        assert!((volume - 1.0 / 27.0).abs() < 1e-6, "{name}: {volume}");
+        let bytes = std::fs::read(&path).unwrap();
+        let words = String::from_utf8_lossy(&bytes);
+        for word in ["wing", "far-field", "symmetry"] {
+            assert!(words.contains(word), "{name}");
+        }
+    }
+}
+
+/// What the solids of STL, the groups of OBJ and the comments of PLY say comes back; STL has no place for numbers.
+#[test]
+fn names_of_surfaces_come_back() {
+    let mut data = surface();
+    data.fields.clear();
+    data.names.triangles = labels(&[(3, "wing"), (7, "far-field"), (21, "far-field"), (11, "42")]);
+    let wanted = sorted(data.mesh.clone());
+    for (name, text) in [("a.obj", false), ("a.ply", false), ("a.ply", true)] {
+        let found = back(name, text, &data);
+        assert_eq!(found.mesh.triangles.refs, wanted.triangles.refs, "{name}");
+        assert_eq!(found.names.triangles, data.names.triangles, "{name}");
+    }
+    let found = back("a.stl", false, &data);
+    let mut of_name = std::collections::BTreeMap::new();
+    for &reference in &found.mesh.triangles.refs {
+        let name = found.names.triangles.get(&reference).and_then(|label| label.name.clone());
+        *of_name.entry((name.clone(), if name.is_none() { reference } else { 0 })).or_insert(0) += 1;
+    }
+    let count = |references: &[i32]| wanted.triangles.refs.iter().filter(|at| references.contains(at)).count();
+    let called = |name: &str| (Some(name.to_owned()), 0);
+    let expected = [
+        ((None, 6), count(&[6])),
+        ((None, 8), count(&[8])),
+        (called("42"), count(&[11])),
+        (called("far-field"), count(&[7, 21])),
+        (called("wing"), count(&[3])),
+    ];
+    assert_eq!(of_name, expected.into());
 }

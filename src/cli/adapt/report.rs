@@ -11,6 +11,7 @@ use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::crossing::{Crossing, Crossings};
+use crate::mesh::numbers::from_one;
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
 use crate::tasks::Team;
@@ -88,14 +89,15 @@ pub struct Report {
     input_tets: usize,
     statistics: Statistics,
     fidelity: Fidelity,
-    /// Boundary vertices, from 0, that found no room on the model: their tetrahedra would be inverted at its closest point.
+    /// Boundary vertices, from 0 and in JSON from 1, that found no room on the model: their tetrahedra would be inverted at its closest point.
+    #[serde(serialize_with = "from_one")]
     off_model: Vec<u32>,
     overgrown: bool,
     /// Tetrahedra of a mean ratio below 0.5 that were left untried in the end, since there were too many.
     unrepaired: usize,
     /// Surface triangles beyond --normal-deviation or --hausdorff.
     deviating: usize,
-    /// Pairs of boundary triangles that cross, and the first of them; indices count from 0.
+    /// Pairs of boundary triangles that cross, and the first of them.
     crossings: Crossings,
     operations: BTreeMap<&'static str, Operation>,
     /// Wall times.

@@ -30,7 +30,7 @@ use super::workplace::Workplace;
 use super::{Outcome, load};
 use crate::cli::waiting::Waiting;
 use crate::formats::Dataset;
-use crate::geometry::{Geometry, Model};
+use crate::geometry::{Geometry, Model, Names};
 use crate::tasks::{Plan, Pool, Team, stage};
 use arguments::{DOMAIN, HEALED};
 use ladder::{Ladder, Meshed, Stopped};
@@ -80,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     if arguments.no_adapt {
         return match ladder.climb() {
-            Ok(meshed) => write_as_it_is(arguments, team, &meshed, &model, &targets),
+            Ok(meshed) => write_as_it_is(arguments, team, &meshed, (&model, model.names()), &targets),
             Err(why) => stopped(why),
         };
     }
@@ -107,7 +107,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
     }
     let best = best.ok_or("no rung was tried")?;
-    best.write(arguments, team, (&asked, &targets), model, start)
+    let names = model.names().clone();
+    best.write(arguments, team, (&asked, &targets), (model, names), start)
 }
 
 /// The model that is meshed: healed and with a far field, where that is asked for.
@@ -146,17 +147,17 @@ fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Target
     let team = Team::new(pool, Plan::default());
     let limit = Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX);
     let line = Waiting::for_what("tetrahedra of its triangles");
-    let (model, meshed) = triangles::run(team, &arguments.model, &arguments.patches(), limit)?;
+    let (model, meshed, names) = triangles::run(team, &arguments.model, &arguments.patches(), limit)?;
     drop(line);
     stage("meshed");
     if arguments.no_adapt {
-        return write_as_it_is(arguments, team, &meshed, &model, targets);
+        return write_as_it_is(arguments, team, &meshed, (&model, &names), targets);
     }
     let asked =
         Asked { input: arguments.model.clone(), output: arguments.output.clone(), threads, complexity_wanted: None };
     let refined = refine::run(arguments, pool, meshed, &model, start)?;
     interrupt::end_at_once();
-    refined.write(arguments, team, (&asked, targets), model, start)
+    refined.write(arguments, team, (&asked, targets), (model, names), start)
 }
 
 /// Meshes of the mesher that are adapted where there is a flaw in what comes of the first; the best is taken.
@@ -167,7 +168,13 @@ const TRIALS: usize = 3;
 const LEAST: f64 = 1e-3;
 
 /// Writes the mesher's own mesh, on the model.
-fn write_as_it_is(arguments: &Arguments, team: Team<'_>, meshed: &Meshed, model: &Model, targets: &Targets) -> Outcome {
+fn write_as_it_is(
+    arguments: &Arguments,
+    team: Team<'_>,
+    meshed: &Meshed,
+    (model, names): (&Model, &Names),
+    targets: &Targets,
+) -> Outcome {
     let mut mesh = meshed.mesh.clone();
     match model {
         Model::Discrete(surface) => surface.restore(&mut mesh, &meshed.place),
@@ -176,7 +183,7 @@ fn write_as_it_is(arguments: &Arguments, team: Team<'_>, meshed: &Meshed, model:
             crate::geometry::classify::associate(&mut mesh, &meshed.place);
         }
     }
-    let data = Dataset { mesh, names: model.names().clone(), fields: Vec::new() };
+    let data = Dataset { mesh, names: names.clone(), fields: Vec::new() };
     let (lost, mesh) = (targets.mesh_alone(team, &data)?, data.mesh);
     lost.iter().for_each(super::note);
     let solids = model.topology().solids;

@@ -13,7 +13,7 @@ use crate::cli::waiting::Waiting;
 use crate::cli::{INVALID, interrupt, table};
 use crate::geometry::classify::Classification;
 use crate::geometry::fidelity::{self, Fidelity};
-use crate::geometry::{Geometry, Model};
+use crate::geometry::{Geometry, Model, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::vector::Vec3;
@@ -132,13 +132,12 @@ impl Refined {
         arguments: &Arguments,
         team: Team<'_>,
         (asked, targets): (&Asked, &Targets),
-        model: Model,
+        (model, names): (Model, Names),
         start: Instant,
     ) -> Outcome {
         let is_refused = self.flaws().are_refused();
         let flaw = self.flaw().map(|flaw| format!("{}: {flaw}; no mesh to begin with gave a better one", self.by));
         self.notices.iter().chain(&flaw).for_each(crate::cli::note);
-        let names = model.names().clone();
         let place = self.adapted.extracted.classification.clone();
         let input =
             Input { mesh: self.start, place, model, source: self.source, made: None, names, raw: None, meeting: None };

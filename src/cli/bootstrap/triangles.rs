@@ -8,7 +8,7 @@ use crate::delaunay::{self, FlatWhile, PointError, Tetrahedra, tetrahedralise};
 use crate::formats::{Format, read_surface};
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::DiscreteOptions;
-use crate::geometry::{Discrete, Model};
+use crate::geometry::{Discrete, Model, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{sorted2, sorted3};
 use crate::mesh::vector::{Vec3, lerp};
@@ -27,14 +27,21 @@ pub fn is_surface(path: &Path) -> bool {
         || Format::of(path).is_ok_and(|format| !format.is_fields())
 }
 
-/// The surface as a model, and its mesh.
+/// The surface as a model, its mesh, and what references are called.
 ///
 /// # Errors
 /// When it is no surface, is not closed, or crosses itself: where, and what to do.
-pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Duration) -> Result<(Model, Meshed), String> {
+pub fn run(
+    team: Team<'_>,
+    path: &Path,
+    options: &DiscreteOptions,
+    limit: Duration,
+) -> Result<(Model, Meshed, Names), String> {
     let named = |error: String| format!("{}: {error}", path.display());
     let read = read_surface(team, path).map_err(|error| error.to_string())?;
-    let mut surface = alone(read.content);
+    let mut surface = alone(read.content.mesh);
+    // Regions are found anew.
+    let names = Names { tetrahedra: BTreeMap::new(), ..read.content.names };
     let mut notices = read.notices;
     let count = surface.triangles.len();
     let kept = drop_repeated(&mut surface);
@@ -56,7 +63,7 @@ pub fn run(team: Team<'_>, path: &Path, options: &DiscreteOptions, limit: Durati
     let model = Model::Discrete(discrete);
     let (mesh, on_model) = meshed(&model, &surface, &on, (&filled, &solids));
     let (mesh, place) = judge(team, mesh, &model, Some(on_model)).map_err(named)?;
-    Ok((model, Meshed { mesh, place, by: Rung::Own { finer: 1.0 }, notices }))
+    Ok((model, Meshed { mesh, place, by: Rung::Own { finer: 1.0 }, notices }, names))
 }
 
 /// The triangles of a mesh with their vertices and what is listed on them.

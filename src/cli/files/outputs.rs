@@ -58,6 +58,12 @@ impl Outputs {
         formats::add(&mut self.batch, team, &to.path, data, options)
     }
 
+    /// A CAD model that was written elsewhere, with its names. Where it has none a names file that would be taken for its own is made empty.
+    pub fn model(&mut self, from: &Path, (to, beside): (&Target, &Target), called: &Names) -> Done {
+        self.copy(from, to)?;
+        if called.is_empty() && !names::beside_model(&to.path).exists() { Ok(()) } else { self.names(beside, called) }
+    }
+
     /// Names alone.
     pub fn names(&mut self, to: &Target, called: &Names) -> Done {
         Ok(names::add_file(&mut self.batch, &to.path, called, &[])?)

@@ -1,6 +1,7 @@
 //! `geo-adapt model`.
 mod listing;
 mod naming;
+mod placing;
 mod text;
 
 use super::files::{Files, Outputs};
@@ -8,6 +9,7 @@ use super::{Outcome, load};
 use crate::geometry::names;
 use listing::Listing;
 use naming::Naming;
+use placing::PlaceArguments;
 use std::path::PathBuf;
 use std::process::ExitCode;
 pub use text::{about, counts};
@@ -24,11 +26,19 @@ pub struct Arguments {
     /// part.step.names.json), which every command reads; may be given several times
     #[arg(long, value_name = "NAME=FACES", allow_hyphen_values = true)]
     name: Vec<Naming>,
+    #[command(flatten)]
+    place: PlaceArguments,
 }
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let path = &arguments.file;
+    if let Some(output) = &arguments.place.output {
+        let model = arguments.place.write(path, output)?;
+        let text = if arguments.json { listed(&model, true)? } else { text::written(&model, output) };
+        super::print(&text)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     if arguments.name.is_empty() {
         let model = load::model(path)?;
         super::print(&listed(&model, arguments.json)?)?;

@@ -4,6 +4,7 @@ use crate::geometry::{EdgeEntity, Geometry, Label, Model, Topology, VertexEntity
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::path::Path;
 
 /// The listing.
 pub fn describe(model: &Model) -> String {
@@ -124,6 +125,14 @@ pub fn about(model: &Model) -> BTreeMap<i32, String> {
         (face.number as i32, parts.join("  ·  "))
     };
     Face::all(model).into_iter().map(line).collect()
+}
+
+/// What is said of a model that was written.
+pub fn written(model: &Model, to: &Path) -> String {
+    let mut text = String::new();
+    summarize(&mut text, model.topology());
+    let _ = writeln!(text, "written            {}", to.display());
+    text
 }
 
 fn summarize(text: &mut String, topology: &Topology) {

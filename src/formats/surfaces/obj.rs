@@ -1,17 +1,16 @@
 //! Wavefront OBJ: points and polygons; groups are references.
-use super::super::error;
+use super::super::sets::{Kind, Meaning};
+use super::super::{Dataset, error};
 use super::soup::Soup;
-use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, Read};
-use std::collections::HashMap;
 use std::path::Path;
 
-/// Reads `v` and `f`; what `g`, `o` and `usemtl` name gives references from 1 on, in their order.
-pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
+/// Reads `v` and `f`; what `g`, `o` and `usemtl` name gives references from 1 on, in their order, but for groups of our own files.
+pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     let text = String::from_utf8_lossy(bytes);
     let mut soup = Soup::default();
     let (mut points, mut polygon) = (Vec::new(), Vec::new());
-    let (mut groups, mut reference) = (HashMap::new(), 1);
+    let (mut reference, mut noted) = (1, None);
     for (line, words) in text.lines().enumerate() {
         let place = || format!("line {}", line + 1);
         let wrong = |message: String| error::at(path, place(), message);
@@ -38,9 +37,16 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
                 }
                 soup.polygon(&polygon, reference);
             }
-            Some("g" | "o" | "usemtl") => {
-                let next = groups.len() as i32 + 1;
-                reference = *groups.entry(words.to_owned()).or_insert(next);
+            Some(word @ ("g" | "o" | "usemtl")) => {
+                let name = words.trim_start()[word.len()..].trim();
+                reference = match noted.take() {
+                    Some(noted) => soup.noted(words, noted),
+                    None => soup.group(words, name),
+                };
+            }
+            Some("#") => {
+                let meaning = words.trim_start().strip_prefix('#').and_then(Meaning::noted);
+                noted = meaning.filter(|meaning| meaning.kind == Kind::Triangles).or(noted);
             }
             _ => {}
         }
@@ -56,7 +62,8 @@ mod tests {
     fn polygons_are_fans_and_groups_references() {
         let text = "# a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 0\nusemtl a\nf 1/1/1 2 3 4\nusemtl b\nf -1 -2 -3//2\nf 1 1 2\n";
         let read = read(Path::new("a.obj"), text.as_bytes()).unwrap();
-        let mesh = read.content;
+        assert_eq!(read.content.names.triangles[&2].name.as_deref(), Some("b"));
+        let mesh = read.content.mesh;
         assert_eq!(mesh.vertices.len(), 4, "equal points are one vertex");
         assert_eq!(mesh.triangles.nodes, [[0, 1, 2], [0, 2, 3], [0, 3, 2]]);
         assert_eq!(mesh.triangles.refs, [1, 1, 2]);

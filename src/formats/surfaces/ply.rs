@@ -1,7 +1,7 @@
 //! PLY, text and binary of both byte orders.
-use super::super::error;
+use super::super::sets::{self, Meaning};
+use super::super::{Dataset, error};
 use super::soup::Soup;
-use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, Read};
 use std::path::Path;
 
@@ -38,24 +38,24 @@ enum Encoding {
     Big,
 }
 
-/// Reads vertices and faces; all else is gone over.
-pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
-    let (encoding, elements, body) = head(path, bytes)?;
+/// Reads vertices and faces, with the property `reference` of these; all else is gone over.
+pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
+    let Head { encoding, elements, noted, body } = head(path, bytes)?;
     let mut numbers = Numbers { path, encoding, rest: body };
     let mut soup = Soup::default();
+    noted.into_iter().for_each(|noted| soup.call(noted.reference, noted.name));
     let (mut points, mut row, mut polygon) = (Vec::new(), Vec::new(), Vec::new());
     for element in &elements {
         let axis = |name: &str| element.properties.iter().position(|p| p.name == name && p.list.is_none());
         let axes = [axis("x"), axis("y"), axis("z")];
+        let reference = axis("reference");
         for k in 0..element.count {
             let place = || format!("{} {}", element.name, k + 1);
             row.clear();
+            polygon.clear();
             for property in &element.properties {
                 let count = property.list.map(|kind| numbers.next(kind, &place)).transpose()?;
                 let is_polygon = element.name == "face" && property.name.starts_with("vertex_ind");
-                if is_polygon {
-                    polygon.clear();
-                }
                 let mut left = count.unwrap_or(1.0);
                 while left >= 1.0 {
                     let value = numbers.next(property.kind, &place)?;
@@ -69,12 +69,12 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
                     }
                     left -= 1.0;
                 }
-                if is_polygon {
-                    soup.polygon(&polygon, 1);
-                }
                 if count.is_some() {
                     row.push(0.0);
                 }
+            }
+            if element.name == "face" {
+                soup.polygon(&polygon, reference.map_or(1, |at| row[at] as i32));
             }
             if let ("vertex", [Some(x), Some(y), Some(z)]) = (&element.name[..], axes) {
                 points.push(soup.vertex(path, place, [row[x], row[y], row[z]])?);
@@ -84,9 +84,19 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
     Ok(soup.finish(path))
 }
 
-/// The head: what comes, and the bytes after it.
-fn head<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Encoding, Vec<Element>, &'a [u8]), Error> {
+/// The head.
+struct Head<'a> {
+    encoding: Encoding,
+    elements: Vec<Element>,
+    /// What comments of ours say of references.
+    noted: Vec<Meaning>,
+    /// The bytes after it.
+    body: &'a [u8],
+}
+
+fn head<'a>(path: &Path, bytes: &'a [u8]) -> Result<Head<'a>, Error> {
     let (mut encoding, mut elements, mut rest) = (None, Vec::<Element>::new(), bytes);
+    let mut noted = Vec::new();
     for number in 1.. {
         let wrong = |message: &str| error::at(path, format!("line {number}"), message);
         let end = rest.iter().take(4096).position(|&b| b == b'\n').ok_or_else(|| wrong("the head does not end"))?;
@@ -119,6 +129,7 @@ fn head<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Encoding, Vec<Element>, &'a
                 let kind = kind_of(kind).ok_or_else(|| wrong("this type is not known"))?;
                 element.properties.push(Property { name: name.into(), list: None, kind });
             }
+            ["comment", ..] => noted.extend(line.trim_start().strip_prefix("comment").and_then(Meaning::noted)),
             ["end_header"] => break,
             _ => {}
         }
@@ -126,7 +137,8 @@ fn head<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Encoding, Vec<Element>, &'a
     let encoding = encoding.ok_or_else(|| error::at(path, "the head", "it says no format"))?;
     // An element without a property could be any number of times in no bytes at all.
     elements.retain(|element| !element.properties.is_empty());
-    Ok((encoding, elements, rest))
+    noted.retain(|noted| noted.kind == sets::Kind::Triangles);
+    Ok(Head { encoding, elements, noted, body: rest })
 }
 
 fn kind_of(word: &str) -> Option<Kind> {
@@ -213,8 +225,8 @@ mod tests {
         let path = Path::new("a.ply");
         let text = format!("ply\nformat ascii 1.0\ncomment\n{HEAD}0 9 0.5 0\n1 9 0 0\n0 9 1 2\n3 0 1 2\n");
         let expected = read(path, text.as_bytes()).unwrap().content;
-        assert_eq!(expected.vertices, [[0.0, 0.5, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 2.0]]);
-        assert_eq!(expected.triangles.nodes, [[0, 1, 2]]);
+        assert_eq!(expected.mesh.vertices, [[0.0, 0.5, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 2.0]]);
+        assert_eq!(expected.mesh.triangles.nodes, [[0, 1, 2]]);
         for big in [false, true] {
             let name = if big { "big" } else { "little" };
             let mut bytes = format!("ply\nformat binary_{name}_endian 1.0\n{HEAD}").into_bytes();
@@ -224,7 +236,7 @@ mod tests {
                 }
                 bytes.extend(number);
             };
-            for p in &expected.vertices {
+            for p in &expected.mesh.vertices {
                 put((p[0] as f32).to_le_bytes().to_vec());
                 put(vec![9]);
                 put(p[1].to_le_bytes().to_vec());

@@ -1,7 +1,6 @@
 //! STL, binary and text.
-use super::super::error;
+use super::super::{Dataset, error};
 use super::soup::Soup;
-use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, Read};
 use std::path::Path;
 
@@ -9,8 +8,8 @@ use std::path::Path;
 const HEAD: usize = 84;
 const FACET: usize = 50;
 
-/// Reads facets; their own normals are not looked at.
-pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
+/// Reads facets; their own normals are not looked at. The solids of a text are references from 1 on, called as they are.
+pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     let count = bytes.get(80..HEAD).and_then(|bytes| bytes.try_into().ok()).map(u32::from_le_bytes);
     // Binary files may begin with the word of text files: their length tells.
     match count {
@@ -25,7 +24,7 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
     }
 }
 
-fn binary(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
+fn binary(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     let mut soup = Soup::default();
     for (k, facet) in bytes[HEAD..].chunks_exact(FACET).enumerate() {
         let number = |i: usize| f64::from(f32::from_le_bytes(std::array::from_fn(|b| facet[4 * i + b])));
@@ -39,14 +38,19 @@ fn binary(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
     Ok(soup.finish(path))
 }
 
-fn text(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
+fn text(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     let text = String::from_utf8_lossy(bytes);
     let mut soup = Soup::default();
     let mut corners = Vec::new();
-    for (line, words) in text.lines().enumerate() {
-        let mut words = words.split_ascii_whitespace();
+    let mut reference = 1;
+    for (line, whole) in text.lines().enumerate() {
+        let mut words = whole.split_ascii_whitespace();
         let wrong = |message: &str| error::at(path, format!("line {}", line + 1), message);
         match words.next().map(str::to_ascii_lowercase).as_deref() {
+            Some("solid") => {
+                let name = whole.trim_start()["solid".len()..].trim();
+                reference = soup.group(name, name);
+            }
             Some("vertex") => {
                 let mut point = [0.0; 3];
                 for x in &mut point {
@@ -56,7 +60,7 @@ fn text(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
                 corners.push(soup.vertex(path, || format!("line {}", line + 1), point)?);
             }
             Some("endloop") => {
-                soup.polygon(&corners, 1);
+                soup.polygon(&corners, reference);
                 corners.clear();
             }
             _ => {}
@@ -95,9 +99,14 @@ mod tests {
             text.push_str("  endloop\n endfacet\n");
         }
         text.push_str("endsolid a\n");
-        let [a, b] = [read(path, &bytes), read(path, text.as_bytes())].map(|read| read.unwrap().content);
+        let [a, b] = [read(path, &bytes), read(path, text.as_bytes())].map(|read| read.unwrap().content.mesh);
         assert_eq!(a, b);
         assert_eq!((a.vertices.len(), a.triangles.nodes), (4, vec![[0, 1, 2], [0, 2, 3], [2, 1, 3], [1, 0, 3]]));
+        let named = text.replace("solid a", "solid wing tip ").replace(" facet normal 0 0 0\n", "facet normal 0 0 0\n");
+        let found = read(path, (named + &text).as_bytes()).unwrap().content;
+        assert_eq!(found.mesh.triangles.refs, [1, 1, 1, 1, 2, 2, 2, 2]);
+        let name = |reference: i32| found.names.triangles[&reference].name.clone().unwrap();
+        assert_eq!([name(1), name(2)], ["wing tip", "a"]);
         assert!(read(path, &bytes[..200]).unwrap_err().to_string().contains("cut off"));
         assert!(read(path, b"solid\nvertex 1 2 x").unwrap_err().to_string().contains("line 2"));
         assert!(read(path, b"solid\nvertex 1 2 nan").unwrap_err().to_string().contains("finite"));

@@ -1,6 +1,7 @@
 //! What a classification found.
 use super::Classification;
 use crate::geometry::Entity;
+use crate::mesh::numbers::from_one;
 use crate::mesh::vector::Vec3;
 use serde::Serialize;
 
@@ -23,7 +24,8 @@ pub struct Dimension {
 /// A vertex and its distance from its entity.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Offset {
-    /// Mesh vertex, from 0.
+    /// Mesh vertex, from 0; in JSON from 1.
+    #[serde(serialize_with = "from_one")]
     pub vertex: u32,
     /// Its entity.
     pub entity: Entity,

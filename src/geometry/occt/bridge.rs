@@ -172,6 +172,7 @@ pub mod ffi {
         /// Of an edge (dimension 1), face (2) or solid (3).
         fn label(self: &Model, dimension: u32, index: u32) -> Result<LabelRecord>;
         fn domain(self: &Model, domain: &DomainRecord) -> Result<SharedPtr<Model>>;
+        fn placed(self: &Model, factor: f64, by: &[f64; 3]) -> Result<SharedPtr<Model>>;
         fn healed(self: &Model, length: f64, done: &mut Vec<HealRecord>) -> Result<SharedPtr<Model>>;
 
         fn surface_spline(model: &Model, face: u32) -> Result<Spline>;

@@ -120,6 +120,17 @@ pub fn healed(occt: &ffi::Model, names: &Names, length: f64) -> Result<(OcctMode
     Ok((model, done.collect()))
 }
 
+/// A model in other units or at another place: see [`OcctModel::placed`].
+pub fn placed(occt: &ffi::Model, names: &Names, factor: f64, by: &[f64; 3]) -> Result<OcctModel, Error> {
+    let fail = |message: String| Error::Model { path: "the scaled model".into(), message };
+    let _guard = LOADING.lock().unwrap_or_else(PoisonError::into_inner);
+    let placed = occt.placed(factor, by).map_err(|error| fail(error.what().into()))?;
+    let mut model =
+        entities::build(placed).map_err(|error| fail(format!("OpenCASCADE cannot use it: {}", error.what())))?;
+    model.rename(names.clone());
+    Ok(model)
+}
+
 /// The format by the file's extension.
 fn format_of(path: &Path) -> Option<Format> {
     match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {

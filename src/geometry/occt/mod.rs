@@ -113,6 +113,14 @@ impl OcctModel {
         load::healed(&self.occt, &self.names, length)
     }
 
+    /// The model multiplied by a factor about the origin, then moved (model units after the factor). Its entities keep their numbers and names.
+    ///
+    /// # Errors
+    /// [`Error::Model`] when OpenCASCADE cannot transform it.
+    pub fn placed(&self, factor: f64, by: [f64; 3]) -> Result<Self, Error> {
+        load::placed(&self.occt, &self.names, factor, &by)
+    }
+
     /// Area of a face, in the square of the model's unit; none where OCCT finds none.
     pub fn face_area(&self, face: u32) -> Option<f64> {
         (face < self.topology.faces.len() as u32).then(|| self.occt.face_area(face).ok()).flatten()

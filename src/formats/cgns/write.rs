@@ -1,0 +1,219 @@
+//! Writing CGNS: one base, one zone, a section for each reference.
+use super::super::sets::{Kind, groups, meaning};
+use super::super::{Dataset, error};
+use super::fields::ends;
+use super::kind::{BAR_2, TETRA_4, TRI_3};
+use super::{NAME, REFERENCE};
+use crate::mesh::io::{Batch, Error};
+use hdf5_pure::{AttrValue, FileBuilder, FinishedGroup, GroupBuilder, LibVer};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io;
+use std::path::Path;
+
+/// Bytes of a name.
+const LONGEST: usize = 32;
+
+/// The numbers of a node.
+enum Data<'a> {
+    None,
+    Int(Vec<i32>),
+    /// Of a shape other than a row, the index that changes fastest last.
+    Shaped(Vec<i32>, [u64; 2]),
+    Long(Vec<i64>),
+    Single(f32),
+    Real(Vec<f64>),
+    Text(&'a str),
+}
+
+/// A node that is being made.
+struct Node {
+    group: GroupBuilder,
+}
+
+impl Node {
+    fn new(name: &str, label: &str, data: Data<'_>) -> Result<Self, hdf5_pure::Error> {
+        let mut group = FileBuilder::new().create_group(name);
+        let kind = match data {
+            Data::None => "MT",
+            Data::Int(_) | Data::Shaped(..) => "I4",
+            Data::Long(_) => "I8",
+            Data::Single(_) => "R4",
+            Data::Real(_) => "R8",
+            Data::Text(_) => "C1",
+        };
+        group.set_attr("name", AttrValue::ascii_string_sized(name, 33)?);
+        group.set_attr("label", AttrValue::ascii_string_sized(label, 33)?);
+        group.set_attr("type", AttrValue::ascii_string_sized(kind, 3)?);
+        group.set_attr("flags", AttrValue::I32Array(vec![1]));
+        if matches!(data, Data::None) {
+            return Ok(Self { group });
+        }
+        let dataset = group.create_dataset(" data");
+        match data {
+            Data::None => dataset,
+            Data::Int(values) => dataset.with_i32_data(&values),
+            Data::Shaped(values, shape) => dataset.with_i32_data(&values).with_shape(&shape),
+            Data::Long(values) => dataset.with_i64_data(&values),
+            Data::Single(value) => dataset.with_f32_data(&[value]),
+            Data::Real(values) => dataset.with_f64_data(&values),
+            Data::Text(text) => dataset.with_i8_data(&bytes(text)),
+        };
+        Ok(Self { group })
+    }
+
+    fn add(&mut self, name: &str, label: &str, data: Data<'_>) -> Result<(), hdf5_pure::Error> {
+        let child = Self::new(name, label, data)?;
+        self.group.add_group(child.finish());
+        Ok(())
+    }
+
+    fn finish(self) -> FinishedGroup {
+        self.group.finish()
+    }
+}
+
+fn bytes(text: &str) -> Vec<i8> {
+    text.bytes().map(|byte| byte as i8).collect()
+}
+
+/// Names that CGNS can have: ASCII, short, without a slash, each once.
+#[derive(Default)]
+struct Plain(BTreeSet<String>);
+
+impl Plain {
+    fn name(&mut self, wanted: &str, room: usize) -> String {
+        let is_odd = |c: char| !c.is_ascii_graphic() && c != ' ' || c == '/';
+        let plain: String = wanted.trim().chars().map(|c| if is_odd(c) { '_' } else { c }).take(room).collect();
+        let plain = if plain.is_empty() || plain == "." || plain == ".." { "unnamed".into() } else { plain };
+        let mut name = plain.clone();
+        let mut number = 2;
+        while !self.0.insert(name.clone()) {
+            let end = format!("_{number}");
+            name = format!("{}{end}", &plain[..plain.len().min(room - end.len())]);
+            number += 1;
+        }
+        name
+    }
+}
+
+/// Writes a mesh.
+pub(in super::super) fn write(batch: &mut Batch, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
+    let mut notices = Vec::new();
+    let built = file(data, &mut notices).map_err(|error| error::at(path, "HDF5", error.to_string()))?;
+    batch.add_main(path, |to| built.finish_to(to).map_err(io::Error::other))?;
+    Ok(notices)
+}
+
+fn file(data: &Dataset, notices: &mut Vec<String>) -> Result<FileBuilder, hdf5_pure::Error> {
+    let mut builder = FileBuilder::new();
+    builder.with_libver_bounds(LibVer::Earliest, LibVer::V18);
+    builder.set_attr("name", AttrValue::ascii_string_sized("HDF5 MotherNode", 33)?);
+    builder.set_attr("label", AttrValue::ascii_string_sized("Root Node of HDF5 File", 33)?);
+    builder.set_attr("type", AttrValue::ascii_string_sized("MT", 3)?);
+    let format = if cfg!(target_endian = "big") { "IEEE_BIG_32\0\0\0\0" } else { "IEEE_LITTLE_32\0" };
+    builder.create_dataset(" format").with_i8_data(&bytes(format));
+    builder.create_dataset(" hdf5version").with_i8_data(&bytes(&format!("{:\0<33}", "HDF5 Version 1.8")));
+    builder.add_group(Node::new("CGNSLibraryVersion", "CGNSLibraryVersion_t", Data::Single(3.4))?.finish());
+    let mesh = &data.mesh;
+    let dimension = if mesh.tets.is_empty() { 2 } else { 3 };
+    let mut base = Node::new("Base", "CGNSBase_t", Data::Int(vec![dimension, 3]))?;
+    let (vertices, cells) = (mesh.vertices.len(), if dimension == 3 { mesh.tets.len() } else { mesh.triangles.len() });
+    // The numbers of elements fit where the vertices do: there are some six tetrahedra a vertex.
+    let mut zone = Node::new("Zone", "Zone_t", Data::Shaped(vec![vertices as i32, cells as i32, 0], [3, 1]))?;
+    zone.add("ZoneType", "ZoneType_t", Data::Text("Unstructured"))?;
+    let mut grid = Node::new("GridCoordinates", "GridCoordinates_t", Data::None)?;
+    for (axis, name) in ["CoordinateX", "CoordinateY", "CoordinateZ"].into_iter().enumerate() {
+        grid.add(name, "DataArray_t", Data::Real(mesh.vertices.iter().map(|point| point[axis]).collect()))?;
+    }
+    zone.group.add_group(grid.finish());
+    let families = elements(&mut zone, data)?;
+    solution(&mut zone, data, notices)?;
+    for family in families {
+        base.add(&family, "Family_t", Data::None)?;
+    }
+    base.group.add_group(zone.finish());
+    builder.add_group(base.finish());
+    Ok(builder)
+}
+
+/// A section for each reference, and a boundary condition for each of triangles. Returns the families.
+fn elements(zone: &mut Node, data: &Dataset) -> Result<Vec<String>, hdf5_pure::Error> {
+    let mesh = &data.mesh;
+    let (mut names, mut of_conditions) = (Plain::default(), Plain::default());
+    // Names of other nodes of a zone and of a base.
+    let taken = ["ZoneType", "GridCoordinates", "ZoneBC", "FlowSolution"];
+    names.0.extend(taken.map(String::from));
+    let mut of_families = Plain(BTreeSet::from(["Zone".into()]));
+    let mut families: BTreeMap<String, String> = BTreeMap::new();
+    let mut conditions = Node::new("ZoneBC", "ZoneBC_t", Data::None)?;
+    let (mut first, mut any) = (1_i64, false);
+    let all = groups(data);
+    for wanted in Kind::ALL {
+        for (&(kind, reference), members) in all.iter().filter(|((kind, _), _)| *kind == wanted) {
+            let (number, nodes): (_, Vec<u32>) = match kind {
+                Kind::Tetrahedra => (TETRA_4, members.iter().flat_map(|&at| mesh.tets.nodes[at as usize]).collect()),
+                Kind::Triangles => (TRI_3, members.iter().flat_map(|&at| mesh.triangles.nodes[at as usize]).collect()),
+                Kind::Edges => (BAR_2, members.iter().flat_map(|&at| mesh.edges.nodes[at as usize]).collect()),
+            };
+            let called = meaning(data, (kind, reference)).name;
+            let shown = called.clone().unwrap_or_else(|| format!("{} {reference}", kind.unnamed()));
+            let last = first + members.len() as i64 - 1;
+            let name = names.name(&shown, LONGEST);
+            let mut section = Node::new(&name, "Elements_t", Data::Int(vec![number as i32, 0]))?;
+            let fits = i32::try_from(last.max(mesh.vertices.len() as i64)).is_ok();
+            let range = |range: [i64; 2]| {
+                if fits { Data::Int(range.map(|at| at as i32).to_vec()) } else { Data::Long(range.to_vec()) }
+            };
+            section.add("ElementRange", "IndexRange_t", range([first, last]))?;
+            let nodes = if fits {
+                Data::Int(nodes.iter().map(|&node| node as i32 + 1).collect())
+            } else {
+                Data::Long(nodes.iter().map(|&node| i64::from(node) + 1).collect())
+            };
+            section.add("ElementConnectivity", "DataArray_t", nodes)?;
+            section.add(REFERENCE, "Descriptor_t", Data::Text(&reference.to_string()))?;
+            if let Some(called) = &called {
+                section.add(NAME, "Descriptor_t", Data::Text(called))?;
+            }
+            zone.group.add_group(section.finish());
+            if kind == Kind::Triangles {
+                let family = families.entry(shown.clone()).or_insert_with(|| of_families.name(&shown, LONGEST));
+                let mut condition =
+                    Node::new(&of_conditions.name(&shown, LONGEST), "BC_t", Data::Text("FamilySpecified"))?;
+                condition.add("PointRange", "IndexRange_t", Data::Shaped(vec![first as i32, last as i32], [2, 1]))?;
+                condition.add("GridLocation", "GridLocation_t", Data::Text("FaceCenter"))?;
+                condition.add("FamilyName", "FamilyName_t", Data::Text(family))?;
+                conditions.group.add_group(condition.finish());
+                any = true;
+            }
+            first = last + 1;
+        }
+    }
+    if any {
+        zone.group.add_group(conditions.finish());
+    }
+    Ok(families.into_values().collect())
+}
+
+/// The fields, a scalar for each component.
+fn solution(zone: &mut Node, data: &Dataset, notices: &mut Vec<String>) -> Result<(), hdf5_pure::Error> {
+    if data.fields.is_empty() {
+        return Ok(());
+    }
+    let mut solution = Node::new("FlowSolution", "FlowSolution_t", Data::None)?;
+    solution.add("GridLocation", "GridLocation_t", Data::Text("Vertex"))?;
+    let mut names = Plain(BTreeSet::from(["GridLocation".into()]));
+    for field in &data.fields {
+        let ends = ends(field.kind);
+        let stem = names.name(&field.name, LONGEST - ends[0].len());
+        if stem != field.name {
+            notices.push(format!("the field {} is called {stem}", error::short(&field.name)));
+        }
+        for (k, end) in ends.iter().enumerate() {
+            let values = field.values.iter().skip(k).step_by(ends.len()).copied().collect();
+            solution.add(&format!("{stem}{end}"), "DataArray_t", Data::Real(values))?;
+        }
+    }
+    zone.group.add_group(solution.finish());
+    Ok(())
+}
