@@ -4,16 +4,18 @@ use crate::errors;
 use crate::model::Model;
 use geo_adapt::geometry::classify::{self, Classification};
 use geo_adapt::geometry::discrete::{Discrete, complete_boundary};
+use geo_adapt::io::{FieldKind, Solution, SolutionField};
 use geo_adapt::metric::from_points::{FromPoints, TooFew};
 use geo_adapt::metric::implied::implied as implied_of;
 use geo_adapt::metric::multiscale::{self as of_field, Bounds, Measure, Norm};
 use geo_adapt::metric::recovery::Recovery;
-use geo_adapt::metric::{self, Interpolation, Limits, Sym3, field};
+use geo_adapt::metric::{self, Field, Interpolation, Limits, Sym3, field};
 use geo_adapt::sizing;
 use geo_adapt::tasks::{GRAIN, Team};
 use geo_adapt::{DiscreteOptions, Geometry, TetMesh};
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use std::path::Path;
 
 /// Metrics, shape (n, 6).
 type Given<'py> = PyReadonlyArray2<'py, f64>;
@@ -117,11 +119,13 @@ pub fn intersect<'py>(py: Python<'py>, metrics: Vec<Given<'_>>, threads: usize) 
 /// Sizes, the same in all directions.
 #[pyfunction]
 pub fn isotropic<'py>(py: Python<'py>, sizes: PyReadonlyArray1<'_, f64>) -> Made<'py> {
-    let sizes = flat("sizes", &sizes)?;
-    if let Some(at) = sizes.iter().position(|h| !(*h > 0.0 && h.is_finite())) {
-        return Err(errors::metric(format!("the size of point {at} is {}: give positive ones", sizes[at])));
-    }
-    let logs: Vec<Sym3> = sizes.iter().map(|h| Sym3::ZERO.plus_identity(-2.0 * h.ln())).collect();
+    let solution = Solution {
+        vertices: sizes.len()?,
+        fields: vec![SolutionField { kind: FieldKind::Scalar, values: flat("sizes", &sizes)?.to_vec() }],
+    };
+    // As sizes in a file are read, and then made isotropic: to the last bit.
+    let read = Field::logs_of_solution(Team::alone(), Path::new("sizes"), &solution, None).map_err(errors::metric)?;
+    let logs: Vec<Sym3> = read.content.iter().map(|log| Sym3::ZERO.plus_identity(log.eigen().values[2])).collect();
     arrays::give_rows(py, exp(Team::alone(), &logs)?)
 }
 
