@@ -78,8 +78,9 @@ class Parents:
             When there is not a row for each old point.
         """
         table, shape = rows(values, len(self._old.points), "values")
-        found = np.einsum("nk,nkc->nc", self.weights, table[self._old.tets[self.tets]])
-        return found.reshape(len(found), *shape)
+        found: Floats = np.einsum("nk,nkc->nc", self.weights, table[self._old.tets[self.tets]])
+        shaped: Floats = found.reshape(len(found), *shape)
+        return shaped
 
 
 class Result:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import meshio
     import pyvista
 
+    from .model import Model
     from .tensors import Floats
 
 Ints = npt.NDArray[np.int32]
@@ -143,6 +144,8 @@ class Mesh:
             for number in numbers:
                 self._labels.setdefault("triangles", {})[str(int(number))] = {"name": str(name)}
         self._association: _kernel.Associated | None = None
+        #: The model of the domain that `bootstrap` meshed, where it is not the one that was given: a far field, a healed model.
+        self.domain: Model | None = None
 
     @property
     def references(self) -> Ints:
@@ -215,6 +218,7 @@ class Mesh:
         mesh.__dict__.update(arrays)
         mesh.fields = {}
         mesh._labels = json.loads(labels)
+        mesh.domain = None
         return mesh
 
     @classmethod
@@ -290,7 +294,7 @@ class Mesh:
         return views.to_meshio(self)
 
     @classmethod
-    def from_pyvista(cls, grid: pyvista.UnstructuredGrid) -> Mesh:
+    def from_pyvista(cls, grid: pyvista.DataSet) -> Mesh:
         """Of pyvista's grid: its tetrahedra and triangles, references of the cell data "reference", and point data."""
         from . import views
 

@@ -53,7 +53,7 @@ def run(arguments: Sequence[str | os.PathLike[str]]) -> str:
     >>> geo_adapt.program.run(["--version"]).split()[0]
     'geo-adapt'
     """
-    command = [os.fspath(PATH), *map(os.fspath, arguments)]
+    command = [os.fspath(word) for word in (PATH, *arguments)]
     # A group of its own: a Ctrl-C at the terminal reaches this process alone, which hands it on and waits.
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, start_new_session=True

@@ -106,7 +106,6 @@ def bootstrap(
         )
         program.run(["bootstrap", file, "-o", out, *options])
         mesh = Mesh.read(out, threads)
-        mesh.domain = None
         metric = out.with_suffix(".solb")
         if metric.is_file():
             mesh.fields["metric"] = _shaped(_kernel.read_sol(os.fspath(metric), threads or 0)[0][0])
