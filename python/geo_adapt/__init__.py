@@ -14,6 +14,7 @@ Node numbers count from 0 as in numpy; numbers of faces and references are those
 from importlib.metadata import PackageNotFoundError as _NotFound
 from importlib.metadata import version as _version
 
+from . import _load as _load  # first
 from . import errors, examples, metric, program
 from .adapting import Adapter, Parents, Progress, Result, adapt
 from .errors import Error, FileError, InputError, MeshError, MetricError, ModelError, ProgramError
