@@ -126,7 +126,8 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let items = active_tets(Team::alone(), &context);
         assert_eq!(items.len(), mesh.tets.len());
         let execution = Execution { pool: &pool, scheduler, plan: Plan::default(), grains: Grains::default() };
-        let counts = schedule::run(&InsertCentroids, &items, &context, &mut states, (execution, Kind::Split), &|_| true);
+        let counts =
+            schedule::run(&InsertCentroids, &items, &context, &mut states, (execution, Kind::Split), &|_| true);
         assert!(counts.done > 0);
         let after = [1, 2, 3].map(count);
         assert!((0..3).all(|k| after[k] > before[k]), "{before:?} {after:?}");
