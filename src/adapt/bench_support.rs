@@ -201,7 +201,7 @@ impl<'m> Workbench<'m> {
             plan: Plan::default(),
             grains: Grains::default(),
         };
-        schedule::run(operation, items, &self.context, &mut self.states, (execution, Kind::Split), &|_| {})
+        schedule::run(operation, items, &self.context, &mut self.states, (execution, Kind::Split), &|_| true)
     }
 
     /// Lists and carries out some sweeps, one after the other.

@@ -98,10 +98,20 @@ pub struct Settings {
 
 /// What the boundary lies on.
 enum Ground {
-    /// A CAD model, read once.
-    Cad(Model),
+    /// A model that was given: of CAD, read once, which other adapters may have too, or a surface.
+    Cad(Arc<Model>),
     /// The surface of the mesh that came last without a place, once there was one.
     Surface(Option<Model>),
+}
+
+impl Ground {
+    /// The model, if there is one by now.
+    fn model(&self) -> Option<&Model> {
+        match self {
+            Ground::Cad(model) => Some(model),
+            Ground::Surface(model) => model.as_ref(),
+        }
+    }
 }
 
 /// An adapter that keeps its model and its threads between the calls.
@@ -142,12 +152,12 @@ impl Adapter {
         Self::on_model(Model::Discrete(model), settings)
     }
 
-    /// On a model that was read before.
+    /// On a model that was read before. Several adapters may share one in an [`Arc`].
     ///
     /// # Errors
     /// [`Error::Threads`] when the system refuses the threads.
-    pub fn on_model(model: Model, settings: Settings) -> Result<Self, Error> {
-        Self::new(Ground::Cad(model), settings)
+    pub fn on_model(model: impl Into<Arc<Model>>, settings: Settings) -> Result<Self, Error> {
+        Self::new(Ground::Cad(model.into()), settings)
     }
 
     fn new(ground: Ground, settings: Settings) -> Result<Self, Error> {
@@ -164,10 +174,7 @@ impl Adapter {
 
     /// The model, if there is one by now.
     pub fn model(&self) -> Option<&Model> {
-        match &self.ground {
-            Ground::Cad(model) => Some(model),
-            Ground::Surface(model) => model.as_ref(),
-        }
+        self.ground.model()
     }
 
     /// Measures a mesh that came out of this adapter, in its metric and on the model.
@@ -223,18 +230,13 @@ impl Adapter {
                 )));
             }
             Some(place) => {
-                let model = match &*ground {
-                    Ground::Cad(model) | Ground::Surface(Some(model)) => model,
-                    Ground::Surface(None) => return Err(Error::place("no mesh came before it".into())),
-                };
+                let model = ground.model().ok_or_else(|| Error::place("no mesh came before it".into()))?;
                 place::check(team, place, &mesh, model)?;
                 place.clone()
             }
             None => placed(team, ground, &mesh, settings)?,
         };
-        let (Ground::Cad(model) | Ground::Surface(Some(model))) = &*ground else {
-            return Err(Error::place("no mesh came before it".into()));
-        };
+        let model = ground.model().ok_or_else(|| Error::place("no mesh came before it".into()))?;
         let mut source = Source::Background(Background::on(team, Arc::clone(&mesh), faces, logs));
         scale(team, &mesh, &mut source, settings.complexity)?;
         let adapted = adapt::adapt(&mesh, &place, model, &source, &settings.options, pool, observer)?;
@@ -249,7 +251,10 @@ fn placed(team: Team<'_>, ground: &mut Ground, mesh: &TetMesh, settings: &Settin
         Ground::Cad(model) => {
             let options = classify::Options { tolerance: settings.tolerance, ..classify::Options::default() };
             let place = classify::classify(team, mesh, model, &options).map_err(crate::geometry::Error::from)?.0;
-            model.adopt_references(mesh, &place);
+            // A CAD model, which alone is shared, has none to adopt.
+            if let Some(model) = Arc::get_mut(model) {
+                model.adopt_references(mesh, &place);
+            }
             Ok(place)
         }
         Ground::Surface(kept) => {

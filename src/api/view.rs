@@ -69,6 +69,14 @@ impl<'a> MeshView<'a> {
         }
     }
 
+    /// A copy of the mesh, its place aside: what writing it and the functions of the modules take.
+    ///
+    /// # Errors
+    /// [`Error`], where something is not in range, not finite, or of another length.
+    pub fn to_mesh(&self) -> Result<TetMesh, Error> {
+        self.mesh()
+    }
+
     /// A copy of the mesh, with everything in range.
     pub(super) fn mesh(&self) -> Result<TetMesh, Error> {
         let vertices = self.vertices.len();

@@ -1,10 +1,10 @@
 //! `geo-adapt classify`.
 use super::files::{Files, Outputs, reading};
-use super::names::on_mesh;
 use super::surface::SurfaceArguments;
 use super::{Outcome, load};
 use crate::geometry::classify::{Associated, Options, Report, associate, classify};
 use crate::geometry::discrete::complete_boundary;
+use crate::geometry::on_mesh;
 use crate::tasks::{Plan, Team};
 use std::fmt::Write;
 use std::path::PathBuf;

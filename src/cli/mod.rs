@@ -26,7 +26,6 @@ mod load;
 mod man;
 mod metric;
 mod model;
-mod names;
 mod openfoam;
 mod surface;
 mod table;

@@ -6,6 +6,7 @@ mod error;
 mod far_field;
 pub mod fidelity;
 mod healed;
+mod labels;
 mod model;
 pub mod names;
 #[cfg(feature = "occt")]
@@ -18,6 +19,7 @@ pub use entity::{CurveKind, EdgeEntity, Entity, FaceEntity, SurfaceKind, Topolog
 pub use error::Error;
 pub use far_field::FarField;
 pub use healed::{Healed, Remedy};
+pub use labels::on_mesh;
 pub use model::{Evaluator, Model};
 pub use names::{Label, Names, called};
 #[cfg(feature = "occt")]

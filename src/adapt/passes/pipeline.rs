@@ -185,6 +185,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             }
             self.pass += 1;
         }
+        if self.observer.stop() {
+            return;
+        }
         self.looked = [0; KINDS];
         self.reorder();
         self.limit(shape_limits());
@@ -507,7 +510,11 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let start = Instant::now();
         self.find_voids();
         self.observer.begin(kind, self.pass, items.len());
-        let advance = |n: usize| self.observer.advance(n);
+        let advance = |n: usize| {
+            self.observer.advance(n);
+            // What was put on the model's triangles goes onto the model all the same: it is little, and the mesh is to be used.
+            kind == Kind::Project || !self.observer.stop()
+        };
         let counts = schedule::run(operation, items, self.context, &mut self.states, (self.execution, kind), &advance);
         self.observer.end(&counts);
         if counts.refused[Refusal::Crossing as usize] > 0 {

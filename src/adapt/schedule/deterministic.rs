@@ -5,7 +5,7 @@
 //! round, which is cut elsewhere. A tetrahedron with vertices in two parts stands still, and so does everything that a part can see of
 //! another. So it makes no difference which part is done first. No lock is taken: a claim reads a byte that does not change.
 use super::parts::Parts;
-use super::{Advance, Item, Operation, ThreadContext, sequential};
+use super::{Advance, Item, Operation, STRIDE, ThreadContext, sequential};
 use crate::adapt::core::access::Owned;
 use crate::adapt::core::context::Context;
 use crate::adapt::core::id_pool::IdPool;
@@ -76,6 +76,10 @@ pub fn run<'m, O: Operation>(
         }
         let mut round = Round { operation, items, context, pool, plan, left, parts };
         left = round.run(threads, &mut counts, advance);
+        if !advance(0) {
+            clear_owners(&context.store, (pool, plan));
+            return counts;
+        }
         // What is left lies between the parts of this round. Fewer and larger parts have less between them.
         parts = (parts / 2).min(power(left.len() / FEWEST_ITEMS));
         shared = true;
@@ -134,9 +138,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         self.pool.task_for_with(plan, self.parts, threads, |thread, _, range| {
             for index in range {
                 let mut part = parts[index].lock().expect("each part is one task's");
-                self.work(&sorted[starts[index]..starts[index + 1]], index, &mut part, thread);
-                let done = part.counts.attempts as usize - part.again.len();
-                advance(done);
+                self.work(&sorted[starts[index]..starts[index + 1]], index, &mut part, thread, advance);
             }
         });
         let parts: Vec<_> = parts.into_iter().map(|part| part.into_inner().expect("no part failed")).collect();
@@ -225,16 +227,29 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     }
 
     /// Does the items of one part.
-    fn work(&self, numbers: &[u32], index: usize, part: &mut Part, thread: &mut ThreadContext<'_, 'm, O>) {
+    fn work(
+        &self,
+        numbers: &[u32],
+        index: usize,
+        part: &mut Part,
+        thread: &mut ThreadContext<'_, 'm, O>,
+        advance: Advance<'_>,
+    ) {
         let ThreadContext { state, scratch } = thread;
         let own = std::mem::take(&mut state.unprojected);
         std::mem::swap(&mut state.id_pool, &mut part.id_pool);
         let mut worker = Worker::new(self.context, state, Owned::new(index));
-        for &number in numbers {
-            let result = self.operation.attempt(&mut worker, scratch, self.item(number));
-            part.counts.record(result);
-            if result == Err(Refusal::Conflict) {
-                part.again.push(number);
+        for some in numbers.chunks(STRIDE) {
+            let waiting = part.again.len();
+            for &number in some {
+                let result = self.operation.attempt(&mut worker, scratch, self.item(number));
+                part.counts.record(result);
+                if result == Err(Refusal::Conflict) {
+                    part.again.push(number);
+                }
+            }
+            if !advance(some.len() - (part.again.len() - waiting)) {
+                break;
             }
         }
         drop(worker);

@@ -103,8 +103,12 @@ pub trait Operation: Sync {
     ) -> Result<(), Refusal>;
 }
 
-/// Called now and then with the number of items that were done since.
-pub type Advance<'a> = &'a (dyn Fn(usize) + Sync);
+/// Called now and then with the number of items that were done since. Where it says no the rest of the items is left undone: each operation
+/// leaves a valid mesh.
+pub type Advance<'a> = &'a (dyn Fn(usize) -> bool + Sync);
+
+/// Items between two reports of progress.
+const STRIDE: usize = 1024;
 
 /// A thread in a sweep: what it keeps from sweep to sweep, and the scratch of the operation.
 pub struct ThreadContext<'s, 'm, O: Operation> {

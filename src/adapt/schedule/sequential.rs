@@ -1,12 +1,9 @@
 //! One thread does the items in their order: the reference for all other schedulers.
-use super::{Advance, Operation, ThreadContext};
+use super::{Advance, Operation, STRIDE, ThreadContext};
 use crate::adapt::core::access::{Access, Exclusive};
 use crate::adapt::core::context::Context;
 use crate::adapt::core::refusal::Counts;
 use crate::adapt::core::worker::Worker;
-
-/// Items between two reports of progress.
-const STRIDE: usize = 1024;
 
 /// Applies the operation to the items in turn.
 pub fn run<'m, O: Operation>(
@@ -23,7 +20,9 @@ pub fn run<'m, O: Operation>(
             counts.record(operation.attempt(&mut worker, scratch, item));
             worker.access.release(worker.store);
         }
-        advance(some.len());
+        if !advance(some.len()) {
+            break;
+        }
     }
     counts
 }

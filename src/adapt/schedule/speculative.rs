@@ -8,7 +8,7 @@ use crate::adapt::core::context::Context;
 use crate::adapt::core::refusal::{Counts, Refusal};
 use crate::adapt::core::worker::Worker;
 use crate::tasks::{Plan, Pool};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
 /// Least tasks a thread, so that short lists are shared too.
 const SHARES: usize = 8;
@@ -46,17 +46,22 @@ pub fn run<'m, O: Operation>(
         let begin = |thread| RoundOf { thread, counts: Counts::default(), again: Vec::new() };
         let mut rounds: Vec<_> = threads.iter_mut().map(begin).collect();
         // Each task takes the next items of the list, in whatever order tasks are run, since lists have their most urgent items first.
-        let next = AtomicUsize::new(0);
+        let (next, is_stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
         pool.task_for_with(
             Plan { grain: 1, ..plan },
             work.len().div_ceil(grain),
             &mut rounds,
             |round, thread, range| {
                 for _ in range {
+                    if is_stopped.load(Relaxed) {
+                        return;
+                    }
                     let start = next.fetch_add(grain, Relaxed);
                     let bucket = &work[start..work.len().min(start + grain)];
                     round.work(operation, context, thread, bucket);
-                    advance(bucket.len());
+                    if !advance(bucket.len()) {
+                        is_stopped.store(true, Relaxed);
+                    }
                 }
             },
         );
@@ -64,6 +69,9 @@ pub fn run<'m, O: Operation>(
         for round in rounds {
             counts.add(&round.counts);
             again.extend(round.again);
+        }
+        if is_stopped.into_inner() {
+            return counts;
         }
         left = Some(again);
     }

@@ -62,7 +62,7 @@ pub trait Observer: Sync {
     fn advance(&self, _items: usize) {}
     /// The sweep is over.
     fn end(&self, _counts: &Counts) {}
-    /// Whether to stop after this sweep.
+    /// Whether to stop as soon as can be: within a sweep, too.
     fn stop(&self) -> bool {
         false
     }

@@ -224,7 +224,7 @@ impl<'m> Bench<'m> {
         self.random.shuffle(&mut items);
         let execution =
             Execution { pool: &self.pool, scheduler: self.scheduler, plan: self.plan, grains: Grains::uniform(8) };
-        schedule::run(operation, &items, &self.context, &mut self.states, (execution, Kind::Split), &|_| {})
+        schedule::run(operation, &items, &self.context, &mut self.states, (execution, Kind::Split), &|_| true)
     }
 
     /// All edges; some are listed twice, with another tetrahedron.

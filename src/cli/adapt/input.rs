@@ -2,7 +2,6 @@
 use super::super::files::Files;
 use super::super::files::reading::{self, Carrier};
 use super::super::load;
-use super::super::names::on_mesh;
 use super::field::FieldArguments;
 use super::local::Locals;
 use super::meet::Meeting;
@@ -15,7 +14,7 @@ use crate::cli::table::place;
 use crate::formats::{Dataset, NamedField};
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::complete_matched;
-use crate::geometry::{Model, Names};
+use crate::geometry::{Model, Names, on_mesh};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::io::Read;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};

@@ -126,7 +126,8 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let items = active_tets(Team::alone(), &context);
         assert_eq!(items.len(), mesh.tets.len());
         let execution = Execution { pool: &pool, scheduler, plan: Plan::default(), grains: Grains::default() };
-        let counts = schedule::run(&InsertCentroids, &items, &context, &mut states, (execution, Kind::Split), &|_| {});
+        let counts =
+            schedule::run(&InsertCentroids, &items, &context, &mut states, (execution, Kind::Split), &|_| true);
         assert!(counts.done > 0);
         let after = [1, 2, 3].map(count);
         assert!((0..3).all(|k| after[k] > before[k]), "{before:?} {after:?}");
@@ -195,7 +196,7 @@ fn a_sweep_along_eigenvectors_leaves_a_valid_mesh_with_more_vertices_inside() {
                 plan: Plan::default(),
                 grains: Grains::default(),
             };
-            schedule::run(&InsertMetricOrthogonal, &items, &context, &mut states, (execution, Kind::Split), &|_| {});
+            schedule::run(&InsertMetricOrthogonal, &items, &context, &mut states, (execution, Kind::Split), &|_| true);
             check(&context).unwrap();
         }
         let after = context.store.live_vertices().count();

@@ -1,6 +1,6 @@
 //! A model's names on a mesh of it.
-use crate::geometry::classify::Classification;
-use crate::geometry::{Geometry, Model, Names};
+use super::classify::Classification;
+use super::{Geometry, Model, Names};
 use crate::mesh::TetMesh;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,0 +1,428 @@
+"""Metrics made, combined and measured.
+
+A metric here is an array of shape (n, 6) in the order "medit", 11 12 22 13 23 33, or (n, 3, 3); in 1/length². Where one of shape (n, 6) goes in,
+its `order` is said by name, never guessed. What comes out is (n, 6) in the order "medit"; `geo_adapt.full` makes (n, 3, 3) of it. The
+numbers are those of ``geo-adapt metric``, bit for bit, on any number of threads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _kernel
+from .errors import InputError
+from .mesh import Mesh
+from .model import Model
+from .tensors import Floats, packed
+
+
+def _scalars(field: npt.ArrayLike, what: str) -> npt.NDArray[Any]:
+    values = np.ascontiguousarray(field, dtype=np.float64)
+    if values.ndim != 1:
+        raise InputError(f"{what}: shape {values.shape}; give a value a point, shape (n,), such as a component of a vector")
+    return values
+
+
+def multiscale(
+    mesh: Mesh,
+    field: npt.ArrayLike | Sequence[npt.ArrayLike],
+    complexity: float | None = None,
+    *,
+    vertices: float | None = None,
+    norm: float = 2.0,
+    hessian: str = "fit",
+    gradation: float | None = 1.5,
+    hmin: float | None = None,
+    hmax: float | None = None,
+    aspect_ratio: float | None = None,
+    combine: str = "average",
+    fixed: npt.ArrayLike | None = None,
+    order: str | None = None,
+    between: bool = False,
+    threads: int | None = None,
+) -> Floats:
+    """The metric whose mesh has the least interpolation error of a field, in the L^p norm, for its number of points.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh that has the field.
+    field : array_like, shape (n,), or sequence of these
+        Values at the points. Several are steps in time of one field, or fields of their own: see `combine`.
+    complexity : float
+        Of the metric: about half the number of points of the adapted mesh. Or give
+    vertices : float
+        twice that.
+    norm : float
+        The p of the norm: 1 or more, `inf` among them.
+    hessian : {"fit", "l2", "jumps"}
+        How second derivatives are recovered. "jumps" is for shocks.
+    gradation : float or None
+        Greatest growth of the sizes from an edge to the next; None for no gradation.
+    hmin, hmax : float, optional
+        Bounds of the sizes, in length.
+    aspect_ratio : float, optional
+        Greatest ratio of the sizes at a point.
+    combine : {"average", "intersect"}
+        Whether several fields are steps in time (|H| averaged) or fields of their own (metrics intersected).
+    fixed : array_like, shape (n, 3, 3) or (n, 6), optional
+        A metric that is intersected at any scale, such as that of the geometry; `order` is its order.
+    between : bool
+        Measures the complexity by the interpolant, ∫ √det M, as ``geo-adapt adapt --field`` does; else at the points, as
+        ``geo-adapt metric multiscale``.
+    threads : int, optional
+        By default all cores.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Raises
+    ------
+    MetricError
+        When the field is flat or not finite, or the bounds leave no such metric.
+
+    References
+    ----------
+    A. Loseille and F. Alauzet, Continuous mesh framework, part I and II, SIAM J. Numer. Anal. 49 (2011). Gradation: F. Alauzet, Size
+    gradation control of anisotropic meshes, Finite Elem. Anal. Des. 46 (2010).
+
+    Examples
+    --------
+    >>> import numpy as np, geo_adapt
+    >>> mesh = geo_adapt.examples.cube(6)
+    >>> u = np.tanh(20 * (mesh.points[:, 0] - 0.5))
+    >>> m = geo_adapt.metric.multiscale(mesh, u, 500)
+    >>> bool(abs(geo_adapt.metric.complexity(mesh, m, order="medit") / 500 - 1) < 0.02)
+    True
+    """
+    if (complexity is None) == (vertices is None):
+        raise InputError("give a complexity or a number of vertices")
+    given: list[Any] = list(field) if isinstance(field, (list, tuple)) and np.ndim(field[0]) else [field]
+    values = [_scalars(one, "field") for one in given]
+    if combine not in ("average", "intersect"):
+        raise InputError(f'combine {combine!r}: "average" or "intersect"')
+    sensors = [values] if combine == "average" else [[one] for one in values]
+    how = {
+        "complexity": float(complexity if complexity is not None else vertices / 2.0),  # type: ignore[operator]
+        "norm": norm,
+        "hessian": hessian,
+        "gradation": gradation,
+        "hmin": hmin,
+        "hmax": hmax,
+        "aspect_ratio": aspect_ratio,
+        "between": between,
+    }
+    other = None if fixed is None else packed(fixed, order)
+    return _kernel.multiscale(mesh, sensors, how, other, threads or 0)
+
+
+def geometry(
+    mesh: Mesh,
+    model: Model | None = None,
+    *,
+    segments: float = 2.0,
+    cells: float | None = 2.0,
+    gradation: float | None = 1.5,
+    hmin: float | None = None,
+    hmax: float | None = None,
+    aspect_ratio: float | None = None,
+    tolerance: float | None = None,
+    threads: int | None = None,
+) -> Floats:
+    """The metric that the geometry asks for: fine where it curves, and across thin parts and gaps.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A mesh on the model.
+    model : Model, optional
+        The CAD model. Without it curvatures are estimated from the mesh's own triangles.
+    segments : float
+        Segments for a radian of curvature: the size is 1/(segments κ).
+    cells : float or None
+        Cells across thin parts and gaps; None leaves these alone.
+    gradation : float or None
+        Greatest growth of the sizes.
+    hmin, hmax : float, optional
+        Bounds of the sizes; by default 1e-5 and a tenth of the model's diagonal.
+    aspect_ratio, tolerance, threads : optional
+        Greatest ratio of sizes at a point; how far a point may be from the model; by default all cores.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Raises
+    ------
+    MeshError
+        When the mesh does not lie on the model.
+
+    Examples
+    --------
+    >>> import geo_adapt
+    >>> model = geo_adapt.Model(geo_adapt.examples.cylinder())
+    >>> mesh = geo_adapt.bootstrap(model, threads=1)
+    >>> geo_adapt.metric.geometry(mesh, model).shape == (len(mesh.points), 6)
+    True
+    """
+    how = {
+        "segments": segments,
+        "cells": cells,
+        "gradation": gradation,
+        "hmin": hmin,
+        "hmax": hmax,
+        "aspect_ratio": aspect_ratio,
+        "tolerance": tolerance,
+    }
+    return _kernel.geometry(mesh, None if model is None else model._kernel, how, threads or 0)
+
+
+def isotropic(sizes: npt.ArrayLike) -> Floats:
+    """The metric of sizes, the same in all directions: h⁻² I.
+
+    Parameters
+    ----------
+    sizes : array_like, shape (n,)
+        Lengths h, positive.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Raises
+    ------
+    MetricError
+        When a size is not positive.
+
+    Examples
+    --------
+    >>> import geo_adapt
+    >>> geo_adapt.metric.isotropic([0.5]).tolist()
+    [[4.0, 0.0, 4.0, 0.0, 0.0, 4.0]]
+    """
+    return _kernel.isotropic(_scalars(sizes, "sizes"))
+
+
+def intersect(*metrics: npt.ArrayLike, order: str | None = None, threads: int | None = None) -> Floats:
+    """The metric that asks for what each of several asks for: at each point the largest ellipsoid within theirs, nearly.
+
+    Parameters
+    ----------
+    *metrics : array_like, shape (n, 3, 3) or (n, 6)
+        Of the same mesh; their `order`, where they are (n, 6).
+    threads : int, optional
+        By default all cores.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Raises
+    ------
+    MetricError
+        When one is not positive definite.
+
+    Examples
+    --------
+    >>> import geo_adapt
+    >>> a, b = geo_adapt.metric.isotropic([0.5, 1.0]), geo_adapt.metric.isotropic([1.0, 0.25])
+    >>> geo_adapt.metric.intersect(a, b, order="medit")[:, 0].round(12).tolist()
+    [4.0, 16.0]
+    """
+    if not metrics:
+        raise InputError("give one metric at least")
+    return _kernel.intersect([packed(metric, order) for metric in metrics], threads or 0)
+
+
+def grade(
+    mesh: Mesh, metric: npt.ArrayLike, ratio: float = 1.5, *, order: str | None = None, threads: int | None = None
+) -> Floats:
+    """The metric made finer where sizes grow faster than by a ratio from an edge to the next (Alauzet 2010, mixed space).
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    metric : array_like, shape (n, 3, 3) or (n, 6)
+        At its points.
+    ratio : float
+        Above 1.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Examples
+    --------
+    >>> import numpy as np, geo_adapt
+    >>> mesh = geo_adapt.examples.cube(4)
+    >>> h = np.where(mesh.points[:, 0] == 0, 0.01, 1.0)
+    >>> m = geo_adapt.metric.grade(mesh, geo_adapt.metric.isotropic(h), order="medit")
+    >>> bool(m[:, 0].min() > 1.5)
+    True
+    """
+    return _kernel.grade(mesh, packed(metric, order), ratio, threads or 0)
+
+
+def limit(
+    metric: npt.ArrayLike,
+    *,
+    hmin: float | None = None,
+    hmax: float | None = None,
+    aspect_ratio: float | None = None,
+    order: str | None = None,
+    threads: int | None = None,
+) -> Floats:
+    """The metric within bounds of its sizes.
+
+    Parameters
+    ----------
+    metric : array_like, shape (n, 3, 3) or (n, 6)
+        The metric.
+    hmin, hmax : float, optional
+        Least and greatest size, length.
+    aspect_ratio : float, optional
+        Greatest ratio of sizes at a point: greater sizes are cut.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Examples
+    --------
+    >>> import geo_adapt
+    >>> geo_adapt.metric.limit(geo_adapt.metric.isotropic([0.1]), hmin=0.5, order="medit").round(12)[0, 0]
+    np.float64(4.0)
+    """
+    return _kernel.limit(packed(metric, order), hmin, hmax, aspect_ratio, threads or 0)
+
+
+def scale(
+    mesh: Mesh, metric: npt.ArrayLike, complexity: float, *, order: str | None = None, threads: int | None = None
+) -> Floats:
+    """The metric scaled to a complexity, about half the number of points of its mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    metric : array_like, shape (n, 3, 3) or (n, 6)
+        At its points.
+    complexity : float
+        Positive.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Examples
+    --------
+    >>> import geo_adapt
+    >>> mesh = geo_adapt.examples.cube(3)
+    >>> m = geo_adapt.metric.scale(mesh, geo_adapt.metric.implied(mesh), 100, order="medit")
+    >>> round(geo_adapt.metric.complexity(mesh, m, order="medit"), 6)
+    100.0
+    """
+    return _kernel.scale(mesh, packed(metric, order), complexity, threads or 0)
+
+
+def complexity(
+    mesh: Mesh,
+    metric: npt.ArrayLike,
+    *,
+    order: str | None = None,
+    between: bool = False,
+    threads: int | None = None,
+) -> float:
+    """The complexity of a metric, its volume ∫ √det M: about half the number of points of its mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    metric : array_like, shape (n, 3, 3) or (n, 6)
+        At its points.
+    between : bool
+        Of the interpolant, as the adapter counts; else summed at the points, as metrics are compared.
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> import numpy as np, geo_adapt
+    >>> mesh = geo_adapt.examples.cube(3)
+    >>> round(geo_adapt.metric.complexity(mesh, np.tile(np.eye(3) * 100, (len(mesh.points), 1, 1))), 6)
+    1000.0
+    """
+    return _kernel.complexity(mesh, packed(metric, order), between, threads or 0)
+
+
+def implied(mesh: Mesh, *, threads: int | None = None) -> Floats:
+    """The metric of a mesh itself: the one in which its edges have length one, as far as they can.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Raises
+    ------
+    MetricError
+        When all tetrahedra are flat or inverted.
+
+    Examples
+    --------
+    >>> import geo_adapt
+    >>> mesh = geo_adapt.examples.cube(3)
+    >>> geo_adapt.metric.implied(mesh).shape
+    (64, 6)
+    """
+    return _kernel.implied(mesh, threads or 0)
+
+
+def from_points(
+    mesh: Mesh, points: npt.ArrayLike, neighbours: int = 12, *, threads: int | None = None
+) -> Floats:
+    """The metric of a cloud of points: the ellipsoid about each point of the mesh that holds its nearest points.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    points : array_like, shape (m, 3)
+        The cloud.
+    neighbours : int
+        How many of the nearest the ellipsoid holds: 4 or more.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Raises
+    ------
+    MetricError
+        When there are fewer different points.
+
+    Examples
+    --------
+    >>> import numpy as np, geo_adapt
+    >>> mesh = geo_adapt.examples.cube(2)
+    >>> cloud = np.random.default_rng(1).random((200, 3))
+    >>> geo_adapt.metric.from_points(mesh, cloud).shape
+    (27, 6)
+    """
+    cloud = np.ascontiguousarray(points, dtype=np.float64)
+    if cloud.ndim != 2 or cloud.shape[1] != 3:
+        raise InputError(f"points: shape {cloud.shape}; give (m, 3)")
+    return _kernel.from_points(mesh.points, cloud, neighbours, threads or 0)

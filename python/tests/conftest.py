@@ -1,0 +1,35 @@
+"""What the tests share: a cylinder, its mesh, and the program run as from a shell."""
+
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import geo_adapt
+import pytest
+
+
+@pytest.fixture(scope="session")
+def step() -> Path:
+    return Path(__file__).parents[2] / "geometry" / "cylinder.step"
+
+
+@pytest.fixture(scope="session")
+def model(step: Path) -> geo_adapt.Model:
+    return geo_adapt.Model(step)
+
+
+@pytest.fixture(scope="session")
+def mesh(model: geo_adapt.Model) -> geo_adapt.Mesh:
+    return geo_adapt.bootstrap(model)
+
+
+@pytest.fixture
+def typed(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs the program in a folder of its own, as typed."""
+
+    def run(*words: object) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [geo_adapt.program.PATH, *map(str, words)], cwd=tmp_path, check=True, capture_output=True, text=True
+        )
+
+    return run

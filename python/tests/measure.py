@@ -1,0 +1,110 @@
+"""Measures what the package promises: run by hand, on a machine that does nothing else. Usage: measure.py [overhead|memory|copies|interrupt]…"""
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+
+import geo_adapt
+
+
+def resident() -> float:
+    """Memory of this process, MB."""
+    with open("/proc/self/status") as status:
+        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS")) / 1024
+
+
+def large(points: float):
+    """A cube, and a metric that asks for so many points, nearly: thin layers along x."""
+    mesh = geo_adapt.examples.cube(16)
+    h = np.column_stack([0.02 + 0.2 * mesh.points[:, 0], np.full((len(mesh.points), 2), 0.1)])
+    m = np.zeros((len(h), 6))
+    m[:, [0, 2, 5]] = h**-2.0
+    return mesh, geo_adapt.metric.scale(mesh, m, points / 2, order="medit")
+
+
+def overhead() -> None:
+    """Processor time of an adaptation here and by the program, without reading and writing: the least of five each, one thread."""
+    mesh, m = large(100_000)
+    with tempfile.TemporaryDirectory() as name:
+        place = Path(name)
+        mesh.write(place / "a.meshb")
+        geo_adapt.write_sol(place / "m.solb", m)
+        ours, theirs = [], []
+        for _ in range(5):
+            before = time.process_time()
+            geo_adapt.adapt(mesh, m, threads=1, order="medit")
+            ours.append(time.process_time() - before)
+            began = resource.getrusage(resource.RUSAGE_CHILDREN)
+            words = ["adapt", "a.meshb", "--metric", "m.solb", "-o", "b.meshb", "--threads", "1", "-q"]
+            subprocess.run([geo_adapt.program.PATH, *words], cwd=place, check=True)
+            ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+            theirs.append(ended.ru_utime + ended.ru_stime - began.ru_utime - began.ru_stime)
+    print(f"overhead: {min(ours):.2f} s here, {min(theirs):.2f} s by the program with its files: {min(ours) / min(theirs) - 1:+.1%}")
+
+
+def memory() -> None:
+    """A thousand adaptations in a process, of a loop with one adapter and of adapters of their own."""
+    model = geo_adapt.Model(geo_adapt.examples.cylinder())
+    first = geo_adapt.bootstrap(model, size=0.6, threads=1)
+    m = geo_adapt.metric.geometry(first, model)
+    adapter = geo_adapt.Adapter(model, threads=2)
+    at = {}
+    for number in range(1, 1001):
+        if number % 2:
+            geo_adapt.adapt(first, m, model, complexity=300 + number % 7, order="medit", threads=2)
+        else:
+            adapter.adapt(first, m, complexity=300 + number % 7, order="medit")
+        if number in (100, 200, 400, 600, 800, 1000):
+            at[number] = resident()
+    print("memory after adaptations, MB:", {number: round(value, 1) for number, value in at.items()})
+
+
+def copies() -> None:
+    """Memory that arrays take again when they become a mesh and a metric."""
+    count = 4_000_000
+    points, m = np.ones((count, 3)), np.ones((count, 6))
+    tets = np.ones((count, 4), np.uint32)
+    references = np.ones(count, np.int32)
+    size = (points.nbytes + tets.nbytes + m.nbytes + 2 * references.nbytes) / 2**20
+    before = resident()
+    mesh = geo_adapt.Mesh(points, tets, tet_references=references, point_references=references)
+    geo_adapt.packed(m, "medit")
+    print(f"copies: arrays of {size:.0f} MB go in, {resident() - before:.0f} MB more")
+    print("  points, tets, metric have the caller's memory:", mesh.points is points, np.shares_memory(mesh.tets, tets))
+
+
+def interrupt() -> None:
+    """Ctrl-C during an adaptation to a million tetrahedra, at several moments: how long until control is back."""
+    mesh, m = large(220_000)
+    for delay in (1.0, 3.0, 6.0, 9.0, 12.0):
+        at = [0.0]
+
+        def kick(at=at):
+            at[0] = time.monotonic()
+            os.kill(os.getpid(), signal.SIGINT)
+
+        timer = threading.Timer(delay, kick)
+        timer.start()
+        try:
+            result = geo_adapt.adapt(mesh, m, order="medit")
+            print(f"interrupt after {delay} s: done before, {len(result.mesh.tets)} tetrahedra")
+            timer.cancel()
+            break
+        except KeyboardInterrupt as error:
+            back = time.monotonic() - at[0]
+            found = error.partial.mesh
+            valid = geo_adapt.inspect(found)["valid"]
+            print(f"interrupt after {delay} s: back in {back:.2f} s, {len(found.tets)} tetrahedra, valid: {valid}")
+
+
+if __name__ == "__main__":
+    for what in sys.argv[1:] or ["overhead", "memory", "copies", "interrupt"]:
+        globals()[what]()
