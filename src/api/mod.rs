@@ -101,7 +101,7 @@ enum Ground {
     /// A model that was given: of CAD, read once, which other adapters may have too, or a surface.
     Cad(Arc<Model>),
     /// The surface of the mesh that came last without a place, once there was one.
-    Surface(Option<Model>),
+    Surface(Option<Box<Model>>),
 }
 
 impl Ground {
@@ -109,7 +109,7 @@ impl Ground {
     fn model(&self) -> Option<&Model> {
         match self {
             Ground::Cad(model) => Some(model),
-            Ground::Surface(model) => model.as_ref(),
+            Ground::Surface(model) => model.as_deref(),
         }
     }
 }
@@ -259,7 +259,7 @@ fn placed(team: Team<'_>, ground: &mut Ground, mesh: &TetMesh, settings: &Settin
         }
         Ground::Surface(kept) => {
             let (model, place) = Discrete::new(team, mesh, &settings.surface)?;
-            *kept = Some(Model::Discrete(model));
+            *kept = Some(Box::new(Model::Discrete(model)));
             Ok(place)
         }
     }
