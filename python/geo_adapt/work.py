@@ -259,7 +259,7 @@ def inspect(
     -------
     dict
         "valid": whether it is a valid mesh, and fits the model; "flaws": what is wrong; edge lengths, mean ratios, volume, counts;
-        "worst_tet"; "cad": distances from the model. Indices count from 0.
+        "worst_tet"; "cad": distances from the model. As in the program's report what has a number counts from 1.
 
     Examples
     --------

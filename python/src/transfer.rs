@@ -120,5 +120,5 @@ fn worst(mesh: &TetMesh, statistics: &Statistics) -> Value {
         let sum: f64 = nodes.iter().map(|&v| mesh.vertices[v as usize][i]).sum();
         sum * 0.25
     });
-    json!({ "index": index, "mean_ratio": statistics.mean_ratios.min, "at": at })
+    json!({ "index": index + 1, "mean_ratio": statistics.mean_ratios.min, "at": at })
 }
