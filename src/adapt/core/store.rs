@@ -125,7 +125,7 @@ fn capacities(needed: usize, wished: usize) -> impl Iterator<Item = usize> {
 
 /// As many empty records as there is memory for, from what is wished down to what is needed.
 fn roomy<T: Zeroable>(needed: usize, wished: usize) -> Vec<T> {
-    let some = capacities(needed, wished).find_map(|count| bytemuck::allocation::try_zeroed_vec(count).ok());
+    let some = capacities(needed, wished).find_map(crate::memory::try_zeroed_vec);
     some.unwrap_or_else(|| bytemuck::allocation::zeroed_vec(needed))
 }
 

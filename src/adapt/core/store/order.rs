@@ -7,7 +7,6 @@ use crate::adapt::core::numbering::{by_first, inverse};
 use crate::geometry::Entity;
 use crate::mesh::hilbert;
 use crate::tasks::{GRAIN, Rows, Team};
-use bytemuck::allocation::zeroed_vec;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
 /// A tetrahedron is left at a vertex that has gone: the mesh hung together there otherwise than by faces.
@@ -79,15 +78,18 @@ impl Store {
         let many_dead = order.len() < self.vertex_bound() - self.vertex_bound() / DEAD;
         let room = if many_dead { 2 * order.len() + ROOM } else { self.vertices.len() };
         let mut vertices: Vec<VertexRecord> = roomy(order.len(), room);
-        let room = vertices.len();
         team.fill(GRAIN, &mut vertices[..order.len()], |start, chunk| {
             for (to, &old) in chunk.iter_mut().zip(&order[start..]) {
                 *to = self.vertices[old as usize].moved();
             }
         });
         self.vertices = vertices;
-        self.owners = zeroed_vec(room);
-        let mut places: Vec<PlaceRecord> = zeroed_vec(room);
+        self.owners = Vec::new();
+        let mut places: Vec<PlaceRecord> = roomy(order.len(), self.vertices.len());
+        self.owners = roomy(order.len(), places.len());
+        // There is room for as many vertices as the shortest of the three holds.
+        places.truncate(self.owners.len());
+        self.vertices.truncate(self.owners.len());
         team.fill(GRAIN, &mut places[..order.len()], |start, chunk| {
             for (to, &old) in chunk.iter_mut().zip(&order[start..]) {
                 *to = self.places[old as usize].moved(number);
