@@ -58,6 +58,12 @@ def _references(what: str, given: npt.ArrayLike | None, count: int, usual: int) 
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
+def _warn(notices: Sequence[str]) -> None:
+    """Warns the caller of the function that calls this."""
+    for notice in notices:
+        warnings.warn(notice, stacklevel=3)
+
+
 class Mesh:
     """A tetrahedral mesh with its triangles, references and names.
 
@@ -250,8 +256,7 @@ class Mesh:
         mesh = cls._of(arrays, labels)
         for name, values in fields:
             mesh.fields[name] = _shaped(values)
-        for notice in notices:
-            warnings.warn(notice, stacklevel=2)
+        _warn(notices)
         return mesh
 
     def write(self, path: str | os.PathLike[str], threads: int | None = None) -> None:
@@ -277,8 +282,7 @@ class Mesh:
         count = len(self.points)
         fields = [(name, np.ascontiguousarray(values.reshape(count, -1))) for name, values in self.fields.items()]
         lost = _kernel.write_mesh(os.fspath(path), self, json.dumps(self._labels), fields, threads or 0)
-        for notice in lost:
-            warnings.warn(notice, stacklevel=2)
+        _warn(lost)
 
     @classmethod
     def from_meshio(cls, mesh: meshio.Mesh) -> Mesh:
@@ -404,8 +408,7 @@ def read_sol(path: str | os.PathLike[str], threads: int | None = None) -> list[F
     [(2,), (2, 3)]
     """
     fields, notices = _kernel.read_sol(os.fspath(path), threads or 0)
-    for notice in notices:
-        warnings.warn(notice, stacklevel=2)
+    _warn(notices)
     return [_shaped(field) for field in fields]
 
 

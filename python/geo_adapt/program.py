@@ -86,10 +86,13 @@ def read_model(path: Path, target: Path, answer: Path) -> None:
     """Has the program read a CAD model, in a process of its own, and save it in OpenCASCADE's binary form.
 
     A damaged file can crash OpenCASCADE or keep it for ever: neither harms this process. ``GEO_ADAPT_CAD_TIME_LIMIT`` is the
-    processor time that it may take, s, by default 600.
+    time that it may take, s, by default 600.
     """
-    # `convert`-like commands read the model in a child of theirs; this is that child.
-    limit = float(os.environ.get("GEO_ADAPT_CAD_TIME_LIMIT") or 600.0)
+    given = os.environ.get("GEO_ADAPT_CAD_TIME_LIMIT") or "600"
+    try:
+        limit = float(given)
+    except ValueError:
+        raise ModelError(f"GEO_ADAPT_CAD_TIME_LIMIT={given}: give a positive number of seconds") from None
     try:
         done = subprocess.run(
             [PATH, _READ, answer, path, target],

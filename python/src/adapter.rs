@@ -2,6 +2,7 @@
 use crate::arrays::{self, Arrays, Place};
 use crate::errors;
 use crate::model::Model;
+use geo_adapt::adapt::meeting::{VERTICES_PER_COMPLEXITY, meet};
 use geo_adapt::api::MeshView;
 use geo_adapt::geometry::on_mesh;
 use geo_adapt::{AdaptedMesh, Counts, DiscreteOptions, Freeze, Kind, Observer, Parents, Settings, SurfaceBounds};
@@ -15,18 +16,6 @@ use std::time::Duration;
 
 /// How long the caller's thread sleeps between two looks at signals.
 const LOOK: Duration = Duration::from_millis(50);
-
-/// A number of vertices is met if it is off by no more than this share, as in the program.
-const NEAR: f64 = 0.1;
-
-/// Meshes made at most for a number of vertices.
-const TRIES: u32 = 4;
-
-/// The complexity is changed by no more than this factor at a time.
-const GREATEST_CHANGE: f64 = 10.0;
-
-/// Vertices of a mesh for a unit of the complexity of its metric.
-const VERTICES_PER_COMPLEXITY: f64 = 2.0;
 
 /// An adapter with its model and its threads.
 #[pyclass(frozen, module = "geo_adapt._kernel")]
@@ -205,21 +194,14 @@ impl Options {
         settings.options.surface = SurfaceBounds { normal_deviation: self.normal_deviation, hausdorff: self.hausdorff };
         let mut adapted = adapter.adapt_observed(view, metric, watch).map_err(errors::of_adapter)?;
         let mut complexity = first;
-        if let Some((wanted, mut at)) = self.vertices.zip(first) {
-            let count = |adapted: &AdaptedMesh| adapted.mesh.vertices.len() as f64;
-            let off = |adapted: &AdaptedMesh| (count(adapted) / wanted).ln().abs();
-            let mut meshes = 1;
-            while meshes < TRIES && (count(&adapted) / wanted - 1.0).abs() > NEAR && !watch.stop() {
-                let next = at * (wanted / count(&adapted)).clamp(1.0 / GREATEST_CHANGE, GREATEST_CHANGE);
+        if let Some((wanted, at)) = self.vertices.zip(first) {
+            let make = |next: f64, _: usize| {
                 adapter.settings().complexity = Some(next);
-                let again = adapter.adapt_observed(view, metric, watch).map_err(errors::of_adapter)?;
-                meshes += 1;
-                if off(&again) >= off(&adapted) || watch.stop() {
-                    break;
-                }
-                (adapted, at) = (again, next);
-            }
-            complexity = Some(at);
+                adapter.adapt_observed(view, metric, watch).map(Some).map_err(errors::of_adapter)
+            };
+            let count = |adapted: &AdaptedMesh| adapted.mesh.vertices.len();
+            let met = meet(wanted, (adapted, at), count, make, || watch.stop())?;
+            (adapted, complexity) = (met.best, Some(met.complexity));
         }
         let names = adapter.model().map(|model| on_mesh(&adapted.mesh, &adapted.place, model)).unwrap_or_default();
         let names = serde_json::to_string(&names).map_err(errors::of_file)?;

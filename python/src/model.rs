@@ -43,7 +43,7 @@ impl Model {
         Ok(Self(Arc::new(model)))
     }
 
-    /// The model with other names, as JSON, over its own.
+    /// Writes the model as OpenCASCADE's BREP text.
     fn brep(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.0.write_brep(&path)).map_err(errors::model)
     }

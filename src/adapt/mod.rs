@@ -6,6 +6,7 @@ pub mod bench_support;
 mod coarsen;
 mod core;
 mod extract;
+pub mod meeting;
 mod operations;
 mod passes;
 mod run;

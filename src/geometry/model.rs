@@ -25,7 +25,7 @@ pub enum Evaluator<'a> {
 }
 
 impl Model {
-    /// Does what OpenCASCADE crashes on for some damaged models; a process that must live does the like only after another has done this.
+    /// Prepares the trimming of all faces. OpenCASCADE crashes at that on some damaged models, so a child process does it first.
     pub fn try_trimming(&self) {
         match self {
             #[cfg(feature = "occt")]

@@ -1,10 +1,25 @@
 //! Length, orientation and shape of what is in the store.
 use super::access::Access;
 use super::ids::VertexId;
+use super::store::Store;
 use super::worker::Worker;
 use crate::mesh::predicate::is_positive;
-use crate::mesh::vector::sub;
+use crate::mesh::vector::{sub, volume6};
 use crate::metric::quality::{edge_length, mean_length, mean_ratio};
+use crate::tasks::{GRAIN, Team};
+
+/// Complexity of a metric on the mesh as it is: Σ √det M̄ |k| over the tetrahedra, M̄ the log-Euclidean mean of their vertices; `trace` is that of
+/// ln M at a vertex.
+pub fn complexity(team: Team<'_>, store: &Store, trace: impl Fn(VertexId) -> f64 + Sync) -> f64 {
+    team.sum(GRAIN, store.tet_bound(), |range| {
+        let of = |vertices: [VertexId; 4]| {
+            let [a, b, c, d] = vertices.map(|v| store.position(v));
+            let sum: f64 = vertices.iter().map(|&v| trace(v)).sum();
+            (0.125 * sum).exp() * volume6(a, b, c, d) / 6.0
+        };
+        store.live_tets_in(range).map(|t| of(store.vertices(t))).sum()
+    })
+}
 
 /// Whether an edge whose squared lengths in the metrics of its ends are given is longer than the limit.
 #[inline(always)]

@@ -1,12 +1,12 @@
-//! A metric on the way: the source's, with sizes no less than a share of those that the mesh has.
+//! The metric of a stage: the source's, with sizes no less than a share of those that the mesh has.
 //!
-//! Where a metric asks for edges hundreds of times shorter than the mesh has, all edges of a tetrahedron are long at first, however they
-//! lie, and points are put everywhere that later ones crowd out. A mesh comes to such a metric in stages, each of which it can represent.
+//! Where a layer is to be hundreds of times thinner than the cells, all edges of a tetrahedron are too long, those along the layer too. All
+//! are split, and later most of the new vertices are collapsed again. So the mesh comes to such a metric in stages.
 use super::context::Context;
-use super::fill::measure;
 use super::ids::{TetId, VertexId};
+use super::{fill, measure};
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::vector::{Vec3, volume6};
+use crate::mesh::vector::Vec3;
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::implied::implied;
 use crate::metric::{Background, Sym3};
@@ -49,29 +49,19 @@ impl Context<'_> {
         });
         let mesh = TetMesh { vertices, tets: Elements { nodes: tets, refs: Vec::new() }, ..TetMesh::default() };
         let implied = implied(team, &mesh)?;
-        let source = |v: usize| {
-            let v = VertexId(v as u32);
-            if store.is_vertex(v) { store.log(v) } else { Sym3::ZERO }
-        };
         let logs = team.map(GRAIN / 4, mesh.vertices.len(), |v| {
-            let inverse = source(v).times(-1.0);
-            let root = implied.logs[v].times(0.5).exp();
+            let (id, implied) = (VertexId(v as u32), &implied.logs[v]);
+            if !store.is_vertex(id) {
+                return Sym3::ZERO;
+            }
+            let inverse = store.log(id).times(-1.0);
             // The greatest eigenvalue of M⁻¹ in the mesh's metric is right to rounding, whatever the anisotropy of both.
-            let [.., greatest] = inverse.exp().congruent(&root).eigen().values;
-            let least = implied.logs[v].plus_identity(2.0 * factor.ln() + (-greatest.ln()).max(0.0));
+            let [.., greatest] = inverse.exp().congruent(&implied.times(0.5).exp()).eigen().values;
+            let least = implied.plus_identity(2.0 * factor.ln() + (-greatest.ln()).max(0.0));
             inverse.intersect_logs(&least.times(-1.0)).times(-1.0)
         });
-        let complexity = |trace: &(dyn Fn(usize) -> f64 + Sync)| {
-            team.sum(GRAIN, mesh.tets.len(), |range| {
-                let of = |nodes: [u32; 4]| {
-                    let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
-                    let sum: f64 = nodes.iter().map(|&v| trace(v as usize)).sum();
-                    (0.125 * sum).exp() * volume6(a, b, c, d) / 6.0
-                };
-                range.map(|t| of(mesh.tets.nodes[t])).sum()
-            })
-        };
-        let (complexity, wanted) = (complexity(&|v| logs[v].trace()), complexity(&|v| source(v).trace()));
+        let complexity = measure::complexity(team, store, |v| logs[v.index()].trace());
+        let wanted = measure::complexity(team, store, |v| store.log(v).trace());
         Some(Stage { mesh, logs, complexity, wanted })
     }
 
@@ -99,7 +89,7 @@ impl Context<'_> {
         self.set_metrics(team, |v, hint| self.source.log_at(self.store.position(v), hint));
     }
 
-    /// Gives all vertices another metric. What lies where it is much another one counts as changed.
+    /// Gives all vertices another metric. Tetrahedra where it differs by more than [`SAME`] count as changed.
     fn set_metrics(&self, team: Team<'_>, log_of: impl Fn(VertexId, &mut u32) -> Sym3 + Sync) {
         let store = &self.store;
         store.tick();
@@ -119,6 +109,6 @@ impl Context<'_> {
             let of = |t: &TetId| store.vertices(*t).iter().any(|v| changed[v.index()]);
             store.live_tets_in(range).filter(of).for_each(|t| store.touch(t));
         });
-        measure(team, store);
+        fill::measure(team, store);
     }
 }

@@ -52,7 +52,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// What a vertex would be at a place, with the source's metric there; the search for it begins at `hint`.
+    /// What a vertex would be at a place, with the metric there; the search for it begins at `hint`.
     pub fn state_at(&self, placed: Placed, mut hint: u32) -> VertexState {
         let log = self.context.log_at(placed.point, &mut hint);
         VertexState { placed, log, metric: log.exp(), hint }

@@ -512,7 +512,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.observer.begin(kind, self.pass, items.len());
         let advance = |n: usize| {
             self.observer.advance(n);
-            // What was put on the model's triangles goes onto the model all the same: it is little, and the mesh is to be used.
+            // After a stop, new boundary vertices still go onto the model: that is short, and the mesh is to be used.
             kind == Kind::Project || !self.observer.stop()
         };
         let counts = schedule::run(operation, items, self.context, &mut self.states, (self.execution, kind), &advance);

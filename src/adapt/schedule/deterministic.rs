@@ -136,7 +136,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         let parts: Vec<_> = id_pools.into_iter().map(|id_pool| Mutex::new(part(id_pool))).collect();
         let plan = Plan { grain: 1, ..self.plan };
         self.pool.task_for_with(plan, self.parts, threads, |thread, _, range| {
-            // Each part looks after a stride only, and there are many.
+            // After a stop no further part begins.
             for index in range.take_while(|_| advance(0)) {
                 let mut part = parts[index].lock().expect("each part is one task's");
                 self.work(&sorted[starts[index]..starts[index + 1]], index, &mut part, thread, advance);

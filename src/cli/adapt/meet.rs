@@ -1,21 +1,13 @@
-//! Meeting a number of vertices: the mesh is counted, and made again with another complexity where it has too many or too few.
+//! `adapt --vertices`: a number of vertices is met ([`crate::adapt::meeting`]).
 use super::input::{Input, InputArguments};
 use crate::adapt::Adapted;
+use crate::adapt::meeting::{Met, meet};
 use crate::cli::metric::common::Amount;
 use crate::cli::note;
 use crate::cli::table::Table;
 use crate::tasks::Team;
 use serde::Serialize;
 use std::mem::replace;
-
-/// A number of vertices is met if it is off by no more than this share.
-const NEAR: f64 = 0.1;
-
-/// Meshes made at most. The number of vertices is nearly proportional to the complexity: two meet it as a rule.
-const TRIES: u32 = 4;
-
-/// The complexity is changed by no more than this factor at a time.
-const GREATEST_CHANGE: f64 = 10.0;
 
 /// How a number of vertices was met.
 #[derive(Clone, Copy, Serialize)]
@@ -50,27 +42,23 @@ pub fn adapted<E>(
     adapt: impl Fn(&Input) -> Result<Adapted, E>,
     is_interrupted: impl Fn() -> bool,
 ) -> Result<Adapted, E> {
-    let mut best = adapt(input)?;
-    let Amount { vertices: Some(wanted), .. } = arguments.amount else { return Ok(best) };
-    let count = |adapted: &Adapted| adapted.extracted.mesh.vertices.len() as f64;
-    let off = |adapted: &Adapted| (count(adapted) / wanted).ln().abs();
-    let is_near = |adapted: &Adapted| (count(adapted) / wanted - 1.0).abs() <= NEAR;
-    let mut complexity = arguments.amount.complexity().unwrap_or_default();
-    let mut meshes = 1;
-    while meshes < TRIES && !is_near(&best) && !is_interrupted() {
-        let next = complexity * (wanted / count(&best)).clamp(1.0 / GREATEST_CHANGE, GREATEST_CHANGE);
+    let first = adapt(input)?;
+    let Amount { vertices: Some(wanted), .. } = arguments.amount else { return Ok(first) };
+    let complexity = arguments.amount.complexity().unwrap_or_default();
+    let mut before = None;
+    let make = |next: f64, count: usize| {
         // Bounds of the sizes may leave no such metric.
-        let Ok((source, made)) = arguments.source_of(team, input, next) else { break };
-        note(format_args!("{} vertices, not {wanted}: again, with a complexity of {next:.0}", count(&best)));
-        let before = (replace(&mut input.source, source), replace(&mut input.made, made));
-        let again = adapt(input)?;
-        meshes += 1;
-        if off(&again) >= off(&best) || is_interrupted() {
-            (input.source, input.made) = before;
-            break;
-        }
-        (best, complexity) = (again, next);
+        let Ok((source, made)) = arguments.source_of(team, input, next) else { return Ok(None) };
+        note(format_args!("{count} vertices, not {wanted}: again, with a complexity of {next:.0}"));
+        before = Some((replace(&mut input.source, source), replace(&mut input.made, made)));
+        adapt(input).map(Some)
+    };
+    let count = |adapted: &Adapted| adapted.extracted.mesh.vertices.len();
+    let Met { best, complexity, meshes, is_met, is_last } =
+        meet(wanted, (first, complexity), count, make, is_interrupted)?;
+    if let Some(before) = before.filter(|_| !is_last) {
+        (input.source, input.made) = before;
     }
-    input.meeting = Some(Meeting { wanted, complexity, meshes, is_met: is_near(&best) });
+    input.meeting = Some(Meeting { wanted, complexity, meshes, is_met });
     Ok(best)
 }

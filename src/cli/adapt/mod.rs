@@ -10,9 +10,9 @@ pub mod report;
 mod source;
 
 use super::figures::FigureArguments;
-use super::metric::common::VERTICES_PER_COMPLEXITY;
 use super::waiting::Waiting;
 use super::{Outcome, interrupt};
+use crate::adapt::meeting::VERTICES_PER_COMPLEXITY;
 use crate::adapt::{self, Adapted, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
 use crate::geometry::classify::keeps_references;
 use crate::metric::Field;

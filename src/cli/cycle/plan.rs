@@ -1,6 +1,6 @@
 //! What a run of the loop would do, for people.
-use super::super::metric::common::VERTICES_PER_COMPLEXITY;
 use super::super::table::{Table, figure};
+use crate::adapt::meeting::VERTICES_PER_COMPLEXITY;
 use crate::cycle::{Error, Loaded, Plan, plan};
 
 /// Rows of complexities at the beginning and the end of a long loop.

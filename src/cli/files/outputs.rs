@@ -58,7 +58,8 @@ impl Outputs {
         formats::add(&mut self.batch, team, &to.path, data, options)
     }
 
-    /// A CAD model that was written elsewhere, with its names. Where it has none a names file that would be taken for its own is made empty.
+    /// A CAD model that was written elsewhere, with its names. A model without names makes a names file from before empty, which would be taken
+    /// for its own.
     pub fn model(&mut self, from: &Path, (to, beside): (&Target, &Target), called: &Names) -> Done {
         self.copy(from, to)?;
         if called.is_empty() && !names::beside_model(&to.path).exists() { Ok(()) } else { self.names(beside, called) }

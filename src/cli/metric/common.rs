@@ -1,6 +1,7 @@
 //! What the subcommands of `metric` share: arguments to flatten, reading with notices, the output.
 //!
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
+use crate::adapt::meeting::VERTICES_PER_COMPLEXITY;
 use crate::cli::files::reading::{self, Carrier, Fields};
 use crate::cli::files::{Files, On, Outputs, Target};
 use crate::cli::terminal::PrintError;
@@ -68,9 +69,6 @@ pub fn write_logs(run: &RunArguments, team: Team<'_>, to: &Target, logs: &[Sym3]
 pub fn on(data: &Dataset) -> On<'_> {
     Some((&data.mesh, &data.names))
 }
-
-/// Vertices of a mesh for a unit of the complexity of its metric, where the boundary is little of it.
-pub const VERTICES_PER_COMPLEXITY: f64 = 2.0;
 
 /// How much the metric is to ask for.
 #[derive(clap::Args)]

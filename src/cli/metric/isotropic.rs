@@ -1,5 +1,6 @@
 //! `geo-adapt metric isotropic`.
-use super::common::{self, OutputArgument, RunArguments, VERTICES_PER_COMPLEXITY};
+use super::common::{self, OutputArgument, RunArguments};
+use crate::adapt::meeting::VERTICES_PER_COMPLEXITY;
 use crate::cli::Outcome;
 use crate::cli::files::Files;
 use crate::cli::files::reading::Carrier;

@@ -6,6 +6,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, FieldKind};
 use crate::tasks::Team;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// The ends of the names of components, in our order.
 pub(super) fn ends(kind: FieldKind) -> &'static [&'static str] {
@@ -19,13 +20,13 @@ pub(super) fn ends(kind: FieldKind) -> &'static [&'static str] {
 
 /// Reads the solutions of all zones.
 pub(super) fn read(
-    zones: &[(&Node<'_>, usize, Vec<Section>)],
+    zones: &[(&Node<'_>, Range<usize>, Vec<Section>)],
     mesh: &TetMesh,
     notices: &mut Vec<String>,
 ) -> Result<Vec<NamedField>, Error> {
     let mut order = Vec::new();
     let mut found: BTreeMap<String, (bool, Vec<f64>)> = BTreeMap::new();
-    for (zone, base, sections) in zones {
+    for (zone, points, sections) in zones {
         let tets = sections.iter().flat_map(|section| &section.elements).filter_map(|element| match element {
             Element::Tet(at) => Some(*at),
             _ => None,
@@ -39,8 +40,8 @@ pub(super) fn read(
             };
             for array in solution.labelled("DataArray_t")? {
                 let values = array.reals()?;
-                let room = if at_cells { tets.len() } else { mesh.vertices.len() };
-                if at_cells && values.len() != tets.len() || !at_cells && values.len() > room - base {
+                let room = if at_cells { tets.len() } else { points.len() };
+                if values.len() != room {
                     let name = error::short(&array.name);
                     notices.push(format!("{name} has {} values for {room} places and is left out", values.len()));
                     continue;
@@ -59,7 +60,7 @@ pub(super) fn read(
                 if at_cells {
                     values.iter().zip(&tets).for_each(|(value, &at)| to[at] = *value);
                 } else {
-                    to[*base..][..values.len()].copy_from_slice(&values);
+                    to[points.clone()].copy_from_slice(&values);
                 }
             }
         }

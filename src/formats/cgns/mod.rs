@@ -137,7 +137,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
         coordinates(zone, &mut data.mesh)?;
         let sections = sections::read(zone, base, &mut data.mesh)?;
         boundary::refer(zone, base, &sections, &mut data.mesh, &mut labels)?;
-        parts.push((zone, base, sections));
+        parts.push((zone, base..data.mesh.vertices.len(), sections));
     }
     if parts.is_empty() {
         return Err(error::at(path, "CGNSBase_t", "there is no Zone_t in it"));

@@ -19,7 +19,6 @@ enum Data<'a> {
     Int(Vec<i32>),
     /// Of a shape other than a row, the index that changes fastest last.
     Shaped(Vec<i32>, [u64; 2]),
-    Long(Vec<i64>),
     Single(f32),
     Real(Vec<f64>),
     Text(&'a str),
@@ -36,7 +35,6 @@ impl Node {
         let kind = match data {
             Data::None => "MT",
             Data::Int(_) | Data::Shaped(..) => "I4",
-            Data::Long(_) => "I8",
             Data::Single(_) => "R4",
             Data::Real(_) => "R8",
             Data::Text(_) => "C1",
@@ -53,7 +51,6 @@ impl Node {
             Data::None => dataset,
             Data::Int(values) => dataset.with_i32_data(&values),
             Data::Shaped(values, shape) => dataset.with_i32_data(&values).with_shape(&shape),
-            Data::Long(values) => dataset.with_i64_data(&values),
             Data::Single(value) => dataset.with_f32_data(&[value]),
             Data::Real(values) => dataset.with_f64_data(&values),
             Data::Text(text) => dataset.with_i8_data(&bytes(text)),
@@ -98,6 +95,11 @@ impl Plain {
 
 /// Writes a mesh.
 pub(in super::super) fn write(batch: &mut Batch, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
+    let mesh = &data.mesh;
+    let elements = mesh.tets.len() + mesh.triangles.len() + mesh.edges.len();
+    if i32::try_from(mesh.vertices.len().max(elements)).is_err() {
+        return Err(error::at(path, "its size", "more than 2^31 - 1 vertices or elements; write .vtu"));
+    }
     let mut notices = Vec::new();
     let built = file(data, &mut notices).map_err(|error| error::at(path, "HDF5", error.to_string()))?;
     batch.add_main(path, |to| built.finish_to(to).map_err(io::Error::other))?;
@@ -118,7 +120,6 @@ fn file(data: &Dataset, notices: &mut Vec<String>) -> Result<FileBuilder, hdf5_p
     let dimension = if mesh.tets.is_empty() { 2 } else { 3 };
     let mut base = Node::new("Base", "CGNSBase_t", Data::Int(vec![dimension, 3]))?;
     let (vertices, cells) = (mesh.vertices.len(), if dimension == 3 { mesh.tets.len() } else { mesh.triangles.len() });
-    // The numbers of elements fit where the vertices do: there are some six tetrahedra a vertex.
     let mut zone = Node::new("Zone", "Zone_t", Data::Shaped(vec![vertices as i32, cells as i32, 0], [3, 1]))?;
     zone.add("ZoneType", "ZoneType_t", Data::Text("Unstructured"))?;
     let mut grid = Node::new("GridCoordinates", "GridCoordinates_t", Data::None)?;
@@ -146,7 +147,7 @@ fn elements(zone: &mut Node, data: &Dataset) -> Result<Vec<String>, hdf5_pure::E
     let mut of_families = Plain(BTreeSet::from(["Zone".into()]));
     let mut families: BTreeMap<String, String> = BTreeMap::new();
     let mut conditions = Node::new("ZoneBC", "ZoneBC_t", Data::None)?;
-    let (mut first, mut any) = (1_i64, false);
+    let (mut first, mut any) = (1, false);
     let all = groups(data);
     for wanted in Kind::ALL {
         for (&(kind, reference), members) in all.iter().filter(|((kind, _), _)| *kind == wanted) {
@@ -157,20 +158,12 @@ fn elements(zone: &mut Node, data: &Dataset) -> Result<Vec<String>, hdf5_pure::E
             };
             let called = meaning(data, (kind, reference)).name;
             let shown = called.clone().unwrap_or_else(|| format!("{} {reference}", kind.unnamed()));
-            let last = first + members.len() as i64 - 1;
+            let last = first + members.len() as i32 - 1;
             let name = names.name(&shown, LONGEST);
             let mut section = Node::new(&name, "Elements_t", Data::Int(vec![number as i32, 0]))?;
-            let fits = i32::try_from(last.max(mesh.vertices.len() as i64)).is_ok();
-            let range = |range: [i64; 2]| {
-                if fits { Data::Int(range.map(|at| at as i32).to_vec()) } else { Data::Long(range.to_vec()) }
-            };
-            section.add("ElementRange", "IndexRange_t", range([first, last]))?;
-            let nodes = if fits {
-                Data::Int(nodes.iter().map(|&node| node as i32 + 1).collect())
-            } else {
-                Data::Long(nodes.iter().map(|&node| i64::from(node) + 1).collect())
-            };
-            section.add("ElementConnectivity", "DataArray_t", nodes)?;
+            section.add("ElementRange", "IndexRange_t", Data::Int(vec![first, last]))?;
+            let nodes = nodes.iter().map(|&node| node as i32 + 1).collect();
+            section.add("ElementConnectivity", "DataArray_t", Data::Int(nodes))?;
             section.add(REFERENCE, "Descriptor_t", Data::Text(&reference.to_string()))?;
             if let Some(called) = &called {
                 section.add(NAME, "Descriptor_t", Data::Text(called))?;
@@ -180,7 +173,7 @@ fn elements(zone: &mut Node, data: &Dataset) -> Result<Vec<String>, hdf5_pure::E
                 let family = families.entry(shown.clone()).or_insert_with(|| of_families.name(&shown, LONGEST));
                 let mut condition =
                     Node::new(&of_conditions.name(&shown, LONGEST), "BC_t", Data::Text("FamilySpecified"))?;
-                condition.add("PointRange", "IndexRange_t", Data::Shaped(vec![first as i32, last as i32], [2, 1]))?;
+                condition.add("PointRange", "IndexRange_t", Data::Shaped(vec![first, last], [2, 1]))?;
                 condition.add("GridLocation", "GridLocation_t", Data::Text("FaceCenter"))?;
                 condition.add("FamilyName", "FamilyName_t", Data::Text(family))?;
                 conditions.group.add_group(condition.finish());

@@ -95,7 +95,11 @@ impl<'p> Items<'p> {
             let Place::Heavy(name, _) = item.place else { continue };
             if !files.contains_key(name) {
                 let heavy = beside(path, name);
-                files.insert(name.to_owned(), Hdf5::of_bytes(&heavy, error::read(&heavy)?)?);
+                let bytes = error::read(&heavy).map_err(|error| {
+                    let message = format!("its arrays cannot be had: {error}; the two files belong together");
+                    error::at(path, format!("line {}", item.line), message)
+                })?;
+                files.insert(name.to_owned(), Hdf5::of_bytes(&heavy, bytes)?);
             }
         }
         Ok(Self { path, files })

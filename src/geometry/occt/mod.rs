@@ -190,8 +190,7 @@ impl OcctModel {
         load::read_saved(path)
     }
 
-    /// Has OpenCASCADE prepare the trimming of each face, on which it crashes for some damaged boundaries. A process that must live does that
-    /// only after another has.
+    /// Prepares the trimming of all faces. OpenCASCADE crashes at that on some damaged models, so a child process does it first.
     pub fn try_trimming(&self) {
         let mut evaluator = self.evaluator();
         for (number, face) in self.topology.faces.iter().enumerate() {

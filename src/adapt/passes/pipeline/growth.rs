@@ -5,8 +5,9 @@
 //! edges are cut until the wall is flat between their ends, whatever their length, and each cut asks for more. Sizes may differ by many
 //! orders within a cell, or be many times the domain in some directions.
 use super::Pipeline;
-use crate::adapt::core::ids::{FACE, TetId, VertexId};
-use crate::mesh::vector::{area2, norm, volume6};
+use crate::adapt::core::ids::{FACE, TetId};
+use crate::adapt::core::measure;
+use crate::mesh::vector::{area2, norm};
 use crate::metric::Sym3;
 use crate::tasks::GRAIN;
 
@@ -25,17 +26,10 @@ const ALWAYS_ALLOWED: f64 = 1_000.0;
 const FOR_THE_SURFACE: f64 = 20_000.0;
 
 impl Pipeline<'_, '_> {
-    /// Complexity of the metric on the mesh as it is: Σ √det M̄ |k| over the tetrahedra, M̄ the mean of their vertices.
+    /// Complexity of the metric on the mesh as it is.
     fn complexity(&self) -> f64 {
         let store = &self.context.store;
-        self.team().sum(GRAIN, store.tet_bound(), |range| {
-            let of = |vertices: [VertexId; 4]| {
-                let [a, b, c, d] = vertices.map(|v| store.position(v));
-                let trace: f64 = vertices.iter().map(|&v| store.log(v).trace()).sum();
-                (0.125 * trace).exp() * volume6(a, b, c, d) / 6.0
-            };
-            store.live_tets_in(range).map(|t| of(store.vertices(t))).sum()
-        })
+        measure::complexity(self.team(), store, |v| store.log(v).trace())
     }
 
     /// Complexity of the source within the mesh, between its vertices too: those of a coarse mesh may miss a layer.

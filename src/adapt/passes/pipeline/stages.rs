@@ -1,21 +1,21 @@
-//! Stages: where a metric asks for cells many times as flat as those of the mesh, the mesh comes to it by factors that it can represent.
+//! Stages: where a metric asks for cells many times flatter than those of the mesh, the mesh comes to it step by step.
 //!
-//! What that saves, and how the factors were chosen: docs/decisions/stages.md.
+//! What that saves, and how the limits were chosen: docs/decisions/stages.md.
 use super::Pipeline;
 
-/// In a stage sizes shrink by no more than this factor, beyond the direction in which they shrink least.
+/// A stage makes cells flatter by no more than this factor.
 const FACTOR: f64 = 4.0;
 
-/// There are stages where the source's complexity is so many times that of a stage of this factor.
+/// There are stages at all where the source's complexity is the first of these times that of a stage with the second as its factor.
 const ENTRY: (f64, f64) = (3.0, 16.0);
 
-/// There is another stage where the source's complexity is so many times its own.
+/// There is another stage where the source's complexity is so many times that of the stage.
 const MUCH: f64 = 1.3;
 
-/// Each stage has so many times the complexity of the one before, else it is the last: what is frozen stays coarse.
+/// A stage must have so many times the complexity of the one before: what is frozen stays coarse, whatever is asked.
 const FINER: f64 = 1.1;
 
-/// Most stages, which is more than the range of doubles has room for.
+/// Most stages. More than doubles have room for: each makes cells four times flatter.
 const STAGES: usize = 600;
 
 /// Most passes in a stage.
