@@ -18,18 +18,28 @@ const NOT_LOADED: i32 = 127;
 /// How long a run may take: what hangs, hangs for ever.
 const PATIENCE: Duration = Duration::from_secs(100);
 
-/// MB: from less than the program needs to be loaded.
-const LEAST: f64 = 50.0;
-
 /// MB: enough for all that is tried here.
-const MOST: f64 = 600.0;
+const MOST: u64 = 600;
 
-/// All limits are tried where this is set, and few of them else, other ones for each command.
-fn limits(command: usize) -> impl Iterator<Item = u64> {
+/// The MB from which on the program begins at all: with OpenCASCADE's libraries several times what it is without.
+fn least(place: &Place) -> u64 {
+    let (mut not, mut does) = (10, MOST);
+    assert!(begins(does, place), "the program does not begin with {does} MB");
+    while does - not > 4 {
+        let middle = (not + does) / 2;
+        if begins(middle, place) { does = middle } else { not = middle }
+    }
+    does
+}
+
+/// From less than the program needs to begin. All limits are tried where GEO_ADAPT_LONG is set, and few of them else, other ones for
+/// each command.
+fn limits(command: usize, least: u64) -> impl Iterator<Item = u64> {
     let count = 20;
     let every = if std::env::var_os("GEO_ADAPT_LONG").is_some() { 1 } else { 5 };
     // More of them near the least, where most ends are.
-    let at = move |k: usize| LEAST * (MOST / LEAST).powf((k as f64 / (count - 1) as f64).powi(2));
+    let first = 0.9 * least as f64;
+    let at = move |k: usize| first * (MOST as f64 / first).powf((k as f64 / (count - 1) as f64).powi(2));
     (0..count).filter(move |k| k % every == command % every).map(move |k| at(k) as u64)
 }
 
@@ -153,9 +163,10 @@ fn is_well(words: &[String], (code, said): (Option<i32>, &str), begins: impl FnO
 #[test]
 fn a_run_that_memory_ends_does_not_sleep_for_ever() {
     let place = Place::new();
+    let least = least(&place);
     let (mut wrong, mut ended, mut done) = (Vec::new(), 0, 0);
     for (k, words) in place.commands().iter().enumerate() {
-        for megabytes in limits(k) {
+        for megabytes in limits(k, least) {
             match run(words, megabytes, &place) {
                 None => wrong.push(format!("{megabytes} MB: {words:?} does not end")),
                 Some((code, said)) if !is_well(words, (code, &said), || begins(megabytes, &place)) => {
@@ -168,7 +179,10 @@ fn a_run_that_memory_ends_does_not_sleep_for_ever() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(ended > 5 && done > 5, "{ended} runs found no memory, and {done} enough");
+    assert!(
+        ended > 5 && done > 5,
+        "{ended} runs found no memory, and {done} enough; the program begins with {least} MB"
+    );
 }
 
 #[test]
