@@ -1,4 +1,4 @@
-//! A mesh grows as long as there is memory for it.
+//! A mesh grows as long as there is memory for it, and as far as it may; and what will come is told before.
 #![cfg(target_os = "linux")]
 mod common;
 
@@ -28,4 +28,46 @@ fn a_mesh_that_fits_into_the_memory_that_is_there_is_not_called_overgrown() {
         let vertices = report["statistics"]["vertices"].as_u64().unwrap();
         assert!(report["overgrown"] == false && vertices > 20_000, "{vertices} vertices, {}", report["overgrown"]);
     }
+}
+
+/// Runs `adapt` on a cube for edges of this length; its exit code, what it says, its mesh's vertices and its report.
+fn adapted(size: f64, arguments: &[&str]) -> (Option<i32>, String, usize, serde_json::Value) {
+    let work = Workplace::new();
+    let input = cube(6, |_| 1);
+    let metric = work.metric(&input, |_| isotropic(size));
+    let (mesh, report) = (work.mesh(&input), work.path("report.json"));
+    let mut run = work.command(&mesh, &["--metric", &metric, "--threads", "1", "--report", &text(&report)]);
+    let run = run.args(arguments).output().unwrap();
+    let made = geo_adapt::mesh::io::read_mesh(&work.path("out.meshb")).unwrap().content;
+    assert!(geo_adapt::mesh::validity::check(&made).is_valid());
+    let report = serde_json::from_slice(&std::fs::read(&report).unwrap()).unwrap();
+    (run.status.code(), stderr(&run), made.vertices.len(), report)
+}
+
+#[test]
+fn a_mesh_with_as_many_vertices_as_it_may_have_is_written_and_the_exit_code_is_3() {
+    let (code, said, vertices, report) = adapted(0.02, &["--max-vertices", "3000"]);
+    assert_eq!(code, Some(3), "{said}");
+    assert!((2900..=3000).contains(&vertices), "{vertices}");
+    assert_eq!(report["growth_end"], "max-vertices");
+    assert!(said.contains("will end with 3000 vertices"), "{said}");
+    // One that needs fewer is not touched by it.
+    let (code, said, vertices, report) = adapted(0.1, &["--max-vertices", "3000"]);
+    assert_eq!((code, report["growth_end"].is_null()), (Some(0), true), "{said}");
+    assert!(vertices < 3000 && !said.contains("will end"), "{vertices}: {said}");
+}
+
+#[test]
+fn what_a_run_will_take_is_told_before() {
+    for size in [0.1, 0.05] {
+        let (_, said, vertices, report) = adapted(size, &[]);
+        let forecast = report["forecast"]["vertices"].as_f64().unwrap();
+        let ratio = forecast / vertices as f64;
+        assert!((0.8..1.25).contains(&ratio), "{forecast} for {vertices}");
+        assert!(said.contains("the metric asks for about"), "{said}");
+        let (seconds, bytes) = (report["forecast"]["seconds"].as_f64(), report["forecast"]["bytes"].as_f64());
+        assert!(seconds.is_some_and(|seconds| seconds > 0.0) && bytes.is_some_and(|bytes| bytes > 1e5), "{report}");
+    }
+    let (_, said, _, _) = adapted(0.1, &["--quiet"]);
+    assert_eq!(said, "");
 }

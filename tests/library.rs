@@ -29,7 +29,7 @@ fn adapt(adapter: &mut Adapter, view: &MeshView, metric: &[[f64; 6]]) -> Adapted
     let vertices = adapted.mesh.vertices.len();
     assert!([adapted.metric.len(), adapted.parents.tets.len(), adapted.parents.weights.len()] == [vertices; 3]);
     assert!(adapted.metric.iter().all(|&terms| Sym3(terms).is_spd()));
-    assert!(adapted.off_model.is_empty() && !adapted.overgrown);
+    assert!(adapted.off_model.is_empty() && adapted.growth_end.is_none());
     adapted
 }
 

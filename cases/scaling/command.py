@@ -7,6 +7,9 @@ Everything lies under out/threads.
 
 With --repetitions the deterministic scheduler runs so many times on each number of threads and with each of --backends, on this case and on
 polar-1 (four cycles in one process), and nothing else is done: exit code 0 when all meshes of a case are the same file.
+
+With --simulate the times of more threads than there are come from the measured tasks of one (GEO_ADAPT_SIMULATE), and nothing else is done:
+exit code 0 when the forecast for two threads is within 3 % of two threads.
 """
 
 import argparse
@@ -20,6 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from comparing.adapters import GeoAdapt  # noqa: E402
 from comparing.cases import CUBE_CYLINDER, OWN_START, natural  # noqa: E402
 from judging import cycles  # noqa: E402
+from scaling.simulation import simulate  # noqa: E402
 
 OUT = cycles.ROOT / "out" / "threads"
 OPERATIONS = ["insertion", "collapse", "reconnection", "smoothing"]
@@ -35,6 +39,8 @@ def arguments():
     parser.add_argument("--program", type=Path, required=True, help="a geo-adapt that is built (default: it is built, release)")
     parser.add_argument("--repetitions", type=int, metavar="N", help="only whether the same mesh comes N times from each")
     parser.add_argument("--backends", nargs="+", default=["stealing", "rayon"], help="those of --repetitions (default: stealing rayon)")
+    parser.add_argument("--simulate", type=lambda text: [int(count) for count in text.split(",")], metavar="N,N,…",
+                        help="forecasts for so many threads")
     options = parser.parse_args()
     if not options.program.is_file():
         parser.error(f"{options.program} is not there")
@@ -138,6 +144,10 @@ def main():
     options = arguments()
     OUT.mkdir(parents=True, exist_ok=True)
     start, _ = natural(GeoAdapt(options.program))
+    if options.simulate:
+        words = [options.program, "adapt", start, "-o", OUT / "simulated.meshb", "--cad", CUBE_CYLINDER, "--analytic", "polar-2",
+                 "--complexity", options.complexity]
+        return simulate(words, OUT, options.simulate, options.repetitions or 3)
     if options.repetitions:
         return repeat(options, start)
     cycles.say(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; behind seconds the speed-up, then the efficiency on the cores that there are")

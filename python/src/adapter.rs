@@ -218,7 +218,7 @@ impl Options {
 fn give(py: Python<'_>, done: Done, stopped: bool) -> PyResult<Bound<'_, PyDict>> {
     let Done { adapted, names, report, complexity } = done;
     let crossings = adapted.crossings.count;
-    let AdaptedMesh { mesh, metric, parents, place, off_model, held, doubled, overgrown, deviating, .. } = adapted;
+    let AdaptedMesh { mesh, metric, parents, place, off_model, held, doubled, growth_end, deviating, .. } = adapted;
     let Parents { tets, weights, outside, farthest } = parents;
     let all = PyDict::new(py);
     all.set_item("mesh", arrays::give_mesh(py, mesh)?)?;
@@ -231,7 +231,7 @@ fn give(py: Python<'_>, done: Done, stopped: bool) -> PyResult<Bound<'_, PyDict>
     all.set_item("off_model", PyArray1::from_vec(py, off_model))?;
     all.set_item("held", PyArray1::from_vec(py, held))?;
     all.set_item("doubled", PyArray1::from_vec(py, doubled))?;
-    all.set_item("overgrown", overgrown)?;
+    all.set_item("overgrown", growth_end.is_some())?;
     all.set_item("deviating", deviating)?;
     all.set_item("crossings", crossings)?;
     all.set_item("names", names)?;

@@ -7,7 +7,7 @@ use crate::adapt::core::required::{Freeze, Required};
 use crate::adapt::extract::{self, Extracted, References};
 use crate::adapt::operations::insertion::centroid::PointCreation;
 use crate::adapt::operations::reconnection::criteria::Criterion;
-use crate::adapt::passes::pipeline::Pipeline;
+use crate::adapt::passes::pipeline::{GrowthEnd, Pipeline};
 use crate::adapt::schedule::work::{KINDS, Observer, Work};
 use crate::adapt::schedule::{Execution, Grains, Scheduler};
 use crate::adapt::surface::bounds::SurfaceBounds;
@@ -37,6 +37,8 @@ pub struct Options {
     pub freeze: Freeze,
     /// How far surface triangles may deviate from the model.
     pub surface: SurfaceBounds,
+    /// Most vertices: a mesh that has so many gets no more.
+    pub max_vertices: Option<usize>,
 }
 
 impl Default for Options {
@@ -49,6 +51,7 @@ impl Default for Options {
             grains: Grains::default(),
             freeze: Freeze::default(),
             surface: SurfaceBounds::default(),
+            max_vertices: None,
         }
     }
 }
@@ -59,9 +62,8 @@ pub struct Adapted {
     pub extracted: Extracted,
     /// Time and counts by operation, in the order of [`super::Kind`].
     pub work: [Work; KINDS],
-    /// Whether the mesh stopped growing, since it had far more vertices than the metric's complexity accounts for, or since
-    /// there was no memory for more.
-    pub overgrown: bool,
+    /// Why the mesh stopped growing before its metric was met; none where it was met.
+    pub growth_end: Option<GrowthEnd>,
     /// Bad tetrahedra that repair left untried, since there were too many of them.
     pub unrepaired: usize,
     /// Surface triangles that deviate from the model by more than the bounds that were given.
@@ -104,11 +106,13 @@ pub fn adapt(
     pipeline.points = options.points;
     pipeline.crowded = crowded;
     pipeline.surface = options.surface;
+    pipeline.max_vertices = options.max_vertices.unwrap_or(usize::MAX);
     pipeline.run();
     if pipeline.torn {
         return Err(fill::Error::Torn);
     }
-    let (work, unprojected, overgrown) = (pipeline.work, std::mem::take(&mut pipeline.unprojected), pipeline.overgrown);
+    let (work, unprojected, growth_end) =
+        (pipeline.work, std::mem::take(&mut pipeline.unprojected), pipeline.growth_end);
     let unrepaired = pipeline.unrepaired;
     let geometry = pipeline.states.iter().map(|state| state.evaluator.spent).sum();
     let deviating = pipeline.deviating();
@@ -122,7 +126,7 @@ pub fn adapt(
     };
     let extracted = extract::extract(team, &context, mesh, &refs, &unprojected);
     stage("extracted");
-    Ok(Adapted { extracted, work, overgrown, unrepaired, deviating, geometry })
+    Ok(Adapted { extracted, work, growth_end, unrepaired, deviating, geometry })
 }
 
 /// The mesh in a store, coarsened first where it has far too many vertices. Returns whether it had.

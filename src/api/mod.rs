@@ -47,8 +47,11 @@ pub use view::{MeshView, coordinates};
 
 // What these are made of.
 #[doc(inline)]
+pub use crate::adapt::forecast::Forecast;
+#[doc(inline)]
 pub use crate::adapt::{
-    Counts, Criterion, Freeze, Grains, Kind, Observer, Options, PointCreation, Refusal, Scheduler, SurfaceBounds,
+    Counts, Criterion, Freeze, Grains, GrowthEnd, Kind, Observer, Options, PointCreation, Refusal, Scheduler,
+    SurfaceBounds,
 };
 #[doc(inline)]
 pub use crate::geometry::classify::Classification;

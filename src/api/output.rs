@@ -1,6 +1,6 @@
 //! What comes out.
 use super::MeshView;
-use crate::adapt::{Adapted, Extracted};
+use crate::adapt::{Adapted, Extracted, GrowthEnd};
 use crate::geometry::Model;
 use crate::geometry::classify::Classification;
 #[cfg(feature = "occt")]
@@ -29,8 +29,8 @@ pub struct AdaptedMesh {
     /// Vertices of the mesh that went in, in which alone its parts hung together there: each part got one of its own. One that was
     /// shared by three parts is listed twice.
     pub doubled: Vec<u32>,
-    /// Whether the mesh stopped growing, having far more vertices than the metric accounts for, or no memory for more.
-    pub overgrown: bool,
+    /// Why the mesh stopped growing before its metric was met; none where it was met.
+    pub growth_end: Option<GrowthEnd>,
     /// Surface triangles beyond the bounds of the surface that were set.
     pub deviating: usize,
     /// Where the boundary passes through itself: triangles of `mesh`, with the first few.
@@ -93,7 +93,7 @@ impl AdaptedMesh {
             off_model,
             held,
             doubled,
-            overgrown: adapted.overgrown,
+            growth_end: adapted.growth_end,
             deviating: adapted.deviating,
             crossings,
         }

@@ -34,6 +34,7 @@ mod plan;
 mod pool;
 mod rows;
 mod scope;
+mod simulation;
 mod sort;
 mod stage;
 mod strategy;
@@ -43,6 +44,7 @@ pub use plan::{Backend, Plan, Strategy};
 pub use pool::{Error, Pool};
 pub use rows::Rows;
 pub use scope::{Scope, Task};
+pub use simulation::{section, threads_to_simulate, told as simulation_told};
 pub use stage::{stage, tell_stages};
 pub use team::{GRAIN, Team};
 

@@ -9,6 +9,7 @@ use super::nested;
 use super::place::{self, Place};
 use super::plan::{Backend, Plan};
 use super::scope::Scope;
+use super::simulation;
 use super::strategy::{Loop, chunk};
 use std::io;
 use std::ops::Range;
@@ -50,10 +51,22 @@ impl Pool {
     /// # Errors
     /// When the system refuses to start them.
     pub fn new(threads: usize) -> Result<Self, Error> {
-        let core = Arc::new(Core::new(threads.max(1)));
+        let core = Arc::new(Core::new(threads.max(1), false));
         let stealing = (threads > 1).then(|| Stealing::new(&core)).transpose();
         let stealing = stealing.map_err(|reason| Error::Threads { threads, reason })?;
         Ok(Self { core, gate: Mutex::default(), stealing, engines: Default::default(), making: Mutex::default() })
+    }
+
+    /// So many threads that are not there ([`super::simulation`]).
+    pub fn simulated(threads: usize) -> Self {
+        super::simulation::begin(threads.max(1));
+        let core = Arc::new(Core::new(threads.max(1), true));
+        Self { core, gate: Mutex::default(), stealing: None, engines: Default::default(), making: Mutex::default() }
+    }
+
+    /// Whether everything runs in place.
+    fn is_alone(&self) -> bool {
+        self.core.threads == 1 || self.core.is_simulated
     }
 
     /// Number of threads.
@@ -69,7 +82,7 @@ impl Pool {
         if let Some(name) = (!backend.is_built()).then_some(backend.name()) {
             return Err(Error::Missing(name));
         }
-        if self.threads() > 1 { self.engine(backend).map(|_| ()) } else { Ok(()) }
+        if !self.is_alone() { self.engine(backend).map(|_| ()) } else { Ok(()) }
     }
 
     /// Calls `f(thread, range)` for each chunk of `plan.grain` items, the last one shorter, in any order; returns when all is done.
@@ -82,8 +95,12 @@ impl Pool {
         F: Fn(usize, Range<usize>) + Sync,
     {
         let grain = plan.grain.max(1);
-        if self.threads() == 1 || items <= grain {
+        if self.is_alone() || items <= grain {
             let chunks = || (0..items.div_ceil(grain)).map(|index| chunk(index, grain, items));
+            if self.core.is_simulated && place::find(self.core.id).is_none() {
+                self.alone(|thread| simulation::each(chunks().map(|range| || f(thread, range))));
+                return;
+            }
             if self.alone(|thread| chunks().for_each(|range| f(thread, range))) {
                 return;
             }
@@ -108,7 +125,7 @@ impl Pool {
             let body = body.take().expect("called once");
             result = Some(catch_unwind(AssertUnwindSafe(|| body(&Scope::new(queue, &group, in_place)))));
         };
-        if self.threads() == 1 {
+        if self.is_alone() {
             self.alone(|_| {
                 let queue = InPlace::new(&self.core);
                 call(&queue, Some(&queue));
@@ -127,7 +144,7 @@ impl Pool {
     /// When one did, and when called within a task of the same pool, unless it has one thread.
     pub fn on_each_thread(&self, work: &(dyn Fn(usize) + Sync)) {
         let Some(stealing) = &self.stealing else {
-            self.alone(work);
+            self.alone(|_| (0..self.threads()).for_each(work));
             return;
         };
         assert!(

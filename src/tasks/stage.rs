@@ -18,6 +18,7 @@ pub fn tell_stages() {
 /// Says, if the trace is wanted, that a stage is over: its seconds since the one before by the clock and (where the system tells it:
 /// Linux) on the processors, those since the first, the memory in use now and the most there was, MB.
 pub fn stage(name: &str) {
+    super::simulation::end_stage(name);
     if !TELLS.load(Relaxed) && std::env::var_os("GEO_ADAPT_STAGES").is_none() {
         return;
     }

@@ -1,35 +1,33 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
+mod forecast;
 mod growth;
+mod refinement;
+mod repair;
 mod stages;
 mod surface_bounds;
 mod thinning;
 mod voids;
 
-use crate::adapt::core::context::{Context, LONG, Limits};
+pub use growth::GrowthEnd;
+
+use crate::adapt::core::context::{Context, Limits};
 use crate::adapt::core::edge_list;
 use crate::adapt::core::edge_list::EdgeItem;
-use crate::adapt::core::id_pool::ID_BLOCK;
 use crate::adapt::core::ids::{TetId, VertexId};
-use crate::adapt::core::measure::{is_longer, is_shorter};
+use crate::adapt::core::measure::is_shorter;
 use crate::adapt::core::refusal::{Counts, Refusal};
 use crate::adapt::core::store::Store;
 use crate::adapt::core::worker::State;
 use crate::adapt::operations::collapse::onto_end::Collapse;
-use crate::adapt::operations::insertion::centroid::InsertCentroids;
-use crate::adapt::operations::insertion::centroid::{self, PointCreation};
-use crate::adapt::operations::insertion::edge_split::Split;
-use crate::adapt::operations::insertion::metric_orthogonal;
-use crate::adapt::operations::insertion::metric_orthogonal::InsertMetricOrthogonal;
+use crate::adapt::operations::insertion::centroid::PointCreation;
 use crate::adapt::operations::projection::{Project, RemoveUnprojected};
 use crate::adapt::operations::reconnection::criteria::Criterion;
 use crate::adapt::operations::reconnection::sweep::Reconnect;
-use crate::adapt::operations::repair::GAIN;
-use crate::adapt::operations::repair::Repair;
 use crate::adapt::operations::smoothing::vertex::Smooth;
 use crate::adapt::schedule::work::{KINDS, Kind, Observer, Work};
 use crate::adapt::schedule::{self, Execution, Operation};
 use crate::adapt::surface::bounds::SurfaceBounds;
-use crate::tasks::{GRAIN, Team};
+use crate::tasks::{GRAIN, Team, section};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
 
@@ -48,24 +46,8 @@ const SHAPE_PASSES: usize = 6;
 /// After so many shape passes, vertices that are still unprojected are removed.
 const PATIENCE: usize = 1;
 
-/// Tetrahedra below this mean ratio are repaired.
-const REPAIR_BELOW: f64 = 0.5;
-
-/// In a run, repair tries at most this share of the tetrahedra of the mesh, and [`REPAIR_FEW`]. It is dear: one costs as much as to look
-/// at some thousand flips. Where a metric can be met, fewer tetrahedra are below the limit; where it cannot, repair would not end.
-const REPAIR_SHARE: f64 = 0.25;
-
-/// Vertices of more tetrahedra than this the end-game does not take out: each of the tetrahedra would try it again.
-const REPAIR_BALL: usize = 256;
-
-/// Tetrahedra that the end-game tries however small the mesh.
-const REPAIR_FEW: f64 = 500.0;
-
 /// The store is renumbered when it has grown by this factor.
 const OUT_OF_ORDER: usize = 2;
-
-/// Room for so many tetrahedra a new vertex. Six are usual.
-const TETS_A_VERTEX: usize = 12;
 
 /// Limits of the size passes: only what is bad is flipped and smoothed.
 fn size_limits() -> Limits {
@@ -120,10 +102,16 @@ pub struct Pipeline<'c, 'm> {
     pass: usize,
     /// Vertices of the mesh that was given.
     input: usize,
-    /// Whether the mesh has more vertices than its metric accounts for, so that nothing is inserted any more.
-    pub overgrown: bool,
+    /// Why nothing is inserted any more, before the metric was met.
+    pub growth_end: Option<GrowthEnd>,
+    /// Most vertices.
+    pub max_vertices: usize,
     /// Complexity that the metric is known to ask for.
     asked: f64,
+    /// Complexity of the source on the mesh that was given.
+    complexity_given: f64,
+    /// Vertices that the metric asks for, as far as is known.
+    expected: f64,
     /// Tetrahedra that the end-game tried.
     repaired: usize,
     /// Tetrahedra that it left untried, since there were too many.
@@ -161,7 +149,10 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             looked: [0; KINDS],
             pass: 0,
             input,
-            overgrown: false,
+            growth_end: None,
+            max_vertices: usize::MAX,
+            expected: 0.0,
+            complexity_given: 0.0,
             asked: 0.0,
             repaired: 0,
             unrepaired: 0,
@@ -175,15 +166,17 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     pub fn run(&mut self) {
         self.limit(size_limits());
         self.observer.vertices(self.live());
+        self.forecast();
         if self.crowded {
             self.thin();
         }
         self.come_near();
         for _ in 0..SIZE_PASSES {
-            if self.size_pass() || self.overgrown || self.observer.stop() {
+            if self.size_pass() || self.growth_end.is_some() || self.observer.stop() {
                 break;
             }
             self.pass += 1;
+            self.tell_share_of_sizes();
         }
         if self.observer.stop() {
             return;
@@ -206,6 +199,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
                 break;
             }
             before = after;
+            self.tell_share_of_shapes(pass);
         }
     }
 
@@ -282,43 +276,6 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.smooth();
     }
 
-    /// Repairs the tetrahedra below the limit. Edges may become a little longer than elsewhere.
-    fn repair(&mut self) {
-        let looked = self.looked;
-        self.limit(Limits {
-            improve_below: REPAIR_BELOW,
-            flip_below: REPAIR_BELOW,
-            longest_new: 1.3 * LONG,
-            shortest_new: 0.0,
-            insert_floor: 1.0,
-            insert_loss: GAIN,
-            ball: REPAIR_BALL,
-            ..shape_limits()
-        });
-        for _ in 0..3 {
-            let mut items = self.tets(|store, t| store.quality(t) < REPAIR_BELOW);
-            let store = &self.context.store;
-            self.team().sort_by(&mut items, |x, y| store.quality(*x).total_cmp(&store.quality(*y)).then(x.cmp(y)));
-            self.no_more_than_repaired(&mut items);
-            if self.observer.stop() || self.sweep(Kind::Repair, &Repair, &items).done == 0 {
-                break;
-            }
-            self.reconnect(Criterion::MeanRatio, 2);
-            self.smooth();
-        }
-        // Here flips looked at the worst tetrahedra only.
-        self.looked = looked;
-    }
-
-    /// Leaves as many items of repair as it may still try, the worst ones.
-    fn no_more_than_repaired(&mut self, items: &mut Vec<TetId>) {
-        let most = (REPAIR_FEW + REPAIR_SHARE * self.live_tets() as f64) as usize;
-        let left = most.saturating_sub(self.repaired);
-        self.unrepaired = items.len().saturating_sub(left);
-        items.truncate(left);
-        self.repaired += items.len();
-    }
-
     /// Brings unprojected vertices to the model; after some passes they are removed instead.
     fn settle(&mut self, pass: usize) {
         self.project();
@@ -349,77 +306,6 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     fn changes(&self) -> u64 {
         self.work[Kind::Split as usize].counts.done + self.work[Kind::Collapse as usize].counts.done
-    }
-
-    /// Splits long edges, or refines in another way, and reconnects.
-    fn refine(&mut self) {
-        if !self.may_grow() {
-            return;
-        }
-        let refined = match self.points {
-            PointCreation::Edge => false,
-            PointCreation::Centroid => self.create(),
-            PointCreation::Eigenvector => self.extend(),
-        };
-        if refined {
-            return;
-        }
-        self.split();
-        self.split_deviating();
-        self.reconnect(self.criterion, 1);
-    }
-
-    /// Splits long edges, and projects the new vertices that are not on the model yet.
-    fn split(&mut self) {
-        if !self.may_grow() {
-            return;
-        }
-        self.keep_order();
-        let mut items = self.long_edges();
-        self.no_more_than_allowed(&mut items);
-        if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
-            self.project();
-        }
-    }
-
-    /// Refines at centroids. Returns whether that changed much; then edges need not be split yet.
-    fn create(&mut self) -> bool {
-        if self.observer.stop() {
-            return false;
-        }
-        let mut items = centroid::active_tets(self.team(), self.context);
-        self.no_more_than_allowed(&mut items);
-        let done = self.sweep(Kind::Split, &InsertCentroids, &items).done;
-        self.project();
-        self.reconnect(self.criterion, 1);
-        !self.is_little(done)
-    }
-
-    /// Splits edges so long that a point at unit distance from one end would leave bad tetrahedra, and all long edges on the model. Then
-    /// creates points along eigenvectors. Returns whether that changed much; then no other edges need be split yet.
-    fn extend(&mut self) -> bool {
-        let long = self.context.limits.long;
-        self.context.limits.long = metric_orthogonal::FAR * long;
-        self.split();
-        self.context.limits.long = long;
-        self.looked[Kind::Split as usize] = 0;
-        let mut items = self.long_edges();
-        let store = &self.context.store;
-        items.retain(|edge| store.dimension(edge.a).max(store.dimension(edge.b)) < 3);
-        self.no_more_than_allowed(&mut items);
-        if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {
-            self.project();
-        }
-        self.looked[Kind::Split as usize] = 0;
-        self.reconnect(self.criterion, 1);
-        if self.observer.stop() {
-            return false;
-        }
-        let mut items = metric_orthogonal::active_vertices(self.team(), self.context);
-        self.no_more_than_allowed(&mut items);
-        let done = self.sweep(Kind::Split, &InsertMetricOrthogonal, &items).done;
-        self.reconnect(self.criterion, 1);
-        !self.is_little(done)
     }
 
     /// Collapses short edges.
@@ -485,21 +371,6 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         }
     }
 
-    /// Makes room for so many new vertices, with the tetrahedra about them, and for what flips add.
-    fn make_room(&mut self, new: usize) {
-        let team = self.team();
-        let store = &mut self.context.store;
-        // Threads and parts take ids in whole blocks, and some take more blocks than others.
-        let slack = ID_BLOCK * (self.states.len() + 2 * schedule::deterministic::MOST_PARTS);
-        let vertices = 2 * new + slack;
-        let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
-        let room = store.room();
-        if room.0 < vertices || room.1 < tets {
-            // Without memory the mesh stays as large as it is.
-            self.overgrown |= !store.reserve(team, vertices, tets);
-        }
-    }
-
     /// One sweep of an operation over its items.
     fn sweep<O: Operation>(&mut self, kind: Kind, operation: &O, items: &[O::Item]) -> Counts {
         if items.is_empty() || self.torn {
@@ -508,6 +379,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.make_room(if kind == Kind::Split { items.len() } else { 0 });
         self.context.store.tick();
         let start = Instant::now();
+        section(Some(kind.name()));
         self.find_voids();
         self.observer.begin(kind, self.pass, items.len());
         let advance = |n: usize| {
@@ -516,6 +388,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             kind == Kind::Project || !self.observer.stop()
         };
         let counts = schedule::run(operation, items, self.context, &mut self.states, (self.execution, kind), &advance);
+        section(None);
         self.observer.end(&counts);
         if counts.refused[Refusal::Crossing as usize] > 0 {
             // There may be room once what lies across the void has changed.
@@ -526,17 +399,6 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         work.sweeps += 1;
         work.time += start.elapsed();
         counts
-    }
-
-    /// Edges to be split: first those on edges of the model, then those on its faces, then those inside; each time the longest first.
-    fn long_edges(&mut self) -> Vec<EdgeItem> {
-        let since = self.begin(Kind::Split);
-        let (store, limit) = (&self.context.store, self.context.limits.long);
-        let found = edge_list::listed(self.team(), store, since, |a, b| is_longer(a, b, limit));
-        let dimension = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
-        edge_list::in_order(self.team(), &found, |edge| {
-            (dimension(&edge.item) + 1) * edge_list::CLASSES - 1 - u32::from(edge.class)
-        })
     }
 
     /// Edges to be collapsed, short ones first.

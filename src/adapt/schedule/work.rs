@@ -1,5 +1,6 @@
 //! What the passes report: kinds of operations with their times and counts, and the observer.
 use crate::adapt::core::refusal::Counts;
+use crate::adapt::forecast::Forecast;
 use std::time::Duration;
 
 /// Number of kinds of operations.
@@ -56,6 +57,10 @@ pub struct Work {
 pub trait Observer: Sync {
     /// The passes begin with so many vertices.
     fn vertices(&self, _count: usize) {}
+    /// What the passes will take, told once they begin.
+    fn forecast(&self, _forecast: &Forecast) {}
+    /// This share of the work is done, from 0 to 1, and so many vertices are expected at the end: told after each pass.
+    fn share(&self, _done: f64, _vertices: f64) {}
     /// A sweep begins.
     fn begin(&self, _kind: Kind, _pass: usize, _items: usize) {}
     /// This many more items are done.

@@ -12,11 +12,11 @@ mod source;
 use super::figures::FigureArguments;
 use super::waiting::Waiting;
 use super::{Outcome, interrupt};
-use crate::adapt::meeting::VERTICES_PER_COMPLEXITY;
 use crate::adapt::{self, Adapted, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
 use crate::geometry::classify::keeps_references;
+use crate::memory;
 use crate::metric::Field;
-use crate::tasks::{Backend, Plan, Pool, Strategy, Team, stage};
+use crate::tasks::{Backend, Plan, Pool, Strategy, Team, simulation_told, stage, threads_to_simulate};
 use files::Targets;
 use input::{Given, Input, InputArguments};
 use progress::Progress;
@@ -58,6 +58,10 @@ pub struct Arguments {
     /// Greatest chord error, the distance of boundary triangles from the model: triangles that are farther are split, whatever the metric
     #[arg(long, value_name = "H", value_parser = chord, allow_negative_numbers = true)]
     hausdorff: Option<f64>,
+    /// Most vertices: a mesh that has so many gets no more, is finished as it is and written, and the exit code is 3 [default: as many as there
+    /// is memory for]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
+    max_vertices: Option<u32>,
     /// How the threads share the work
     #[arg(long, value_enum, default_value_t = Scheduler::default())]
     scheduler: Scheduler,
@@ -95,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         return Err("--cycles: the field of --field lies on the first mesh alone; give one cycle, or a --metric".into());
     }
     let threads = arguments.threads.map_or_else(super::cores, usize::from);
-    let pool = Pool::new(threads)?;
+    let pool = threads_to_simulate().map_or_else(|| Pool::new(threads), |threads| Ok(Pool::simulated(threads)))?;
     pool.prepare(arguments.backend)?;
     let plan = Plan { backend: arguments.backend, strategy: arguments.strategy, ..Plan::default() };
     let team = Team::new(&pool, plan);
@@ -119,11 +123,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let adapted = arguments.adapted(team, (&pool, plan), &mut input, (&progress, is_last))?;
         let finished = start.elapsed();
         let line = Waiting::for_what("measuring and writing");
-        let report = Report::new(team, &asked, &input, adapted);
+        let report = Report::new(team, &asked, &input, adapted, progress.forecast());
         stage("report");
         let (mut report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
         drop(line);
         stage("written");
+        simulation_told().into_iter().for_each(crate::cli::tell);
         lost.iter().for_each(crate::cli::note);
         if arguments.cycles > 1 {
             arguments.figures.say(|| format!("cycle {cycle} of {}\n", arguments.cycles))?;
@@ -135,6 +140,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         if report.is_refused() {
             // No command would take it, the next cycle neither.
             return Ok(ExitCode::from(super::INVALID));
+        }
+        if report.is_incomplete() {
+            return Ok(ExitCode::from(memory::end::EXIT_CODE));
         }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
         let (mesh, names) = (std::mem::take(&mut report.mesh), report.names.clone());
@@ -162,10 +170,7 @@ impl Arguments {
         let named = |error| format!("{}: {error}", self.input.mesh.display());
         let freeze = parts::frozen(&self.freeze, &input.mesh, &input.names).map_err(named)?;
         let options = self.options(plan, freeze);
-        if progress.is_shown() {
-            let expected = VERTICES_PER_COMPLEXITY * input.source.complexity(team, &input.mesh);
-            progress.expect(self.input.amount.vertices.unwrap_or(expected));
-        }
+        progress.tell_forecasts(options.max_vertices);
         if !is_last && !options.freeze.surfaces.is_empty() {
             self.check_references(input).map_err(named)?;
         }
@@ -192,6 +197,8 @@ impl Arguments {
     fn options(&self, plan: Plan, freeze: Freeze) -> Options {
         let scheduler = if self.deterministic { Scheduler::Deterministic } else { self.scheduler };
         let surface = SurfaceBounds { normal_deviation: self.normal_deviation, hausdorff: self.hausdorff };
-        Options { criterion: self.criterion, points: self.points, scheduler, plan, grains: self.grain, freeze, surface }
+        let max_vertices = self.max_vertices.map(|most| most as usize).or_else(progress::most_in_memory);
+        let Self { criterion, points, grain: grains, .. } = *self;
+        Options { criterion, points, scheduler, plan, grains, freeze, surface, max_vertices }
     }
 }

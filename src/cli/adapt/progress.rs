@@ -1,6 +1,8 @@
 //! Progress on the terminal: a bar a pass, with counts; and the interrupt.
+use crate::adapt::forecast::{BYTES_A_VERTEX, Forecast, seconds_left};
 use crate::adapt::{Counts, KINDS, Kind, Observer};
 use crate::cli::{interrupt, terminal};
+use crate::memory;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -13,6 +15,24 @@ pub fn finish_on_interrupt() -> &'static AtomicBool {
 
 /// How often the time is drawn anew.
 const TICK: Duration = Duration::from_millis(200);
+
+/// Share of the memory that can be had which a mesh may take.
+const SHARE_OF_MEMORY: f64 = 0.9;
+
+/// As many vertices as there is memory for, as far as the system tells.
+pub fn most_in_memory() -> Option<usize> {
+    memory::available().map(|bytes| (SHARE_OF_MEMORY * bytes as f64 / BYTES_A_VERTEX) as usize)
+}
+
+/// A time that is not known well.
+fn about(seconds: f64) -> String {
+    match seconds {
+        _ if seconds < 1.0 => "less than a second".into(),
+        _ if seconds < 99.5 => format!("about {seconds:.0} s"),
+        _ if seconds < 5_970.0 => format!("about {:.0} min", seconds / 60.0),
+        _ => format!("about {:.0} h", seconds / 3600.0),
+    }
+}
 
 /// Shows what the adapter does.
 pub struct Progress {
@@ -31,6 +51,14 @@ struct State {
     vertices: u64,
     /// How many are expected in the end; 0 where that is not known.
     expected: u64,
+    /// Whether forecasts are told.
+    tells_forecasts: bool,
+    /// Most that there may be.
+    most: Option<usize>,
+    /// What the first run was expected to take.
+    forecast: Option<Forecast>,
+    /// When the passes began, how long they were expected to take, s, and what share of them is done.
+    passes: (Instant, f64, f64),
 }
 
 impl Progress {
@@ -44,19 +72,24 @@ impl Progress {
             done: [0; KINDS],
             vertices: 0,
             expected: 0,
+            tells_forecasts: false,
+            most: None,
+            forecast: None,
+            passes: (Instant::now(), 0.0, 0.0),
         };
         let shown = !terminal::is_quiet() && std::io::IsTerminal::is_terminal(&std::io::stderr());
         Self { shown, stop, state: Mutex::new(state) }
     }
 
-    /// Whether anything is drawn.
-    pub fn is_shown(&self) -> bool {
-        self.shown
+    /// Forecasts are told, and where there are to be more than so many vertices a warning.
+    pub fn tell_forecasts(&self, most: Option<usize>) {
+        let mut state = self.state.lock().expect("no panic while drawing");
+        (state.tells_forecasts, state.most) = (!terminal::is_quiet(), most);
     }
 
-    /// So many vertices are expected.
-    pub fn expect(&self, vertices: f64) {
-        self.state.lock().expect("no panic while drawing").expected = vertices.round() as u64;
+    /// What the last run was expected to take.
+    pub fn forecast(&self) -> Option<Forecast> {
+        self.state.lock().expect("no panic while drawing").forecast
     }
 
     /// The work is over.
@@ -84,13 +117,40 @@ impl State {
         let [_, _, reconnect, smooth, ..] = self.done;
         let (name, now) = (self.kind.name(), self.vertices);
         let expected = if self.expected > 0 { format!(" of about {}", self.expected) } else { String::new() };
-        format!("{name:<12} {now}{expected} vertices, {reconnect} flips, {smooth} moves")
+        let (began, forecast, share) = self.passes;
+        let left = about(seconds_left(began.elapsed().as_secs_f64(), share, forecast));
+        format!("{name:<12} {now}{expected} vertices, {reconnect} flips, {smooth} moves, {left} left")
     }
 }
 
 impl Observer for Progress {
     fn vertices(&self, count: usize) {
         self.state.lock().expect("no panic while drawing").vertices = count as u64;
+    }
+
+    fn forecast(&self, forecast: &Forecast) {
+        let mut state = self.state.lock().expect("no panic while drawing");
+        let Forecast { vertices, seconds, bytes } = *forecast;
+        state.expected = vertices.round() as u64;
+        state.forecast = Some(*forecast);
+        state.passes = (Instant::now(), seconds, 0.0);
+        if !state.tells_forecasts {
+            return;
+        }
+        let megabytes = bytes / 1e6;
+        let (time, vertices) = (about(seconds), vertices.round());
+        crate::cli::tell(format_args!("the metric asks for about {vertices} vertices: {time}, {megabytes:.0} MB"));
+        if let Some(most) = state.most.filter(|&most| vertices > most as f64) {
+            crate::cli::note(format_args!(
+                "the mesh will end with {most} vertices (--max-vertices, or what there is memory for), and not meet the metric"
+            ));
+        }
+    }
+
+    fn share(&self, done: f64, vertices: f64) {
+        let mut state = self.state.lock().expect("no panic while drawing");
+        state.passes.2 = done;
+        state.expected = vertices.round() as u64;
     }
 
     fn begin(&self, kind: Kind, pass: usize, items: usize) {

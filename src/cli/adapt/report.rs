@@ -1,7 +1,8 @@
 //! What was done: the table on the terminal and the JSON.
 use super::input::Input;
 use super::meet::Meeting;
-use crate::adapt::{Adapted, KINDS, Kind, Refusal, Work};
+use crate::adapt::forecast::Forecast;
+use crate::adapt::{Adapted, GrowthEnd, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
 use crate::cli::table::{Table, place};
 use crate::formats::Format;
@@ -64,10 +65,21 @@ pub fn metric_path(mesh: &Path) -> Option<PathBuf> {
 }
 
 /// Why a mesh stopped growing, and what helps.
-const STOPPED_GROWING: &str = "memory ran out, or there are far more vertices than the metric's complexity accounts for: then no mesh meets it. \
-     On a curved wall it asks for cells much flatter than the wall bends within an edge, or its sizes differ by orders of magnitude within \
-     a cell, or are many times the domain in some directions; bound it by --aspect-ratio, --hmax or --gradation, or with --field leave \
-     the geometry in (no --no-geometry)";
+fn why_growth_ended(end: GrowthEnd) -> &'static str {
+    match end {
+        GrowthEnd::NotAccountedFor => {
+            "there are far more vertices than the metric's complexity accounts for: then no mesh meets it. On a curved wall it asks for cells much \
+             flatter than the wall bends within an edge, or its sizes differ by orders of magnitude within a cell, or are many times the domain \
+             in some directions; bound it by --aspect-ratio, --hmax or --gradation, or with --field leave the geometry in (no --no-geometry)"
+        }
+        GrowthEnd::MaxVertices => {
+            "it has as many vertices as it may have, and the metric is not met; give a smaller --complexity, or a greater --max-vertices"
+        }
+        GrowthEnd::Memory => {
+            "there is no memory for more vertices, and the metric is not met; give a smaller --complexity"
+        }
+    }
+}
 
 /// Why bad tetrahedra were left untried.
 const UNREPAIRED: &str = "more than a mesh has that meets its metric, and the last of them were not tried again; bound the metric by \
@@ -92,7 +104,11 @@ pub struct Report {
     /// Boundary vertices, from 0 and in JSON from 1, that found no room on the model: their tetrahedra would be inverted at its closest point.
     #[serde(serialize_with = "from_one")]
     off_model: Vec<u32>,
+    /// Whether it stopped growing before its metric was met, and why.
     overgrown: bool,
+    growth_end: Option<GrowthEnd>,
+    /// What the run was expected to take, before its passes began.
+    forecast: Option<Forecast>,
     /// Tetrahedra of a mean ratio below 0.5 that were left untried in the end, since there were too many.
     unrepaired: usize,
     /// Surface triangles beyond --normal-deviation or --hausdorff.
@@ -115,7 +131,7 @@ pub struct Report {
 
 impl Report {
     /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it.
-    pub fn new(team: Team<'_>, asked: &Asked, input: &Input, adapted: Adapted) -> Self {
+    pub fn new(team: Team<'_>, asked: &Asked, input: &Input, adapted: Adapted, forecast: Option<Forecast>) -> Self {
         let extracted = adapted.extracted;
         let (mut mesh, model) = (extracted.mesh, &input.model);
         let names = match model {
@@ -142,7 +158,9 @@ impl Report {
             statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
             fidelity,
             off_model: extracted.off_model,
-            overgrown: adapted.overgrown,
+            overgrown: adapted.growth_end.is_some(),
+            growth_end: adapted.growth_end,
+            forecast,
             unrepaired: adapted.unrepaired,
             deviating: adapted.deviating,
             crossings: extracted.crossings,
@@ -157,6 +175,11 @@ impl Report {
     /// Whether other commands refuse the mesh on this model: a vertex is off it.
     pub fn is_refused(&self) -> bool {
         !self.off_model.is_empty()
+    }
+
+    /// Whether the mesh ended before its metric was met, since there was to be, or could be, no more of it.
+    pub fn is_incomplete(&self) -> bool {
+        matches!(self.growth_end, Some(GrowthEnd::MaxVertices | GrowthEnd::Memory))
     }
 
     /// The table for the terminal.
@@ -205,8 +228,8 @@ impl Report {
                 ),
             );
         }
-        if self.overgrown {
-            table.row("stopped growing", STOPPED_GROWING);
+        if let Some(end) = self.growth_end {
+            table.row("stopped growing", why_growth_ended(end));
         }
         if self.unrepaired > 0 {
             table.row("left as they are", format_args!("{} bad tetrahedra: {UNREPAIRED}", self.unrepaired));

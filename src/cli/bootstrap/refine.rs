@@ -141,7 +141,7 @@ impl Refined {
         let place = self.adapted.extracted.classification.clone();
         let input =
             Input { mesh: self.start, place, model, source: self.source, made: None, names, raw: None, meeting: None };
-        let report = Report::new(team, asked, &input, self.adapted);
+        let report = Report::new(team, asked, &input, self.adapted, None);
         let [prepared, finished] = self.times;
         let (report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
         lost.iter().for_each(crate::cli::note);

@@ -5,8 +5,10 @@
 //! edges are cut until the wall is flat between their ends, whatever their length, and each cut asks for more. Sizes may differ by many
 //! orders within a cell, or be many times the domain in some directions.
 use super::Pipeline;
+use crate::adapt::core::id_pool::ID_BLOCK;
 use crate::adapt::core::ids::{FACE, TetId};
 use crate::adapt::core::measure;
+use crate::adapt::schedule::deterministic::MOST_PARTS;
 use crate::mesh::vector::{area2, norm};
 use crate::metric::Sym3;
 use crate::tasks::GRAIN;
@@ -25,15 +27,33 @@ const ALWAYS_ALLOWED: f64 = 1_000.0;
 /// how many that takes.
 const FOR_THE_SURFACE: f64 = 20_000.0;
 
+/// Room for so many tetrahedra a new vertex. Six are usual.
+const TETS_A_VERTEX: usize = 12;
+
+/// With this share of the vertices that it may have, a mesh has them all: of the last edges most are refused.
+const FULL: f64 = 0.995;
+
+/// Why a mesh stopped growing before its metric was met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GrowthEnd {
+    /// It has far more vertices than the complexity of the metric accounts for: no mesh meets it.
+    NotAccountedFor,
+    /// It has as many vertices as were allowed.
+    MaxVertices,
+    /// There was no memory for more.
+    Memory,
+}
+
 impl Pipeline<'_, '_> {
     /// Complexity of the metric on the mesh as it is.
-    fn complexity(&self) -> f64 {
+    pub(super) fn complexity(&self) -> f64 {
         let store = &self.context.store;
         measure::complexity(self.team(), store, |v| store.log(v).trace())
     }
 
     /// Complexity of the source within the mesh, between its vertices too: those of a coarse mesh may miss a layer.
-    fn full_complexity(&self) -> f64 {
+    pub(super) fn full_complexity(&self) -> f64 {
         let store = &self.context.store;
         let corners = |t: usize| {
             let t = TetId(t as u32);
@@ -43,7 +63,7 @@ impl Pipeline<'_, '_> {
     }
 
     /// Area of the boundary and of interfaces in the two greatest sizes, so that the size across does not count.
-    fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         let store = &self.context.store;
         self.team().sum(GRAIN, store.tet_bound(), |range| {
             let of = |t: TetId, i: usize| {
@@ -76,16 +96,40 @@ impl Pipeline<'_, '_> {
 
     /// Whether the mesh may still grow. Once the answer is no, it stays no in this run.
     pub(super) fn may_grow(&mut self) -> bool {
-        self.overgrown = self.overgrown || !self.is_accounted_for(self.live());
-        !self.overgrown
+        if self.growth_end.is_some() {
+            return false;
+        }
+        let live = self.live();
+        if live as f64 >= FULL * self.max_vertices as f64 {
+            self.growth_end = Some(GrowthEnd::MaxVertices);
+        } else if !self.is_accounted_for(live) {
+            self.growth_end = Some(GrowthEnd::NotAccountedFor);
+        }
+        self.growth_end.is_none()
     }
 
     /// Of the items of a sweep that each add a vertex as many as may be, the first ones: of a metric that can be met all.
     pub(super) fn no_more_than_allowed<T>(&mut self, items: &mut Vec<T>) {
         let live = self.live();
+        items.truncate(self.max_vertices.saturating_sub(live));
         // Refused items count too, so twice as many are allowed here.
         if !self.is_accounted_for((live + items.len()) / 2) {
             items.truncate(((2.0 * self.allowed()) as usize).saturating_sub(live));
+        }
+    }
+
+    /// Makes room for so many new vertices, with the tetrahedra about them, and for what flips add.
+    pub(super) fn make_room(&mut self, new: usize) {
+        let team = self.team();
+        let store = &mut self.context.store;
+        // Threads and parts take ids in whole blocks, and some take more blocks than others.
+        let slack = ID_BLOCK * (self.states.len() + 2 * MOST_PARTS);
+        let vertices = 2 * new + slack;
+        let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
+        let room = store.room();
+        if (room.0 < vertices || room.1 < tets) && !store.reserve(team, vertices, tets) {
+            // Without memory the mesh stays as large as it is.
+            self.growth_end.get_or_insert(GrowthEnd::Memory);
         }
     }
 
@@ -147,6 +191,21 @@ mod tests {
         // Twice its input it may have in any case, and as much as the metric asks for.
         assert!(may_grow(0.1, 28 * 28 * 28));
         assert!(may_grow(0.03, 100));
+    }
+
+    #[test]
+    fn a_mesh_has_no_more_vertices_than_it_may_have() {
+        let sample = sample(Shape::Cube, 5, 0.05);
+        let mut bench = Bench::new(&sample, 1, 3);
+        let pool = Pool::new(1).unwrap();
+        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
+        let execution = Execution { pool: &pool, scheduler, plan, grains };
+        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
+        pipeline.max_vertices = 2000;
+        pipeline.run();
+        assert!((1990..=2000).contains(&pipeline.live()), "{}", pipeline.live());
+        assert_eq!(pipeline.growth_end, Some(GrowthEnd::MaxVertices));
+        bench.check("as many vertices as may be");
     }
 
     #[test]

@@ -42,13 +42,14 @@ impl Pipeline<'_, '_> {
             for _ in 0..PASSES {
                 let is_settled = self.size_pass();
                 self.pass += 1;
-                if is_settled || self.overgrown || self.observer.stop() {
+                self.tell_share_of_sizes();
+                if is_settled || self.growth_end.is_some() || self.observer.stop() {
                     break;
                 }
             }
             self.context.end_stage(self.team());
             self.keep_order();
-            if self.overgrown || self.observer.stop() {
+            if self.growth_end.is_some() || self.observer.stop() {
                 break;
             }
         }
