@@ -48,7 +48,7 @@ def run(command, out, name, threads):
         os.environ.pop("GEO_ADAPT_SIMULATE", None)
     if ran.code != 0:
         raise RuntimeError(f"{name}: geo-adapt ended with {ran.code} ({log}):\n{cycles.tail(log)}")
-    return ran.wall, log.read_text(errors="replace")
+    return ran.wall_seconds, log.read_text(errors="replace")
 
 
 def simulate(words, out, threads, repetitions):
