@@ -93,6 +93,17 @@ class Mesh:
     fields : mapping of str to array_like, optional
         Values at the points: (n,) scalars, (n, 3) vectors, (n, 6) symmetric tensors in the order "medit", (n, 3, 3) tensors.
 
+    Attributes
+    ----------
+    points, tets, triangles, edges, point_references, tet_references, triangle_references, edge_references : ndarray
+        As they were given: of float64 the points, of 32 bits the nodes and references.
+    corners, required_points, required_edges, required_triangles : ndarray
+        As they were given.
+    fields : dict of str to ndarray
+        Values at the points. Put others in as you like: `write` writes them, `view` colours by them.
+    domain : Model or None
+        The model of the domain that `bootstrap` meshed, where it is not the one that was given: a far field, a healed model.
+
     Raises
     ------
     InputError
@@ -150,7 +161,6 @@ class Mesh:
             for number in numbers:
                 self._labels.setdefault("triangles", {})[str(int(number))] = {"name": str(name)}
         self._association: _kernel.Associated | None = None
-        #: The model of the domain that `bootstrap` meshed, where it is not the one that was given: a far field, a healed model.
         self.domain: Model | None = None
 
     @property

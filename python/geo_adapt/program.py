@@ -12,8 +12,10 @@ from pathlib import Path
 
 from .errors import ModelError, ProgramError
 
-#: Where the program lies. It is linked with the OpenCASCADE libraries of this package.
+__all__ = ["PATH", "run"]
+
 PATH = Path(__file__).parent / "bin" / "geo-adapt"
+"""Where the program lies. It is linked with the OpenCASCADE libraries of this package."""
 
 #: First argument of the process that reads a CAD model for another one.
 _READ = "read-model-and-exit"
