@@ -320,21 +320,23 @@ class Mesh:
 
         return views.to_pyvista(self, triangles)
 
-    def view(self, field: str | None = None) -> Any:
+    def view(self, field: str | None = None, **options: object) -> Any:
         """Shows the mesh: in a notebook as a page within it, elsewhere in the browser.
 
         Parameters
         ----------
         field : str, optional
             The field to be coloured by.
+        **options
+            Those of ``geo-adapt view``, as in `write_page`.
 
         Returns
         -------
-        IPython.display.IFrame or Path
+        IPython.display.HTML or Path
             In a notebook what shows the page; else the file of the page.
         """
         page = Path(tempfile.mkdtemp(prefix="geo-adapt-view-")) / "mesh.html"
-        self.write_page(page, field)
+        self.write_page(page, field, **options)
         try:
             shell = __import__("IPython").get_ipython()
         except ImportError:
@@ -348,15 +350,41 @@ class Mesh:
         webbrowser.open(page.as_uri())
         return page
 
-    def write_page(self, path: str | os.PathLike[str], field: str | None = None) -> None:
-        """Writes the page of `geo-adapt view` for this mesh (.html), or a picture (.png)."""
+    def write_page(self, path: str | os.PathLike[str], field: str | None = None, **options: object) -> None:
+        """Writes a page for the browser (.html), or a picture (.png): those of ``geo-adapt view``.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        field : str, optional
+            The field to be coloured by.
+        **options
+            Those of ``geo-adapt view``, such as ``cut="z=0.5"``, ``hide="farfield"``, ``no_wire=True``; of a picture also
+            ``size="760x520"``, ``view="215,25"`` (azimuth and elevation, degrees), ``zoom=2``.
+
+        Raises
+        ------
+        ProgramError
+            When it cannot be written, or an option is not known.
+
+        Examples
+        --------
+        >>> import geo_adapt, pathlib, tempfile
+        >>> path = pathlib.Path(tempfile.mkdtemp(), "cube.png")
+        >>> geo_adapt.examples.cube(3).write_page(path, size="320x240", cut="x=0.5")
+        >>> path.read_bytes()[1:4]
+        b'PNG'
+        """
         with program.folder() as place:
             file = Path(place) / "mesh.vtu"
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 self.write(file)
-            more = ["--field", field] if field else []
-            program.run(["view", file, "-o", path, *more])
+            is_picture = Path(path).suffix.lower() == ".png"
+            target = ["--png" if is_picture else "-o", path]
+            chosen = {"color": field, **options}
+            program.run(["view", file, *target, *program.options(**chosen)])
 
     def __repr__(self) -> str:
         called = f", {len(self.names)} named surfaces" if self.names else ""

@@ -31,6 +31,17 @@ def folder() -> tempfile.TemporaryDirectory[str]:
     return tempfile.TemporaryDirectory(prefix="geo-adapt-python-")
 
 
+def options(**given: object) -> list[str]:
+    """Options of the program, of what is not None: ``far_field="box:10"`` is ``--far-field=box:10``."""
+    words: list[str] = []
+    for name, value in given.items():
+        if value is None or value is False:
+            continue
+        word = f"--{name.replace('_', '-')}"
+        words.append(word if value is True else f"{word}={value}")
+    return words
+
+
 def run(arguments: Sequence[str | os.PathLike[str]]) -> str:
     """Runs the program and waits for it. Ctrl-C ends it too.
 
