@@ -383,7 +383,7 @@ class Mesh:
                 self.write(file)
             is_picture = Path(path).suffix.lower() == ".png"
             target = ["--png" if is_picture else "-o", path]
-            chosen = {"color": field, **options}
+            chosen = {"title": Path(path).stem, "color": field, **options}
             program.run(["view", file, *target, *program.options(**chosen)])
 
     def __repr__(self) -> str:

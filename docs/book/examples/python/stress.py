@@ -17,7 +17,7 @@ steel = lame_parameters(210_000.0, 0.3)
 
 def stress(mesh):
     """The stress along the pull at the points: displacements are quadratic, and symmetric about x = 0, y = 0, z = 0."""
-    grid = MeshTet(mesh.points.T, mesh.tets.T.astype(np.int64))
+    grid = MeshTet(mesh.points.T.copy(), mesh.tets.T.astype(np.int64, "C"))
     basis = Basis(grid, ElementVector(ElementTetP2()))
     end = grid.facets_satisfying(lambda x: np.isclose(x[0], 50.0), boundaries_only=True)
     load = LinearForm(lambda v, w: 100.0 * v[0]).assemble(FacetBasis(grid, basis.elem, facets=end))
