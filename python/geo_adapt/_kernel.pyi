@@ -9,12 +9,24 @@ from .mesh import Mesh
 
 _Floats = npt.NDArray[np.float64]
 
-class Error(Exception): ...
-class InputError(Error): ...
-class MeshError(Error): ...
-class MetricError(Error): ...
-class ModelError(Error): ...
-class FileError(Error): ...
+class Error(Exception):
+    """What this package raises: all its exceptions are of this class."""
+
+class InputError(Error):
+    """Arrays or options that do not fit; the message says which, and the remedy."""
+
+class MeshError(Error):
+    """The mesh is no valid tetrahedral mesh, or does not lie on its model."""
+
+class MetricError(Error):
+    """A metric or a field of which none can be made."""
+
+class ModelError(Error):
+    """A CAD model that cannot be read or used."""
+
+class FileError(Error):
+    """A file that cannot be read or written."""
+
 class Associated: ...
 class Place: ...
 

@@ -93,6 +93,17 @@ class Mesh:
     fields : mapping of str to array_like, optional
         Values at the points: (n,) scalars, (n, 3) vectors, (n, 6) symmetric tensors in the order "medit", (n, 3, 3) tensors.
 
+    Attributes
+    ----------
+    points, tets, triangles, edges, point_references, tet_references, triangle_references, edge_references : ndarray
+        As they were given: of float64 the points, of 32 bits the nodes and references.
+    corners, required_points, required_edges, required_triangles : ndarray
+        As they were given.
+    fields : dict of str to ndarray
+        Values at the points. Put others in as you like: `write` writes them, `view` colours by them.
+    domain : Model or None
+        The model of the domain that `bootstrap` meshed, where it is not the one that was given: a far field, a healed model.
+
     Raises
     ------
     InputError
@@ -150,7 +161,6 @@ class Mesh:
             for number in numbers:
                 self._labels.setdefault("triangles", {})[str(int(number))] = {"name": str(name)}
         self._association: _kernel.Associated | None = None
-        #: The model of the domain that `bootstrap` meshed, where it is not the one that was given: a far field, a healed model.
         self.domain: Model | None = None
 
     @property
@@ -310,21 +320,23 @@ class Mesh:
 
         return views.to_pyvista(self, triangles)
 
-    def view(self, field: str | None = None) -> Any:
+    def view(self, field: str | None = None, **options: object) -> Any:
         """Shows the mesh: in a notebook as a page within it, elsewhere in the browser.
 
         Parameters
         ----------
         field : str, optional
             The field to be coloured by.
+        **options
+            Those of ``geo-adapt view``, as in `write_page`.
 
         Returns
         -------
-        IPython.display.IFrame or Path
+        IPython.display.HTML or Path
             In a notebook what shows the page; else the file of the page.
         """
         page = Path(tempfile.mkdtemp(prefix="geo-adapt-view-")) / "mesh.html"
-        self.write_page(page, field)
+        self.write_page(page, field, **options)
         try:
             shell = __import__("IPython").get_ipython()
         except ImportError:
@@ -338,15 +350,41 @@ class Mesh:
         webbrowser.open(page.as_uri())
         return page
 
-    def write_page(self, path: str | os.PathLike[str], field: str | None = None) -> None:
-        """Writes the page of `geo-adapt view` for this mesh (.html), or a picture (.png)."""
+    def write_page(self, path: str | os.PathLike[str], field: str | None = None, **options: object) -> None:
+        """Writes a page for the browser (.html), or a picture (.png): those of ``geo-adapt view``.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        field : str, optional
+            The field to be coloured by.
+        **options
+            Those of ``geo-adapt view``, such as ``cut="z=0.5"``, ``hide="farfield"``, ``no_wire=True``; of a picture also
+            ``size="760x520"``, ``view="215,25"`` (azimuth and elevation, degrees), ``zoom=2``.
+
+        Raises
+        ------
+        ProgramError
+            When it cannot be written, or an option is not known.
+
+        Examples
+        --------
+        >>> import geo_adapt, pathlib, tempfile
+        >>> path = pathlib.Path(tempfile.mkdtemp(), "cube.png")
+        >>> geo_adapt.examples.cube(3).write_page(path, size="320x240", cut="x=0.5")
+        >>> path.read_bytes()[1:4]
+        b'PNG'
+        """
         with program.folder() as place:
             file = Path(place) / "mesh.vtu"
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 self.write(file)
-            more = ["--field", field] if field else []
-            program.run(["view", file, "-o", path, *more])
+            is_picture = Path(path).suffix.lower() == ".png"
+            target = ["--png" if is_picture else "-o", path]
+            chosen = {"title": Path(path).stem, "color": field, **options}
+            program.run(["view", file, *target, *program.options(**chosen)])
 
     def __repr__(self) -> str:
         called = f", {len(self.names)} named surfaces" if self.names else ""

@@ -133,6 +133,11 @@ class Model:
     labels : mapping of str to sequence of int, optional
         Names of faces by their numbers from 1, beside those in the file.
 
+    Attributes
+    ----------
+    path : Path
+        The file that the program is given for this model.
+
     Raises
     ------
     ModelError
@@ -162,7 +167,6 @@ class Model:
                 raise InputError(f"{given}: give a CAD model: {', '.join(SUFFIXES)}")
             if not given.is_file():
                 raise ModelError(f"{given}: there is no such file")
-            #: The file that the program is given for this model.
             self.path = given.resolve()
             self._labels = _names_beside(given)
         else:

@@ -12,8 +12,10 @@ from pathlib import Path
 
 from .errors import ModelError, ProgramError
 
-#: Where the program lies. It is linked with the OpenCASCADE libraries of this package.
+__all__ = ["PATH", "run"]
+
 PATH = Path(__file__).parent / "bin" / "geo-adapt"
+"""Where the program lies. It is linked with the OpenCASCADE libraries of this package."""
 
 #: First argument of the process that reads a CAD model for another one.
 _READ = "read-model-and-exit"
@@ -27,6 +29,17 @@ def main() -> None:
 def folder() -> tempfile.TemporaryDirectory[str]:
     """A private folder for files between this process and the program; it goes with the object."""
     return tempfile.TemporaryDirectory(prefix="geo-adapt-python-")
+
+
+def options(**given: object) -> list[str]:
+    """Options of the program, of what is not None: ``far_field="box:10"`` is ``--far-field=box:10``."""
+    words: list[str] = []
+    for name, value in given.items():
+        if value is None or value is False:
+            continue
+        word = f"--{name.replace('_', '-')}"
+        words.append(word if value is True else f"{word}={value}")
+    return words
 
 
 def run(arguments: Sequence[str | os.PathLike[str]]) -> str:

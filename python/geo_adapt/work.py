@@ -17,18 +17,6 @@ from .model import Model
 from .tensors import Floats, packed, rows
 
 
-def _options(**given: Any) -> list[str]:
-    """Options of the program, of what is not None."""
-    words: list[str] = []
-    for name, value in given.items():
-        if value is None or value is False:
-            continue
-        words.append(f"--{name.replace('_', '-')}")
-        if value is not True:
-            words[-1] += f"={value}"
-    return words
-
-
 def bootstrap(
     model: Model | str | os.PathLike[str],
     size: float | None = None,
@@ -92,7 +80,7 @@ def bootstrap(
         place = Path(name)
         file = model._file(place) if isinstance(model, Model) else Path(model)
         out = place / "mesh.meshb"
-        options = _options(
+        options = program.options(
             size=size,
             segments=segments,
             feature_cells=feature_cells,
@@ -161,7 +149,7 @@ def classify(mesh: Mesh, model: Model, *, tolerance: float | None = None) -> Mes
             mesh.write(given)
         finally:
             mesh.fields = bare
-        program.run(["classify", given, "--cad", model._file(place), "-o", out, *_options(tolerance=tolerance)])
+        program.run(["classify", given, "--cad", model._file(place), "-o", out, *program.options(tolerance=tolerance)])
         found = Mesh.read(out)
     found.fields = dict(bare)
     return found
