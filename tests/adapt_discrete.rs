@@ -263,8 +263,7 @@ fn an_interrupted_run_writes_a_valid_mesh() {
     // The trace tells when the first sweep is over.
     let mut run = command.env("GEO_ADAPT_TRACE", "1").stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
     let mut lines = BufReader::new(run.stderr.take().unwrap()).lines();
-    let first = lines.next().unwrap().unwrap();
-    assert!(first.contains("Split"), "{first}");
+    assert!(lines.any(|line| line.unwrap().contains("Split")));
     let kill = std::process::Command::new("sh").arg("-c").arg(format!("kill -INT {}", run.id())).status().unwrap();
     assert!(kill.success());
     let said: Vec<String> = lines.map(Result::unwrap).collect();

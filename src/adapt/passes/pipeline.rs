@@ -106,6 +106,8 @@ pub struct Pipeline<'c, 'm> {
     pub growth_end: Option<GrowthEnd>,
     /// Most vertices.
     pub max_vertices: usize,
+    /// Whether the last sweep that was to add vertices could not add all, since there would be too many.
+    is_limited: bool,
     /// Complexity that the metric is known to ask for.
     asked: f64,
     /// Complexity of the source on the mesh that was given.
@@ -151,6 +153,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             input,
             growth_end: None,
             max_vertices: usize::MAX,
+            is_limited: false,
             expected: 0.0,
             complexity_given: 0.0,
             asked: 0.0,
@@ -201,6 +204,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             before = after;
             self.tell_share_of_shapes(pass);
         }
+        self.note_limit();
     }
 
     /// The threads, for lists.

@@ -19,6 +19,9 @@ const TICK: Duration = Duration::from_millis(200);
 /// Share of the memory that can be had which a mesh may take.
 const SHARE_OF_MEMORY: f64 = 0.9;
 
+/// A run that is to take so long is told of beforehand, s: for a shorter one nobody waits.
+const WORTH_TELLING: f64 = 1.0;
+
 /// As many vertices as there is memory for, as far as the system tells.
 pub fn most_in_memory() -> Option<usize> {
     memory::available().map(|bytes| (SHARE_OF_MEMORY * bytes as f64 / BYTES_A_VERTEX) as usize)
@@ -137,9 +140,11 @@ impl Observer for Progress {
         if !state.tells_forecasts {
             return;
         }
-        let megabytes = bytes / 1e6;
-        let (time, vertices) = (about(seconds), vertices.round());
-        crate::cli::tell(format_args!("the metric asks for about {vertices} vertices: {time}, {megabytes:.0} MB"));
+        let vertices = vertices.round();
+        if seconds >= WORTH_TELLING {
+            let (time, megabytes) = (about(seconds), bytes / 1e6);
+            crate::cli::tell(format_args!("the metric asks for about {vertices} vertices: {time}, {megabytes:.0} MB"));
+        }
         if let Some(most) = state.most.filter(|&most| vertices > most as f64) {
             crate::cli::note(format_args!(
                 "the mesh will end with {most} vertices (--max-vertices, or what there is memory for), and not meet the metric"

@@ -94,24 +94,35 @@ impl Pipeline<'_, '_> {
         parts.into_iter().sum()
     }
 
-    /// Whether the mesh may still grow. Once the answer is no, it stays no in this run.
+    /// Whether the mesh may grow now. Where its metric does not account for it, or there is no memory, the answer stays no in this run; where it has
+    /// as many vertices as it may have, collapses may make room.
     pub(super) fn may_grow(&mut self) -> bool {
-        if self.growth_end.is_some() {
-            return false;
-        }
         let live = self.live();
-        if live as f64 >= FULL * self.max_vertices as f64 {
-            self.growth_end = Some(GrowthEnd::MaxVertices);
-        } else if !self.is_accounted_for(live) {
+        self.is_limited = self.is_full(live);
+        if !self.is_limited && self.growth_end.is_none() && !self.is_accounted_for(live) {
             self.growth_end = Some(GrowthEnd::NotAccountedFor);
         }
-        self.growth_end.is_none()
+        !self.is_limited && self.growth_end.is_none()
+    }
+
+    /// Whether so many vertices are as many as there may be.
+    fn is_full(&self, live: usize) -> bool {
+        live as f64 >= FULL * self.max_vertices as f64
+    }
+
+    /// Notes at the end of a run whether more vertices were wanted than there may be.
+    pub(super) fn note_limit(&mut self) {
+        if self.is_limited && self.is_full(self.live()) {
+            self.growth_end.get_or_insert(GrowthEnd::MaxVertices);
+        }
     }
 
     /// Of the items of a sweep that each add a vertex as many as may be, the first ones: of a metric that can be met all.
     pub(super) fn no_more_than_allowed<T>(&mut self, items: &mut Vec<T>) {
         let live = self.live();
-        items.truncate(self.max_vertices.saturating_sub(live));
+        let room = self.max_vertices.saturating_sub(live);
+        self.is_limited = items.len() > room;
+        items.truncate(room);
         // Refused items count too, so twice as many are allowed here.
         if !self.is_accounted_for((live + items.len()) / 2) {
             items.truncate(((2.0 * self.allowed()) as usize).saturating_sub(live));

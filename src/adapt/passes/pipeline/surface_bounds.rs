@@ -33,7 +33,8 @@ impl Pipeline<'_, '_> {
         let limits = self.context.limits;
         self.context.limits = Limits { long: 0.0, shortest_new: 0.0, insert_floor: 0.01, ..limits };
         for _ in 0..SWEEPS {
-            let items = self.on_curved_faces();
+            let mut items = self.on_curved_faces();
+            items.truncate(self.max_vertices.saturating_sub(self.live()));
             if !self.may_grow() || self.observer.stop() || self.sweep(Kind::Split, &SplitDeviating, &items).done == 0 {
                 break;
             }
