@@ -26,6 +26,7 @@ fn written(work: &Workplace, mesh: &Path, arguments: &[&str], threads: &str) -> 
     let fields = report.as_object_mut().unwrap();
     fields.remove("seconds");
     fields.remove("threads");
+    fields["forecast"].as_object_mut().unwrap().remove("seconds");
     for operation in fields["operations"].as_object_mut().unwrap().values_mut() {
         operation.as_object_mut().unwrap().remove("seconds");
     }
