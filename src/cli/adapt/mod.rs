@@ -141,7 +141,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
             // No command would take it, the next cycle neither.
             return Ok(ExitCode::from(super::INVALID));
         }
-        if report.is_incomplete() {
+        if let Some(why) = report.why_incomplete() {
+            crate::cli::note(format_args!("the mesh stopped growing: {why}"));
             return Ok(ExitCode::from(memory::end::EXIT_CODE));
         }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));

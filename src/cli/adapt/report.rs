@@ -178,8 +178,13 @@ impl Report {
     }
 
     /// Whether the mesh ended before its metric was met, since there was to be, or could be, no more of it.
-    pub fn is_incomplete(&self) -> bool {
+    fn is_incomplete(&self) -> bool {
         matches!(self.growth_end, Some(GrowthEnd::MaxVertices | GrowthEnd::Memory))
+    }
+
+    /// Why it did.
+    pub fn why_incomplete(&self) -> Option<&'static str> {
+        self.growth_end.filter(|_| self.is_incomplete()).map(why_growth_ended)
     }
 
     /// The table for the terminal.
