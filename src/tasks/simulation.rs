@@ -1,7 +1,7 @@
 //! Threads that are not there. `GEO_ADAPT_SIMULATE=16` runs all tasks one after the other on one thread, cut as for 16 threads, measures each,
 //! and says how long 16 threads would have taken: what is outside of loops takes as long as it took, and of a loop's tasks each goes, in their
 //! order, to the thread that is free first (greedy, as the back-end with shared queues does it). What threads take from each other, memory
-//! and the processor's clock, is not simulated: docs/decisions/scaling.md has the check against threads that are there.
+//! and the processor's clock, is not simulated: `cases/threads --simulate` holds it against two threads that are there.
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::fmt::Write;
