@@ -1,8 +1,9 @@
-//! What several integration tests need.
-#![allow(dead_code, reason = "each test uses its own part")]
+//! What the programs of tests share.
+#![allow(dead_code, reason = "each program of tests uses its own part")]
 use std::path::{Path, PathBuf};
 
 pub mod adapting;
+pub mod models;
 #[cfg(feature = "cli")]
 pub mod viewing;
 

@@ -1,5 +1,5 @@
 // Distances from points to the faces of a model, by other means than the program's: BRepMesh's triangles in CGAL's AABB
-// trees. A program of its own that tests/projections.rs builds and runs: CGAL's trees are GPL, and never linked with
+// trees. A program of its own that tests/cad/projections.rs builds and runs: CGAL's trees are GPL, and never linked with
 // geo-adapt.
 //   g++ -std=c++17 -O2 -isystem /usr/include/opencascade aabb.cpp -o aabb -lTKMesh -lTKSTEP -lTKXSBase -lTKTopAlgo
 //     -lTKBRep -lTKGeomBase -lTKG3d -lTKG2d -lTKMath -lTKernel

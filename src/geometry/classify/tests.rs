@@ -1,4 +1,4 @@
-//! Tests of the classification on discrete models; those on CAD models are in tests/classify.rs.
+//! Tests of the classification on discrete models; those on CAD models are in tests/cad/classify.rs.
 use super::{Classification, Error, Options, Report, associate, classify};
 use crate::geometry::discrete::samples::{cube, sphere};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};

@@ -1,0 +1,20 @@
+//! What needs OpenCASCADE: CAD models, and what is made of them.
+#![cfg(all(feature = "cli", feature = "occt"))]
+mod adapt;
+mod book;
+mod bootstrap;
+mod bootstrap_heal;
+mod bootstrap_own;
+mod classify;
+mod closest_points;
+#[path = "../common/mod.rs"]
+mod common;
+mod copies;
+mod damaged;
+mod geometry_scripts;
+mod metric_geometry;
+mod model;
+mod projections;
+mod reading;
+mod spline_faces;
+mod view_model;

@@ -1,0 +1,15 @@
+//! What can differ with OpenCASCADE and without it: tests/run runs these both ways, and all others once.
+#![cfg(feature = "cli")]
+mod adapt_sizes;
+#[path = "../common/mod.rs"]
+mod common;
+mod deterministic;
+mod endless_inputs;
+mod frozen;
+mod growth;
+mod inspect;
+mod kill_points;
+mod library;
+mod memory_end;
+mod narrow_voids;
+mod no_backend;

@@ -1,0 +1,2 @@
+//! First meshes without a CAD model.
+mod triangles;

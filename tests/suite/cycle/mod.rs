@@ -1,0 +1,5 @@
+//! `geo-adapt cycle`: loops with solvers.
+mod browser;
+mod loops;
+mod openfoam;
+mod openfoam_viscous;

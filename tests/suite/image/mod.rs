@@ -1,0 +1,3 @@
+//! `geo-adapt image-mesh`.
+mod files;
+mod mesh;

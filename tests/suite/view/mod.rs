@@ -1,0 +1,4 @@
+//! `geo-adapt view`: pages and pictures.
+mod browser;
+mod page;
+mod pictures;
