@@ -139,6 +139,8 @@ def main() -> int:
         for name in sorted(names)[:10]:
             print(f"  {name.decode()}")
         return int(total > 0 or len(names) > 0 or not libraries)
+    if len({own_name(name) for name in names}) < len(names):
+        raise SystemExit("two names would become the same")
     used = set().union(*(library.used() for library in libraries))
     alone = (names & set().union(*(library.sharing() for library in libraries))) - used
     hidden = sum(library.hide(alone) for library in own)
