@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -95,14 +96,18 @@ class Result:
     parents : Parents
         Where its points were in the old mesh.
     report : dict
-        The figures of ``geo-adapt adapt --json``: counts, edge lengths and mean ratios in the metric, the distance from the model. Empty
-        where none was asked for, or the work was stopped.
+        The figures of ``geo-adapt adapt --json``: counts, edge lengths and mean ratios in the metric, the distance from the model, and in
+        ``["forecast"]`` the vertices, seconds and bytes that were expected before the work began. Empty where none was asked for, or the
+        work was stopped.
     complexity : float or None
         That the metric was scaled to.
     complete : bool
         Whether it came to its end: False where `progress` stopped it. The mesh is valid in any case.
+    growth_end : {None, "not-accounted-for", "max-vertices", "memory"}
+        Why the mesh stopped growing before its metric was met: it has far more points than the metric accounts for; as many as it may
+        have; there is no memory for more. None where the metric was met. The mesh is valid in any case.
     overgrown : bool
-        Whether the mesh stopped growing, having far more points than the metric accounts for.
+        Whether there is such a reason.
     off_model, held, doubled : ndarray of uint32
         Points of the boundary that found no room on the model; that had to stay; and points of the old mesh that were taken apart.
     deviating, crossings : int
@@ -119,7 +124,8 @@ class Result:
         self.report: dict[str, Any] = json.loads(given["report"]) if given["report"] else {}
         self.complexity: float | None = given["complexity"]
         self.complete: bool = not given["stopped"]
-        self.overgrown: bool = given["overgrown"]
+        self.growth_end: str | None = given["growth_end"]
+        self.overgrown: bool = self.growth_end is not None
         self.off_model: Nodes = given["off_model"]
         self.held: Nodes = given["held"]
         self.doubled: Nodes = given["doubled"]
@@ -190,6 +196,7 @@ class Adapter:
         order: str | None = None,
         complexity: float | None = None,
         vertices: float | None = None,
+        max_vertices: int | None = None,
         freeze: Sequence[str | int] = (),
         tolerance: float | None = None,
         normal_deviation: float | None = None,
@@ -210,10 +217,13 @@ class Adapter:
             raise InputError("give a complexity or a number of vertices, not both")
         if vertices is not None and not (vertices > 0 and np.isfinite(vertices)):
             raise InputError(f"vertices {vertices}: give a positive number")
+        if max_vertices is not None and not 0 < operator.index(max_vertices) < 2**32:
+            raise InputError(f"max_vertices {max_vertices}: give a number from 1 to {2**32 - 1}")
         surfaces, regions = _frozen(mesh, freeze)
         options = {
             "complexity": complexity,
             "vertices": vertices,
+            "max_vertices": max_vertices,
             "tolerance": tolerance,
             "normal_deviation": normal_deviation,
             "hausdorff": hausdorff,
@@ -268,6 +278,7 @@ def adapt(
     progress: Callable[[Progress], bool | None] | None = None,
     *,
     order: str | None = None,
+    max_vertices: int | None = None,
     tolerance: float | None = None,
     normal_deviation: float | None = None,
     hausdorff: float | None = None,
@@ -298,6 +309,9 @@ def adapt(
         Is called with a `Progress` about every 50 ms; it returns False to stop.
     order : {"medit", "voigt"}, optional
         Of a metric of shape (n, 6): "medit" is 11 12 22 13 23 33, "voigt" is xx yy zz yz xz xy.
+    max_vertices : int, optional
+        A mesh that has so many points gets no more: it is finished as it is, and ``growth_end`` says so. By default what there is memory
+        for.
     tolerance : float, optional
         How far a boundary point may be from the model, in its units. By default 1e-6 of its diagonal.
     normal_deviation, hausdorff : float, optional
@@ -330,6 +344,9 @@ def adapt(
     (True, True)
     >>> result.parents.interpolate(mesh.points).shape == result.mesh.points.shape
     True
+    >>> small = geo_adapt.adapt(mesh, geo_adapt.metric.isotropic(h), order="medit", max_vertices=200)
+    >>> small.growth_end, len(small.mesh.points) <= 200
+    ('max-vertices', True)
     """
     return Adapter(model, threads=threads).adapt(
         mesh,
@@ -337,6 +354,7 @@ def adapt(
         order=order,
         complexity=complexity,
         vertices=vertices,
+        max_vertices=max_vertices,
         freeze=freeze,
         tolerance=tolerance,
         normal_deviation=normal_deviation,

@@ -2,20 +2,26 @@
 use crate::arrays::{self, Arrays, Place};
 use crate::errors;
 use crate::model::Model;
+use geo_adapt::adapt::forecast::{BYTES_A_VERTEX, Forecast};
 use geo_adapt::adapt::meeting::{VERTICES_PER_COMPLEXITY, meet};
-use geo_adapt::api::MeshView;
+use geo_adapt::api::{GrowthEnd, MeshView};
 use geo_adapt::geometry::on_mesh;
-use geo_adapt::{AdaptedMesh, Counts, DiscreteOptions, Freeze, Kind, Observer, Parents, Settings, SurfaceBounds};
+use geo_adapt::{
+    AdaptedMesh, Counts, DiscreteOptions, Freeze, Kind, Observer, Parents, Report, Settings, SurfaceBounds,
+};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, OnceLock};
 use std::thread;
 use std::time::Duration;
 
 /// How long the caller's thread sleeps between two looks at signals.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// Share of the memory that can be had which a mesh may take: as the program.
+const SHARE_OF_MEMORY: f64 = 0.9;
 
 /// An adapter with its model and its threads.
 #[pyclass(frozen, module = "geo_adapt._kernel")]
@@ -27,6 +33,7 @@ pub struct Adapter(Mutex<geo_adapt::Adapter>);
 pub struct Options {
     complexity: Option<f64>,
     vertices: Option<f64>,
+    max_vertices: Option<usize>,
     tolerance: Option<f64>,
     normal_deviation: Option<f64>,
     hausdorff: Option<f64>,
@@ -44,11 +51,17 @@ struct Watch {
     items: AtomicUsize,
     done: AtomicUsize,
     vertices: AtomicUsize,
+    /// What the first run was expected to take.
+    forecast: OnceLock<Forecast>,
 }
 
 impl Observer for Watch {
     fn vertices(&self, count: usize) {
         self.vertices.store(count, Relaxed);
+    }
+
+    fn forecast(&self, forecast: &Forecast) {
+        self.forecast.get_or_init(|| *forecast);
     }
 
     fn begin(&self, kind: Kind, pass: usize, items: usize) {
@@ -74,6 +87,21 @@ impl Observer for Watch {
     fn stop(&self) -> bool {
         self.stop.load(Relaxed)
     }
+}
+
+/// What is measured, and what the program's report says beside it about the mesh's growth.
+#[derive(serde::Serialize)]
+struct WithForecast {
+    #[serde(flatten)]
+    found: Report,
+    overgrown: bool,
+    growth_end: Option<GrowthEnd>,
+    forecast: Option<Forecast>,
+}
+
+/// As many vertices as there is memory for, as far as the system tells.
+fn most_in_memory() -> Option<usize> {
+    geo_adapt::memory::available().map(|bytes| (SHARE_OF_MEMORY * bytes as f64 / BYTES_A_VERTEX) as usize)
 }
 
 /// What the worker hands back.
@@ -190,6 +218,7 @@ impl Options {
         let settings = adapter.settings();
         settings.complexity = first;
         settings.tolerance = self.tolerance;
+        settings.options.max_vertices = self.max_vertices.or_else(most_in_memory);
         settings.options.freeze = Freeze { surfaces: self.surfaces.clone(), regions: self.regions.clone() };
         settings.options.surface = SurfaceBounds { normal_deviation: self.normal_deviation, hausdorff: self.hausdorff };
         let mut adapted = adapter.adapt_observed(view, metric, watch).map_err(errors::of_adapter)?;
@@ -208,9 +237,25 @@ impl Options {
         let mut report = None;
         if self.report && !watch.stop() {
             let found = adapter.report(&adapted).map_err(errors::of_adapter)?;
-            report = Some(serde_json::to_string(&found).map_err(errors::of_file)?);
+            let end = adapted.growth_end;
+            let whole = WithForecast {
+                found,
+                overgrown: end.is_some(),
+                growth_end: end,
+                forecast: watch.forecast.get().copied(),
+            };
+            report = Some(serde_json::to_string(&whole).map_err(errors::of_file)?);
         }
         Ok(Done { adapted, names, report, complexity })
+    }
+}
+
+/// As the program's report says it.
+fn name_of_end(end: GrowthEnd) -> &'static str {
+    match end {
+        GrowthEnd::NotAccountedFor => "not-accounted-for",
+        GrowthEnd::MaxVertices => "max-vertices",
+        GrowthEnd::Memory => "memory",
     }
 }
 
@@ -231,7 +276,7 @@ fn give(py: Python<'_>, done: Done, stopped: bool) -> PyResult<Bound<'_, PyDict>
     all.set_item("off_model", PyArray1::from_vec(py, off_model))?;
     all.set_item("held", PyArray1::from_vec(py, held))?;
     all.set_item("doubled", PyArray1::from_vec(py, doubled))?;
-    all.set_item("overgrown", growth_end.is_some())?;
+    all.set_item("growth_end", growth_end.map(name_of_end))?;
     all.set_item("deviating", deviating)?;
     all.set_item("crossings", crossings)?;
     all.set_item("names", names)?;
