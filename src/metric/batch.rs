@@ -9,7 +9,7 @@ use super::lanes::{
     LANES, LaneSym3, LaneVec3, Lanes, add_dyad, apply, contract, cross, det, dot, everywhere, everywhere_tensor,
     squared, sub,
 };
-use super::quality::mean_ratio_log;
+use super::strong;
 use crate::mesh::vector::Vec3;
 use multiversion::multiversion;
 
@@ -103,21 +103,7 @@ impl Batch {
     /// As [`Batch::shapes_of`], the lanes laid out.
     #[inline]
     pub fn shapes_each(&self, apex: &LaneVec3, log: &LaneSym3) -> Shapes {
-        let (cubes, mild) = cubes(self, apex, log);
-        if mild { Shapes { cubes } } else { self.shapes_one_by_one(apex, log, cubes) }
-    }
-
-    /// For metrics of strong anisotropy, by their eigenvectors.
-    #[cold]
-    fn shapes_one_by_one(&self, apex: &LaneVec3, log: &LaneSym3, cubes: Lanes) -> Shapes {
-        let mut exact = cubes;
-        for lane in (0..LANES).filter(|&lane| cubes.0[lane] > 0.0) {
-            let [a, b, c] = self.corners.map(|corner| corner.map(|x| x.0[lane]));
-            let points = [a, b, c, apex.map(|x| x.0[lane])];
-            let mean = Sym3(std::array::from_fn(|i| 0.25 * (self.log_sum[i].0[lane] + log[i].0[lane])));
-            exact.0[lane] = mean_ratio_log(points, &mean).max(0.0).powi(3);
-        }
-        Shapes { cubes: exact }
+        Shapes { cubes: cubes(self, apex, log) }
     }
 
     /// Σ 1/Q³ over the first `count` tetrahedra with its gradient and Hessian in a common apex p, the mean metrics held; `None`
@@ -170,10 +156,17 @@ fn prepare(batch: &mut Batch) {
     batch.dyads = dyads;
 }
 
-/// exp S of traceless tensors S as coefficients of 1, S and S², and whether no S is of strong anisotropy: as in
-/// exponential.rs, without its branches.
+/// exp S of traceless tensors S as coefficients of 1, S and S²: as in exponential.rs, without its branches.
+struct Exponential {
+    a: [Lanes; 3],
+    /// The isolated eigenvalue of S.
+    root: Lanes,
+    /// Difference of the extreme eigenvalues of S.
+    spread: Lanes,
+}
+
 #[inline(always)]
-fn exponential(s: &LaneSym3, s2: &LaneSym3) -> ([Lanes; 3], bool) {
+fn exponential(s: &LaneSym3, s2: &LaneSym3) -> Exponential {
     let p = (s2[0] + s2[2] + s2[5]) * (1.0 / 6.0);
     let r = det(s) * 0.5;
     let least = Lanes::all(SERIES * SERIES);
@@ -196,7 +189,7 @@ fn exponential(s: &LaneSym3, s2: &LaneSym3) -> ([Lanes; 3], bool) {
     } else {
         newton
     };
-    (a, !spread.any_above(STRONG))
+    Exponential { a, root: x, spread }
 }
 
 /// Σ Sⁿ/n! up to n = 9.
@@ -232,16 +225,16 @@ fn deviator(batch: &Batch, log: &LaneSym3) -> LaneSym3 {
     s
 }
 
-/// Cubed mean ratios, 0 where the sign of the volume may be rounding, and whether all metrics are of mild anisotropy.
+/// Cubed mean ratios, 0 where the sign of the volume may be rounding.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> (Lanes, bool) {
+fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> Lanes {
     let [a, b, c] = &batch.corners;
     let (pa, pb, pc) = (sub(apex, a), sub(apex, b), sub(apex, c));
     let volume = dot(&batch.area, &pa);
     let largest = pa[0].abs().max(pa[1].abs()).max(pa[2].abs());
     let surely = volume - batch.uncertain * largest;
     if !surely.any_above(0.0) {
-        return (Lanes::ZERO, true);
+        return Lanes::ZERO;
     }
     let mut dyads = batch.dyads;
     for v in [pa, pb, pc] {
@@ -249,10 +242,14 @@ fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> (Lanes, bool) {
     }
     let s = deviator(batch, log);
     let s2 = squared(&s);
-    let ([a0, a1, a2], mild) = exponential(&s, &s2);
-    let sum = a0 * (dyads[0] + dyads[2] + dyads[5]) + a1 * contract(&dyads, &s) + a2 * contract(&dyads, &s2);
+    let Exponential { a: [a0, a1, a2], root, spread } = exponential(&s, &s2);
+    let mut sum = a0 * (dyads[0] + dyads[2] + dyads[5]) + a1 * contract(&dyads, &s) + a2 * contract(&dyads, &s2);
+    if spread.any_above(STRONG) {
+        let vectors = [sub(b, a), sub(c, a), sub(c, b), pa, pb, pc];
+        sum = spread.above(STRONG, strong::form(&s, root, &vectors), sum);
+    }
     let cubes = volume * volume / (sum * sum * sum) * FACTOR;
-    (surely.above(0.0, cubes, Lanes::ZERO), mild)
+    surely.above(0.0, cubes, Lanes::ZERO)
 }
 
 /// 1/Q³ = S³/(432 V²), with S the sum of the squared edges in the mean metric and V six times the volume (METHOD.md §2.4). With
@@ -269,7 +266,7 @@ fn quadratic_model(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneQuadra
     }
     let s = deviator(batch, log);
     let s2 = squared(&s);
-    let ([a0, a1, a2], _) = exponential(&s, &s2);
+    let Exponential { a: [a0, a1, a2], .. } = exponential(&s, &s2);
     let mut mean: LaneSym3 = std::array::from_fn(|i| a1 * s[i] + a2 * s2[i]);
     for i in [0, 2, 5] {
         mean[i] = mean[i] + a0;

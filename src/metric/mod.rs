@@ -28,6 +28,7 @@ mod restriction;
 mod scalar;
 mod source;
 pub mod statistics;
+mod strong;
 pub mod summary;
 pub mod tensor;
 #[cfg(test)]
