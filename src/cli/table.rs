@@ -99,9 +99,15 @@ impl Table {
     }
 }
 
-/// A point for people.
-pub fn place([x, y, z]: Vec3) -> String {
-    format!("({x:.6}, {y:.6}, {z:.6})")
+/// A point for people: six decimals, in powers of ten where those would say little of it, as of a model of micrometres.
+pub fn place(point: Vec3) -> String {
+    let magnitude = point.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let number = |x: f64| match magnitude {
+        _ if magnitude == 0.0 || (1e-2..1e9).contains(&magnitude) => format!("{x:.6}"),
+        _ => format!("{x:.6e}"),
+    };
+    let [x, y, z] = point.map(number);
+    format!("({x}, {y}, {z})")
 }
 
 /// Four significant figures, in powers of ten when very small or large.
@@ -178,5 +184,12 @@ mod tests {
     fn references_with_counts() {
         assert_eq!(references("region", &BTreeMap::from([(1, 5), (7, 2)])), " (2 regions; 1: 5, 7: 2)");
         assert_eq!(references("region", &(0..20).map(|i| (i, 1)).collect()), " (20 regions)");
+    }
+
+    #[test]
+    fn a_point_of_a_small_model_is_told_too() {
+        assert_eq!(place([0.5, -0.25, 1200.0]), "(0.500000, -0.250000, 1200.000000)");
+        assert_eq!(place([0.0; 3]), "(0.000000, 0.000000, 0.000000)");
+        assert_eq!(place([1.25e-6, 0.0, -3e-7]), "(1.250000e-6, 0.000000e0, -3.000000e-7)");
     }
 }

@@ -12,7 +12,11 @@ pub(super) fn short(name: &str) -> String {
     name.chars().take(40).flat_map(char::escape_debug).collect()
 }
 
-/// The bytes of a file.
+/// The bytes of a file, which has some: what a reader of a format says of none is of no help.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    read_file(path)
+    let bytes = read_file(path)?;
+    if bytes.is_empty() {
+        return Err(at(path, "byte 0", "the file is empty; write it again"));
+    }
+    Ok(bytes)
 }

@@ -379,6 +379,25 @@ fn half_a_body_has_a_plane_of_symmetry() {
 }
 
 #[test]
+fn a_mesh_with_as_many_vertices_as_it_may_have_is_written_and_the_exit_code_is_3() {
+    let place = Place::new();
+    let run = |most: &str| {
+        let report = text(&place.path("report.json"));
+        let arguments = ["--mesher", "own", "--segments", "8", "--max-vertices", most, "--report", &report];
+        let run = place.run(&model("filleted-block.step"), &arguments);
+        (run.status.code(), stderr(&run), place.written("out.meshb").vertices.len(), place.json("report.json"))
+    };
+    let (code, said, vertices, report) = run("3000");
+    assert_eq!((code, &report["growth_end"]), (Some(3), &Value::from("max-vertices")), "{said}");
+    assert!((2000..=3000).contains(&vertices), "{vertices}: {said}");
+    assert!(said.contains("will end with 3000 vertices") && said.contains("the mesh stopped growing"), "{said}");
+    // A limit that is not reached says nothing.
+    let (code, said, vertices, report) = run("100000");
+    assert_eq!((code, report["growth_end"].is_null()), (Some(0), true), "{said}");
+    assert!(vertices > 3000 && !said.contains("will end with"), "{vertices}: {said}");
+}
+
+#[test]
 fn where_no_mesher_is_the_error_says_what_to_install() {
     let place = Place::new();
     let message = |model: &Path, arguments: &[&str]| {

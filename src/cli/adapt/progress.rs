@@ -62,6 +62,8 @@ struct State {
     forecast: Option<Forecast>,
     /// When the passes began, how long they were expected to take, s, and what share of them is done.
     passes: (Instant, f64, f64),
+    /// Runs that come after this one at least.
+    further: usize,
 }
 
 impl Progress {
@@ -79,6 +81,7 @@ impl Progress {
             most: None,
             forecast: None,
             passes: (Instant::now(), 0.0, 0.0),
+            further: 0,
         };
         let shown = !terminal::is_quiet() && std::io::IsTerminal::is_terminal(&std::io::stderr());
         Self { shown, stop, state: Mutex::new(state) }
@@ -88,6 +91,11 @@ impl Progress {
     pub fn tell_forecasts(&self, most: Option<usize>) {
         let mut state = self.state.lock().expect("no panic while drawing");
         (state.tells_forecasts, state.most) = (!terminal::is_quiet(), most);
+    }
+
+    /// So many runs come after this one at least, each of which takes about as long.
+    pub fn expect_further(&self, runs: usize) {
+        self.state.lock().expect("no panic while drawing").further = runs;
     }
 
     /// What the last run was expected to take.
@@ -116,13 +124,14 @@ impl State {
         self.pass = None;
     }
 
+    /// What most people want to know comes first: a terminal may be narrow.
     fn describe(&self) -> String {
         let [_, _, reconnect, smooth, ..] = self.done;
         let (name, now) = (self.kind.name(), self.vertices);
-        let expected = if self.expected > 0 { format!(" of about {}", self.expected) } else { String::new() };
+        let expected = if self.expected > 0 { format!(" of ~{}", self.expected) } else { String::new() };
         let (began, forecast, share) = self.passes;
-        let left = about(seconds_left(began.elapsed().as_secs_f64(), share, forecast));
-        format!("{name:<12} {now}{expected} vertices, {reconnect} flips, {smooth} moves, {left} left")
+        let left = seconds_left(began.elapsed().as_secs_f64(), share, forecast) + self.further as f64 * forecast;
+        format!("{} left, {now}{expected} vertices, {name}, {reconnect} flips, {smooth} moves", about(left))
     }
 }
 
@@ -164,7 +173,7 @@ impl Observer for Progress {
         state.began = Instant::now();
         if self.shown && state.pass != Some(pass) {
             state.leave();
-            let style = ProgressStyle::with_template("pass {prefix:>2} [{bar:16}] {elapsed:>4} {wide_msg}");
+            let style = ProgressStyle::with_template("pass {prefix:>2} [{bar:8}] {elapsed:>4}, {wide_msg}");
             let style = style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> ");
             let target = ProgressDrawTarget::stderr();
             state.bar = ProgressBar::with_draw_target(Some(0), target).with_style(style);
@@ -211,5 +220,22 @@ impl Observer for Progress {
 
     fn stop(&self) -> bool {
         self.interrupted()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_is_seen_on_a_narrow_terminal() {
+        static STOP: AtomicBool = AtomicBool::new(false);
+        let progress = Progress::new(&STOP);
+        progress.expect_further(1);
+        progress.forecast(&Forecast { vertices: 1_234_567.0, seconds: 3600.0, bytes: 1e9 });
+        progress.vertices(1_000_000);
+        let told = progress.state.lock().unwrap().describe();
+        // The bar before it has 25 of 80 columns; a second run takes as long as this one.
+        assert!(told[..54].starts_with("about 2 h left, 1000000 of ~1234567 vertices, "), "{told}");
     }
 }

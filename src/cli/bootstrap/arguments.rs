@@ -45,6 +45,10 @@ pub struct Arguments {
     /// Greatest complexity, about half the number of vertices: where the geometry asks for more its sizes are enlarged
     #[arg(long, value_name = "C", value_parser = crate::cli::positive, default_value = "100000", allow_negative_numbers = true)]
     pub complexity: f64,
+    /// Most vertices: a mesh that has so many gets no more, is finished as it is and written, and the exit code is 3 [default: as many as there
+    /// is memory for]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true, conflicts_with = "no_adapt")]
+    pub max_vertices: Option<u32>,
     /// Mesh the space around the solids instead, for external flow: a box or a sphere without them
     #[arg(long, value_name = "box:…|sphere:…", long_help = FAR_FIELD)]
     pub far_field: Option<domain::Spec>,

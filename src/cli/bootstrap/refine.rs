@@ -7,13 +7,14 @@ use crate::adapt::{self, Adapted, Options};
 use crate::cli::Outcome;
 use crate::cli::adapt::files::Targets;
 use crate::cli::adapt::input::Input;
-use crate::cli::adapt::progress::{Progress, finish_on_interrupt};
+use crate::cli::adapt::progress::{Progress, finish_on_interrupt, most_in_memory};
 use crate::cli::adapt::report::{Asked, Report};
 use crate::cli::waiting::Waiting;
 use crate::cli::{INVALID, interrupt, table};
 use crate::geometry::classify::Classification;
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Geometry, Model, Names};
+use crate::memory;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::vector::Vec3;
@@ -63,10 +64,17 @@ pub fn run(
     let (mut mesh, mut place) = (Arc::clone(&first), place);
     let mut sizes = self::sizes(arguments, team, &mesh, &place, model).map_err(named)?;
     let mut settled = false;
+    let max_vertices = arguments.max_vertices.map(|most| most as usize).or_else(most_in_memory);
+    let options = Options { max_vertices, ..Options::default() };
     for cycle in 1..=MOST_CYCLES {
         stage("geometry");
         let progress = Progress::new(stop);
-        let adapted = adapt::adapt(&mesh, &place, model, &sizes.source, &Options::default(), pool, &progress)
+        progress.expect_further(CYCLES.saturating_sub(cycle));
+        if cycle == CYCLES {
+            // On the mesher's own mesh what the geometry asks for is not known well.
+            progress.tell_forecasts(max_vertices);
+        }
+        let adapted = adapt::adapt(&mesh, &place, model, &sizes.source, &options, pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
         let interrupted = progress.interrupted();
@@ -74,7 +82,8 @@ pub fn run(
         if cycle < MOST_CYCLES && !interrupted && !settled {
             let result = (Arc::new(adapted.extracted.mesh.clone()), adapted.extracted.classification.clone());
             let next = self::sizes(arguments, team, &result.0, &result.1, model).map_err(named)?;
-            settled = is_settled(sizes.complexity, next.complexity);
+            // Nor where the mesh may have no more vertices.
+            settled = is_settled(sizes.complexity, next.complexity) || adapted.growth_end.is_some();
             if cycle < CYCLES || !settled {
                 ((mesh, place), sizes) = (result, next);
                 continue;
@@ -150,6 +159,9 @@ impl Refined {
             interrupt::exit_code()
         } else if is_refused {
             ExitCode::from(INVALID)
+        } else if let Some(why) = report.why_incomplete() {
+            crate::cli::note(format_args!("the mesh stopped growing: {why}"));
+            ExitCode::from(memory::end::EXIT_CODE)
         } else {
             ExitCode::SUCCESS
         })

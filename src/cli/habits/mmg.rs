@@ -35,6 +35,12 @@ pub fn is_option(word: &str) -> bool {
     KNOWN.contains(&word)
 }
 
+/// Whether the words are for mmg3d: options of it that are none of ours, and none that is ours.
+pub fn is_line(words: &[OsString]) -> bool {
+    let mut words = words.iter().map(|word| word.to_str().unwrap_or_default());
+    words.clone().any(|word| word.len() > 2 && is_option(word)) && !words.any(|word| word.starts_with("--"))
+}
+
 /// What was asked of mmg3d.
 #[derive(Default)]
 struct Asked<'a> {

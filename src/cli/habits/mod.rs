@@ -26,6 +26,8 @@ pub fn translated(words: &[OsString]) -> Option<Result<Translated, String>> {
     match first.to_str()? {
         "mmg3d" | "mmg3d_O3" | "feflo.a" | "feflo" => Some(mmg::translated(rest)),
         "ref" => Some(refine::translated(rest)),
+        // Our command with their options: -hmin would ask for help, -in would be two options.
+        "adapt" if mmg::is_line(rest) => Some(mmg::translated(rest)),
         option if mmg::is_option(option) => Some(mmg::translated(words)),
         _ => None,
     }

@@ -18,6 +18,7 @@ fn lines_of_mmg3d_are_understood() {
             "mmg3d -v 5 a.mesh -sol m.sol -hmin 0.01 -hmax 1 -hgrad 1.3 -hausd 1e-3 -ar 30",
             "geo-adapt adapt a.mesh --metric m.sol --hmin 0.01 --hmax 1 --gradation 1.3 --hausdorff 1e-3 --ridge-angle 30 -o a.o.mesh",
         ),
+        ("adapt -in a.mesh -sol m.sol -out b.mesh", "geo-adapt adapt a.mesh --metric m.sol -o b.mesh"),
         (
             "mmg3d a.mesh -sol m.sol -hgrad -1 -nr",
             "geo-adapt adapt a.mesh --metric m.sol --gradation off --ridge-angle none -o a.o.mesh",
@@ -81,4 +82,17 @@ fn our_own_lines_are_left_alone() {
 fn a_line_is_typed_as_a_shell_takes_it() {
     let words = ["adapt", "my mesh.meshb", "it's", ""].map(OsString::from);
     assert_eq!(typed(&words), r"geo-adapt adapt 'my mesh.meshb' 'it'\''s' ''");
+}
+
+#[test]
+fn our_own_lines_stay_as_they_are() {
+    for line in [
+        "adapt a.mesh --metric m.sol -o b.mesh -v",
+        "adapt a.mesh --hmin 1 -out b.mesh",
+        "adapt -h",
+        "inspect -in a.mesh",
+    ] {
+        let words: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();
+        assert_eq!(translated(&words), None, "{line}");
+    }
 }

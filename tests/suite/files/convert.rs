@@ -158,6 +158,12 @@ fn bad_input_is_one_error() {
     place.refused(&["f.csv", "out.vtu"], "holds fields and no mesh");
     std::fs::write(place.path("hexa.su2"), "NDIME= 3\nNELEM= 1\n12 0 1 2 3 4 5 6 7\n").unwrap();
     place.refused(&["hexa.su2", "out.vtu"], "hexa.su2: line 3: an element of type 12 (hexahedron)");
+    // A file of no bytes, of whatever format.
+    for ending in "mesh meshb su2 vtu vtk xdmf xmf cgns msh msh2 inp bdf nas ugrid b8.ugrid stl obj ply".split(' ') {
+        let name = format!("empty.{ending}");
+        std::fs::write(place.path(&name), "").unwrap();
+        place.refused(&[&name, "out.vtu"], &format!("{name}: byte 0: the file is empty; write it again"));
+    }
     // What lies beside the input is an input too.
     write_mesh(&place.path("a.meshb"), &cube(1)).unwrap();
     let mut data = Dataset { mesh: cube(1), ..Dataset::default() };
