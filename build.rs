@@ -79,14 +79,18 @@ mod occt {
         "TKSTEPAttr",
     ];
 
-    /// Compiles cpp/ and links OCCT. OCCT_INCLUDE and OCCT_LIB name its folders when it is not the system's.
+    /// Compiles cpp/ and links OCCT: all files as one, since what takes its time is the reading of OCCT's headers (docs/decisions/build-time.md).
+    /// So what is in a namespace without a name has names of its own. OCCT_INCLUDE and OCCT_LIB name its folders when it is not the system's.
     pub fn build() {
         for name in ["OCCT_INCLUDE", "OCCT_LIB"] {
             println!("cargo:rerun-if-env-changed={name}");
         }
         let include = include_folder();
+        let all = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo names it")).join("all.cpp");
+        let text: String = SOURCES.iter().map(|source| format!("#include \"geo-adapt/{source}\"\n")).collect();
+        std::fs::write(&all, text).expect("the output folder can be written");
         cxx_build::bridge("src/geometry/occt/bridge.rs")
-            .files(SOURCES)
+            .file(all)
             // As a system folder, so that OCCT's own headers raise no warnings.
             .flag("-isystem")
             .flag(include.to_str().expect("OCCT's include folder has a UTF-8 name"))

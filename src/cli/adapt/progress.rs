@@ -232,7 +232,7 @@ mod tests {
         static STOP: AtomicBool = AtomicBool::new(false);
         let progress = Progress::new(&STOP);
         progress.expect_further(1);
-        progress.forecast(&Forecast { vertices: 1_234_567.0, seconds: 3600.0, bytes: 1e9 });
+        Observer::forecast(&progress, &Forecast { vertices: 1_234_567.0, seconds: 3600.0, bytes: 1e9 });
         progress.vertices(1_000_000);
         let told = progress.state.lock().unwrap().describe();
         // The bar before it has 25 of 80 columns; a second run takes as long as this one.
