@@ -2,7 +2,7 @@
 use crate::arrays::{self, Arrays, Place};
 use crate::errors;
 use crate::model::Model;
-use geo_adapt::adapt::forecast::{BYTES_A_VERTEX, Forecast};
+use geo_adapt::adapt::forecast::{Forecast, most_in_memory};
 use geo_adapt::adapt::meeting::{VERTICES_PER_COMPLEXITY, meet};
 use geo_adapt::api::{GrowthEnd, MeshView};
 use geo_adapt::geometry::on_mesh;
@@ -19,9 +19,6 @@ use std::time::Duration;
 
 /// How long the caller's thread sleeps between two looks at signals.
 const LOOK: Duration = Duration::from_millis(50);
-
-/// Share of the memory that can be had which a mesh may take: as the program.
-const SHARE_OF_MEMORY: f64 = 0.9;
 
 /// An adapter with its model and its threads.
 #[pyclass(frozen, module = "geo_adapt._kernel")]
@@ -97,11 +94,6 @@ struct WithForecast {
     overgrown: bool,
     growth_end: Option<GrowthEnd>,
     forecast: Option<Forecast>,
-}
-
-/// As many vertices as there is memory for, as far as the system tells.
-fn most_in_memory() -> Option<usize> {
-    geo_adapt::memory::available().map(|bytes| (SHARE_OF_MEMORY * bytes as f64 / BYTES_A_VERTEX) as usize)
 }
 
 /// What the worker hands back.

@@ -1,4 +1,5 @@
 //! What a run will take: vertices, seconds, memory. How well that is known beforehand: docs/decisions/forecast.md.
+use crate::memory;
 use crate::metric::Sym3;
 use crate::metric::batch::Batch;
 use std::hint::black_box;
@@ -20,10 +21,18 @@ const SHARE_OF_GIVEN: f64 = 0.08;
 const WORTH_OF_THREAD: f64 = 0.9;
 
 /// Memory for a vertex of the adapted mesh at the greatest, bytes.
-pub const BYTES_A_VERTEX: f64 = 1_200.0;
+const BYTES_A_VERTEX: f64 = 1_200.0;
+
+/// Share of the memory that can be had which a mesh may take.
+const SHARE_OF_MEMORY: f64 = 0.9;
 
 /// Batches of mean ratios that tell the speed of this machine. They take a millisecond.
 const BATCHES: usize = 5_000;
+
+/// As many vertices as there is memory for, as far as the system tells.
+pub fn most_in_memory() -> Option<usize> {
+    memory::available().map(|bytes| (SHARE_OF_MEMORY * bytes as f64 / BYTES_A_VERTEX) as usize)
+}
 
 /// What a run will take.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]

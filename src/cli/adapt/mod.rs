@@ -12,6 +12,7 @@ mod source;
 use super::figures::FigureArguments;
 use super::waiting::Waiting;
 use super::{Outcome, interrupt};
+use crate::adapt::forecast::most_in_memory;
 use crate::adapt::{self, Adapted, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
 use crate::geometry::classify::keeps_references;
 use crate::memory;
@@ -198,7 +199,7 @@ impl Arguments {
     fn options(&self, plan: Plan, freeze: Freeze) -> Options {
         let scheduler = if self.deterministic { Scheduler::Deterministic } else { self.scheduler };
         let surface = SurfaceBounds { normal_deviation: self.normal_deviation, hausdorff: self.hausdorff };
-        let max_vertices = self.max_vertices.map(|most| most as usize).or_else(progress::most_in_memory);
+        let max_vertices = self.max_vertices.map(|most| most as usize).or_else(most_in_memory);
         let Self { criterion, points, grain: grains, .. } = *self;
         Options { criterion, points, scheduler, plan, grains, freeze, surface, max_vertices }
     }

@@ -1,8 +1,7 @@
 //! Progress on the terminal: a bar a pass, with counts; and the interrupt.
-use crate::adapt::forecast::{BYTES_A_VERTEX, Forecast, seconds_left};
+use crate::adapt::forecast::{Forecast, seconds_left};
 use crate::adapt::{Counts, KINDS, Kind, Observer};
 use crate::cli::{interrupt, terminal};
-use crate::memory;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -16,16 +15,8 @@ pub fn finish_on_interrupt() -> &'static AtomicBool {
 /// How often the time is drawn anew.
 const TICK: Duration = Duration::from_millis(200);
 
-/// Share of the memory that can be had which a mesh may take.
-const SHARE_OF_MEMORY: f64 = 0.9;
-
 /// A run that is to take so long is told of beforehand, s: for a shorter one nobody waits.
 const WORTH_TELLING: f64 = 1.0;
-
-/// As many vertices as there is memory for, as far as the system tells.
-pub fn most_in_memory() -> Option<usize> {
-    memory::available().map(|bytes| (SHARE_OF_MEMORY * bytes as f64 / BYTES_A_VERTEX) as usize)
-}
 
 /// A time that is not known well.
 fn about(seconds: f64) -> String {
