@@ -142,6 +142,18 @@ fn a_mesh_numbered_the_other_way_is_turned() {
 }
 
 #[test]
+fn both_kinds_of_xdmf_of_one_name_keep_their_arrays_apart() {
+    let place = Place::new();
+    let data = dataset();
+    let mut moved = data.clone();
+    moved.mesh.vertices.iter_mut().for_each(|vertex| vertex[0] += 1.0);
+    let (first, _) = place.write("a.xdmf", &data, false);
+    let (second, _) = place.write("a.xmf", &moved, false);
+    assert_eq!(formats::read(&first).unwrap().content.mesh.vertices, data.mesh.vertices);
+    assert_eq!(formats::read(&second).unwrap().content.mesh.vertices, moved.mesh.vertices);
+}
+
+#[test]
 fn a_file_without_a_known_extension_is_known_by_its_content() {
     let place = Place::new();
     let data = Dataset { fields: Vec::new(), names: Default::default(), ..dataset() };

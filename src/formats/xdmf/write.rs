@@ -37,9 +37,10 @@ enum Part {
     Array(Array),
 }
 
-/// Where the arrays of an .xdmf go.
+/// Where the arrays go: a.h5 beside a.xdmf, and a.xmf.h5 beside a.xmf, so that neither of these two takes the other's.
 pub(in super::super) fn heavy_path(path: &Path) -> PathBuf {
-    path.with_extension("h5")
+    let is_xmf = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("xmf"));
+    path.with_extension(if is_xmf { "xmf.h5" } else { "h5" })
 }
 
 /// Writes a mesh: as one grid of mixed cells (`is_mixed`), or one a kind of cells.
