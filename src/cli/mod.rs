@@ -117,6 +117,7 @@ const INVALID: u8 = 1;
 
 /// Parses the command line, runs the subcommand, prints its error.
 pub fn main() -> ExitCode {
+    memory::end::take_stack();
     memory::end::take_over_panics();
     geometry::on_memory_end(memory::end::leave_if_ended);
     if let Some(code) = load::child().or_else(bootstrap::domain::child).or_else(bootstrap::heal::child) {

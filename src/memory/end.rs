@@ -13,6 +13,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Exit code where the machine has no more memory, or no more threads.
 pub const EXIT_CODE: u8 = 3;
 
+/// What the main thread's stack has from the beginning, bytes.
+const STACK: usize = 1 << 20;
+
 /// Where no more than this can be had memory has ended, bytes: what a small request needs is had in steps of the system and of the C library.
 const LITTLE: usize = 64 << 20;
 
@@ -57,23 +60,47 @@ pub fn take_over_panics() {
     }));
 }
 
+/// Takes [`STACK`] of the main thread's stack. It grows as it is used, and where there is no memory for that the system ends the process by a
+/// signal, without a word. So what is used later is there from the beginning, or the program ends here. To be called at the beginning of main.
+pub fn take_stack() {
+    #[inline(never)]
+    fn touch() {
+        std::hint::black_box(&mut [0_u8; STACK]);
+    }
+    #[cfg(unix)]
+    if limit_of(libc::RLIMIT_STACK).is_none_or(|limit| limit >= 4 * STACK) {
+        if !can_be_had(2 * STACK) {
+            leave(Some(STACK));
+        }
+        touch();
+    }
+}
+
 /// Whether there is next to no memory left.
 pub fn has_ended() -> bool {
+    !can_be_had(LITTLE)
+}
+
+/// Whether so many bytes can be had now.
+fn can_be_had(bytes: usize) -> bool {
     #[cfg(unix)]
     // SAFETY: a new private mapping without a file overlaps nothing, and goes at once.
     unsafe {
         let (access, kind) = (libc::PROT_READ | libc::PROT_WRITE, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS);
-        let start = libc::mmap(std::ptr::null_mut(), LITTLE, access, kind, -1, 0);
-        start == libc::MAP_FAILED || libc::munmap(start, LITTLE) != 0
+        let start = libc::mmap(std::ptr::null_mut(), bytes, access, kind, -1, 0);
+        start != libc::MAP_FAILED && libc::munmap(start, bytes) == 0
     }
     #[cfg(not(unix))]
-    false
+    {
+        let _ = bytes;
+        true
+    }
 }
 
 /// Whether there is, or was at any time before, next to no memory left of what the process may have (`ulimit -v`). For code that answers an
 /// allocation that failed by another error.
 pub fn has_been_short() -> bool {
-    has_ended() || peak().zip(limit()).is_some_and(|(peak, limit)| peak.saturating_add(LITTLE) > limit)
+    has_ended() || peak().zip(address_space()).is_some_and(|(peak, limit)| peak.saturating_add(LITTLE) > limit)
 }
 
 /// Most address space of this process so far, bytes.
@@ -84,17 +111,20 @@ fn peak() -> Option<usize> {
 }
 
 /// Most that it may have, bytes.
-#[cfg(unix)]
-fn limit() -> Option<usize> {
-    let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
-    // SAFETY: getrlimit writes to a record of its own kind, which is ours.
-    let is_known = unsafe { libc::getrlimit(libc::RLIMIT_AS, &mut limit) } == 0;
-    usize::try_from(limit.rlim_cur).ok().filter(|_| is_known && limit.rlim_cur != libc::RLIM_INFINITY)
+fn address_space() -> Option<usize> {
+    #[cfg(unix)]
+    return limit_of(libc::RLIMIT_AS);
+    #[cfg(not(unix))]
+    None
 }
 
-#[cfg(not(unix))]
-fn limit() -> Option<usize> {
-    None
+/// A limit of this process, bytes.
+#[cfg(unix)]
+fn limit_of(resource: libc::__rlimit_resource_t) -> Option<usize> {
+    let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+    // SAFETY: getrlimit writes to a record of its own kind, which is ours.
+    let is_known = unsafe { libc::getrlimit(resource, &mut limit) } == 0;
+    usize::try_from(limit.rlim_cur).ok().filter(|_| is_known && limit.rlim_cur != libc::RLIM_INFINITY)
 }
 
 /// Ends the program where memory has ended, or does nothing where a request was too large for a machine that has memory. For C++
