@@ -83,7 +83,8 @@ fn a_restart_comes_onto_its_mesh() {
     assert!(refused("r.csv", &csv.replacen(", 8\n", "\n", 1)).contains("line 3: 8 values; 9 are expected"));
     assert!(refused("r.csv", &csv.replacen("1.25", "x", 1)).contains("line 3: a finite number is expected, not 'x'"));
     assert!(refused("r.csv", "1,2\n3,4\n").contains("names of fields are expected"));
-    assert!(refused("r.dat", "").contains("names of fields are expected"));
+    assert!(refused("r.dat", "\n").contains("names of fields are expected"));
+    assert!(refused("r.dat", "").contains("byte 0: the file is empty"));
     assert!(refused("r.vtu", "").contains("give .sol, .solb, .csv or .dat"));
 }
 
