@@ -85,7 +85,7 @@ fn a_restart_comes_onto_its_mesh() {
     assert!(refused("r.csv", "1,2\n3,4\n").contains("names of fields are expected"));
     assert!(refused("r.dat", "\n").contains("names of fields are expected"));
     assert!(refused("r.dat", "").contains("byte 0: the file is empty"));
-    assert!(refused("r.vtu", "").contains("give .sol, .solb, .csv or .dat"));
+    assert!(refused("r.vtu", "\n").contains("give .sol, .solb, .csv or .dat"));
 }
 
 /// As SU2's CSU2BinaryFileWriter lays it out, on a machine of the other order of bytes too, with the numbers that SU2 6 added.
