@@ -80,7 +80,8 @@ mod occt {
     ];
 
     /// Compiles cpp/ and links OCCT: all files as one, since what takes its time is the reading of OCCT's headers (docs/decisions/build-time.md).
-    /// So what is in a namespace without a name has names of its own. OCCT_INCLUDE and OCCT_LIB name its folders when it is not the system's.
+    /// So two files must not use one name for different things in their anonymous namespaces. OCCT_INCLUDE and OCCT_LIB name OCCT's folders when it
+    /// is not the system's.
     pub fn build() {
         for name in ["OCCT_INCLUDE", "OCCT_LIB"] {
             println!("cargo:rerun-if-env-changed={name}");

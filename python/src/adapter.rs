@@ -242,15 +242,6 @@ impl Options {
     }
 }
 
-/// As the program's report says it.
-fn name_of_end(end: GrowthEnd) -> &'static str {
-    match end {
-        GrowthEnd::NotAccountedFor => "not-accounted-for",
-        GrowthEnd::MaxVertices => "max-vertices",
-        GrowthEnd::Memory => "memory",
-    }
-}
-
 /// The result with its memory, by names.
 fn give(py: Python<'_>, done: Done, stopped: bool) -> PyResult<Bound<'_, PyDict>> {
     let Done { adapted, names, report, complexity } = done;
@@ -268,7 +259,9 @@ fn give(py: Python<'_>, done: Done, stopped: bool) -> PyResult<Bound<'_, PyDict>
     all.set_item("off_model", PyArray1::from_vec(py, off_model))?;
     all.set_item("held", PyArray1::from_vec(py, held))?;
     all.set_item("doubled", PyArray1::from_vec(py, doubled))?;
-    all.set_item("growth_end", growth_end.map(name_of_end))?;
+    // By the name that it has in reports.
+    let end = serde_json::to_value(growth_end).map_err(errors::of_file)?;
+    all.set_item("growth_end", end.as_str())?;
     all.set_item("deviating", deviating)?;
     all.set_item("crossings", crossings)?;
     all.set_item("names", names)?;

@@ -99,13 +99,11 @@ impl Table {
     }
 }
 
-/// A point for people: six decimals, in powers of ten where those would say little of it, as of a model of micrometres.
+/// A point for people: six decimals; in powers of ten where it is very small or large, as on a model of micrometres.
 pub fn place(point: Vec3) -> String {
     let magnitude = point.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let number = |x: f64| match magnitude {
-        _ if magnitude == 0.0 || (1e-2..1e9).contains(&magnitude) => format!("{x:.6}"),
-        _ => format!("{x:.6e}"),
-    };
+    let is_usual = magnitude == 0.0 || (1e-2..1e9).contains(&magnitude);
+    let number = |x: f64| if is_usual { format!("{x:.6}") } else { format!("{x:.6e}") };
     let [x, y, z] = point.map(number);
     format!("({x}, {y}, {z})")
 }

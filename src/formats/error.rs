@@ -12,7 +12,7 @@ pub(super) fn short(name: &str) -> String {
     name.chars().take(40).flat_map(char::escape_debug).collect()
 }
 
-/// The bytes of a file, which has some: what a reader of a format says of none is of no help.
+/// The bytes of a file. An empty file is an error here: what the reader of a format would say of it does not help.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Error> {
     let bytes = read_file(path)?;
     if bytes.is_empty() {

@@ -67,6 +67,7 @@ pub fn take_stack() {
     fn touch() {
         std::hint::black_box(&mut [0_u8; STACK]);
     }
+    // A user's own small limit of the stack is left as it is.
     #[cfg(unix)]
     if limit_of(libc::RLIMIT_STACK).is_none_or(|limit| limit >= 4 * STACK) {
         if !can_be_had(2 * STACK) {

@@ -35,7 +35,7 @@ pub fn is_option(word: &str) -> bool {
     KNOWN.contains(&word)
 }
 
-/// Whether the words are for mmg3d: options of it that are none of ours, and none that is ours.
+/// Whether the words are a line for mmg3d: one of them is its option, and none begins with two dashes, as ours do.
 pub fn is_line(words: &[OsString]) -> bool {
     let mut words = words.iter().map(|word| word.to_str().unwrap_or_default());
     words.clone().any(|word| word.len() > 2 && is_option(word)) && !words.any(|word| word.starts_with("--"))
