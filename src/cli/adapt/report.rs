@@ -73,10 +73,12 @@ fn why_growth_ended(end: GrowthEnd) -> &'static str {
              in some directions; bound it by --aspect-ratio, --hmax or --gradation, or with --field leave the geometry in (no --no-geometry)"
         }
         GrowthEnd::MaxVertices => {
-            "it has as many vertices as it may have, and the metric is not met; give a smaller --complexity, or a greater --max-vertices"
+            "it has as many vertices as it may have, and the metric is not met; ask for fewer (`adapt`: a smaller --complexity; `bootstrap`: fewer \
+             --segments), or give a greater --max-vertices"
         }
         GrowthEnd::Memory => {
-            "there is no memory for more vertices, and the metric is not met; give a smaller --complexity"
+            "there is no memory for more vertices, and the metric is not met; ask for fewer (`adapt`: a smaller --complexity; `bootstrap`: fewer \
+             --segments)"
         }
     }
 }
