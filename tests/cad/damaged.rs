@@ -1,7 +1,7 @@
 //! Damaged CAD files through the built program: `model` and `bootstrap` end by themselves with a result or one clear error.
 //!
-//! A few by default. GEO_ADAPT_LONG=1 (tests/run --long) takes 10 000 of each format through `model`, and those that still are models
-//! through `bootstrap`.
+//! A few by default. tests/run --long takes 10 000 of each format through `model` (GEO_ADAPT_MUTATIONS), and all that still are models
+//! through `bootstrap` (GEO_ADAPT_LONG=1). GEO_ADAPT_SEED damages them in another way.
 #![cfg(unix)]
 
 use crate::common::program;
@@ -68,6 +68,11 @@ fn is_long() -> bool {
     std::env::var("GEO_ADAPT_LONG").is_ok_and(|long| long == "1")
 }
 
+/// The number in a variable of the environment.
+fn asked<T: std::str::FromStr>(variable: &str) -> Option<T> {
+    std::env::var(variable).ok()?.parse().ok()
+}
+
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
 }
@@ -75,14 +80,15 @@ fn data(name: &str) -> PathBuf {
 /// Damages the file again and again; each goes through `model`, and of those that are models some through `bootstrap`.
 fn survives(source: &str, extension: &str) {
     let valid = fs::read(data(source)).expect("a file of the tests");
-    let (count, meshed) = if is_long() { (10_000, 10_000) } else { (24, 1) };
+    let count = asked("GEO_ADAPT_MUTATIONS").unwrap_or(24);
+    let meshed = if is_long() { count } else { 1 };
     let folder = tempfile::tempdir().expect("a temporary folder");
     let name = format!("damaged.{extension}");
-    let (mut random, mut models, mut meshes) = (Random(20_261_122), 0, 0);
+    let (mut random, mut models, mut meshes) = (Random(asked("GEO_ADAPT_SEED").unwrap_or(20_261_122)), 0, 0);
     for number in 0..count {
         fs::write(folder.path().join(&name), damaged(&valid, &mut random)).expect("the folder is ours");
         let output = run(folder.path(), &["model", &name]);
-        let keep = |what: &str| format!("{what} of {source}, number {number}");
+        let keep = |what: &str| format!("{what} of {source}, number {number} of this seed");
         ends_well(&output, &keep("model"), None);
         if output.status.success() {
             models += 1;

@@ -27,13 +27,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Cycles at least: what comes of a poor mesh at once can still be made better.
-const CYCLES: usize = 2;
+/// Most cycles. All but the last are for the sizes alone: what they make is a mesh that the geometry is asked on again.
+const MOST_CYCLES: usize = 7;
 
-/// Most cycles.
-const MOST_CYCLES: usize = 6;
-
-/// A mesh is good enough when the complexity that the geometry asks for on it differs by less than this share.
+/// The sizes are known when the complexity that the geometry asks for will differ on the next mesh by less than this share.
 const SETTLED: f64 = 0.05;
 
 /// The mesher's mesh and what came of it.
@@ -64,31 +61,30 @@ pub fn run(
     let first = Arc::new(first);
     let (mut mesh, mut place) = (Arc::clone(&first), place);
     let mut sizes = self::sizes(arguments, team, &mesh, &place, model).map_err(named)?;
-    let mut settled = false;
+    let (mut is_last, mut change) = (false, None);
     let max_vertices = arguments.max_vertices.map(|most| most as usize).or_else(most_in_memory);
-    let options = Options { max_vertices, ..Options::default() };
-    for cycle in 1..=MOST_CYCLES {
-        stage("geometry");
+    for cycle in 1.. {
+        stage(&format!("geometry asks for {:.0}", sizes.complexity));
         let progress = Progress::new(stop);
-        progress.expect_further(CYCLES.saturating_sub(cycle));
-        if cycle == CYCLES {
+        progress.expect_further(usize::from(!is_last));
+        if cycle == 2 {
             // On the mesher's own mesh what the geometry asks for is not known well.
             progress.tell_forecasts(max_vertices);
         }
+        let options = Options { max_vertices, sizes_only: !is_last, ..Options::default() };
         let adapted = adapt::adapt(&mesh, &place, model, &sizes.source, &options, pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
         let interrupted = progress.interrupted();
-        // Where the geometry asked for the same on two meshes it is not asked again.
-        if cycle < MOST_CYCLES && !interrupted && !settled {
-            let result = (Arc::new(adapted.extracted.mesh.clone()), adapted.extracted.classification.clone());
-            let next = self::sizes(arguments, team, &result.0, &result.1, model).map_err(named)?;
-            // Nor where the mesh may have no more vertices.
-            settled = is_settled(sizes.complexity, next.complexity) || adapted.growth_end.is_some();
-            if cycle < CYCLES || !settled {
-                ((mesh, place), sizes) = (result, next);
-                continue;
-            }
+        if !is_last && !interrupted {
+            // Nothing is gained where the mesh may have no more vertices.
+            let is_full = adapted.growth_end.is_some();
+            (mesh, place) = (Arc::new(adapted.extracted.mesh), adapted.extracted.classification);
+            let next = self::sizes(arguments, team, &mesh, &place, model).map_err(named)?;
+            let new = (next.complexity / sizes.complexity - 1.0).abs();
+            is_last = is_full || cycle + 1 == MOST_CYCLES || next_change(change, new) < SETTLED;
+            (sizes, change) = (next, Some(new));
+            continue;
         }
         notices.extend(sizes.notice);
         let source = sizes.source;
@@ -99,9 +95,13 @@ pub fn run(
     unreachable!("the last cycle returns")
 }
 
-/// Whether the geometry asks for the same on the mesh that was made for it.
-fn is_settled(before: f64, after: f64) -> bool {
-    (after - before).abs() < SETTLED * before
+/// How much the complexity will change on the next mesh, where it has changed by these shares on the last two: they shrink from mesh to mesh by
+/// about the same factor. After the first mesh alone, which no metric was known for, nothing is foretold.
+fn next_change(before: Option<f64>, last: f64) -> f64 {
+    match before {
+        Some(before) if last < before => last * last / before,
+        _ => last,
+    }
 }
 
 impl Refined {
@@ -254,6 +254,15 @@ const GRADATION: f64 = 1.5;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn changes_go_on_to_shrink_as_they_do() {
+        assert_eq!(next_change(None, 0.5), 0.5);
+        assert!((next_change(Some(0.5), 0.1) - 0.02).abs() < 1e-15);
+        // What grows is not foretold.
+        assert_eq!(next_change(Some(0.1), 0.2), 0.2);
+        assert_eq!(next_change(Some(0.0), 0.0), 0.0);
+    }
 
     #[test]
     fn what_others_refuse_does_not_pass() {
