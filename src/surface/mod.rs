@@ -18,6 +18,7 @@ pub use whole::ENOUGH;
 
 use crate::geometry::{Geometry, OcctModel};
 use crate::mesh::vector::Vec3;
+use crate::tasks::Team;
 use outline::{Outline, Segment};
 use patch::Patch;
 use plane::{Conflict, NONE};
@@ -144,13 +145,14 @@ pub type GoOn<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Triangulates all faces of a model. Where triangles cross in the end, which finer ones do not cure where faces touch, other sizes are tried:
 /// what crosses least is kept. None where `go_on` said no.
-pub fn triangulate(model: &OcctModel, options: &Options, go_on: GoOn<'_>) -> Option<Surface> {
-    let mut best = attempt(model, options, go_on)?;
+pub fn triangulate(team: Team<'_>, model: &OcctModel, options: &Options, go_on: GoOn<'_>) -> Option<Surface> {
+    let mut best = attempt(team, model, options, go_on)?;
     for (finer, growth) in ATTEMPTS {
         if best.faults().1 == 0 || best.triangles.len() > LARGE || best.crossings.len() > MANY {
             break;
         }
         let other = attempt(
+            team,
             model,
             &Options { segments: finer * options.segments, growth: growth * options.growth, ..*options },
             go_on,
@@ -163,7 +165,7 @@ pub fn triangulate(model: &OcctModel, options: &Options, go_on: GoOn<'_>) -> Opt
 }
 
 /// One attempt: what has the fewest faults of all rounds.
-fn attempt(model: &OcctModel, options: &Options, go_on: GoOn<'_>) -> Option<Surface> {
+fn attempt(team: Team<'_>, model: &OcctModel, options: &Options, go_on: GoOn<'_>) -> Option<Surface> {
     let topology = model.topology();
     let twins = Twins::of(model);
     let mut points = Points::new(model, edges::divided(model, options, &twins), twins);
@@ -174,18 +176,27 @@ fn attempt(model: &OcctModel, options: &Options, go_on: GoOn<'_>) -> Option<Surf
     let mut best: Option<((usize, usize), Surface)> = None;
     for _ in 0..ROUNDS {
         let mut asked = Asked::default();
-        for &face in &dirty {
-            if !go_on() {
-                return None;
+        let taken = |&face: &u32| (face, std::mem::take(&mut faces[face as usize]), Asked::default());
+        let mut at_work: Vec<(u32, Face, Asked)> = dirty.iter().map(taken).collect();
+        team.fill(1, &mut at_work, |_, some| {
+            for (index, face, asked) in some {
+                if go_on() {
+                    work((model, options, go_on), &points, *index, face, asked);
+                }
             }
-            work((model, options, go_on), &points, face, &mut faces[face as usize], &mut asked);
-        }
+        });
         if !go_on() {
             return None;
         }
+        for (index, face, of_face) in at_work {
+            faces[index as usize] = face;
+            asked.pieces.extend(of_face.pieces);
+            asked.faces.extend(of_face.faces);
+        }
         if asked.pieces.is_empty() && asked.faces.is_empty() {
             let mut surface = whole::assemble(model, &points, &faces);
-            let (faults, near) = whole::find_faults((model, options, go_on), &mut surface, &mut faces, &mut asked);
+            let (faults, near) =
+                whole::find_faults((team, model, options, go_on), &mut surface, &mut faces, &mut asked);
             if !go_on() {
                 return None;
             }

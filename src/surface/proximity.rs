@@ -15,7 +15,7 @@ const FLAT: f64 = 1e-6;
 
 /// The triangles that are too near to others, sorted. `off` is how far each triangle is off its surface, model units. Of two triangles it is the
 /// one that is farther off; both if neither is twice as far off as the other. Ends early where `go_on` says no.
-pub fn too_near(surface: &Surface, off: &[f64], go_on: GoOn<'_>) -> Vec<u32> {
+pub fn too_near(team: Team<'_>, surface: &Surface, off: &[f64], go_on: GoOn<'_>) -> Vec<u32> {
     let corners = |t: u32| surface.triangles[t as usize].map(|v| surface.points[v as usize]);
     let reach = |t: u32| {
         let (off, longest) = (off[t as usize], super::whole::longest(&corners(t)).1);
@@ -36,7 +36,7 @@ pub fn too_near(surface: &Surface, off: &[f64], go_on: GoOn<'_>) -> Vec<u32> {
         a.iter().any(|v| b.contains(v))
     };
     let parts = tree.overlapping_pairs(
-        Team::alone(),
+        team,
         bounds,
         |_, node| node > 0 || go_on(),
         |found: &mut Vec<u32>, i, j| {

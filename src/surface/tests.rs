@@ -10,7 +10,7 @@ fn model(name: &str) -> OcctModel {
 fn of(name: &str) -> (OcctModel, Surface) {
     let model = model(name);
     let options = Options::new(model.topology().diagonal());
-    let surface = triangulate(&model, &options, &|| true).expect("nobody stops it");
+    let surface = triangulate(Team::alone(), &model, &options, &|| true).expect("nobody stops it");
     (model, surface)
 }
 
@@ -103,7 +103,7 @@ fn parameters_that_are_skew_do_not_fold() {
 #[test]
 fn chords_are_nearer_to_their_arcs_than_to_what_lies_behind() {
     let surface = check("zoo/bridged-plate.step", 0.05);
-    assert!(proximity::too_near(&surface, &surface.off, &|| true).is_empty());
+    assert!(proximity::too_near(Team::alone(), &surface, &surface.off, &|| true).is_empty());
     // What is no nearer than its neighbours stays as it is.
     assert!(surface.triangles.len() < 4000, "{}", surface.triangles.len());
 }
@@ -125,14 +125,14 @@ fn bodies_that_touch_in_an_edge_are_divided_alike() {
 fn who_says_no_gets_none() {
     let model = model("sphere.step");
     let options = Options::new(model.topology().diagonal());
-    assert!(triangulate(&model, &options, &|| false).is_none());
+    assert!(triangulate(Team::alone(), &model, &options, &|| false).is_none());
 }
 
 #[test]
 fn finer_is_finer() {
     let model = model("sphere.step");
     let mut options = Options::new(model.topology().diagonal());
-    let of = |options: &Options| triangulate(&model, options, &|| true).expect("nobody stops it");
+    let of = |options: &Options| triangulate(Team::alone(), &model, options, &|| true).expect("nobody stops it");
     let coarse = of(&options).triangles.len();
     options.segments = 6.0;
     let surface = of(&options);

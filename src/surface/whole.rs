@@ -110,7 +110,7 @@ pub fn pieces_of(surface: &Surface) -> Vec<([u32; 2], u32, u32)> {
 /// triangles are too near to others. Where more than [`MANY`] pairs cross nothing else is looked for.
 /// Both are not complete where `go_on` said no.
 pub fn find_faults(
-    (model, options, go_on): (&OcctModel, &Options, GoOn<'_>),
+    (team, model, options, go_on): (Team<'_>, &OcctModel, &Options, GoOn<'_>),
     surface: &mut Surface,
     faces: &mut [Face],
     asked: &mut Asked,
@@ -159,7 +159,7 @@ pub fn find_faults(
             asked.faces.insert(face);
         }
     }
-    let near = proximity::too_near(surface, &surface.off, go_on);
+    let near = proximity::too_near(team, surface, &surface.off, go_on);
     for &t in &near {
         ask_finer(surface, faces, options, &piece_at, t, asked);
     }

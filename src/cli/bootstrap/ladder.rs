@@ -128,7 +128,7 @@ impl<'a> Ladder<'a> {
     /// One rung: the mesh, valid and on the model.
     fn attempt(&self, rung: Rung, limit: Duration) -> Result<(TetMesh, Classification), Miss> {
         if let Rung::Own { finer } = rung {
-            let Some((mesh, on_model)) = own(self.model, finer, limit)? else {
+            let Some((mesh, on_model)) = own(self.team, self.model, finer, limit)? else {
                 return Err(Miss::TooLong("it was ended (--time-limit)".into()));
             };
             return judge(self.team, mesh, self.model, Some(on_model)).map_err(Miss::Failed);
@@ -165,8 +165,8 @@ impl<'a> Ladder<'a> {
 
 /// Our own mesh, and where its vertices belong on the model; none where the time was over.
 #[cfg(feature = "occt")]
-fn own(model: &Model, finer: f64, limit: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, Miss> {
-    match super::own::run(model, finer, limit) {
+fn own(team: Team<'_>, model: &Model, finer: f64, limit: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, Miss> {
+    match super::own::run(team, model, finer, limit) {
         Ok(own) => Ok(own.map(|own| (own.mesh, own.on_model))),
         Err(failure) if failure.is_crossing => Err(Miss::Hopeless(failure.why)),
         Err(failure) => Err(Miss::Failed(failure.why)),
@@ -174,7 +174,7 @@ fn own(model: &Model, finer: f64, limit: Duration) -> Result<Option<(TetMesh, Ve
 }
 
 #[cfg(not(feature = "occt"))]
-fn own(_: &Model, _: f64, _: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, Miss> {
+fn own(_: Team<'_>, _: &Model, _: f64, _: Duration) -> Result<Option<(TetMesh, Vec<Vec3>)>, Miss> {
     Err(Miss::Hopeless("this program was built without OpenCASCADE".into()))
 }
 

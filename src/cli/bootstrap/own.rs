@@ -10,6 +10,7 @@ use crate::mesh::adjacency::sorted2;
 use crate::mesh::vector::{Vec3, area2, dot, unit};
 use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
 use crate::surface::{ENOUGH, Options, Place, Surface, triangulate};
+use crate::tasks::{Team, stage};
 use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
@@ -40,13 +41,13 @@ impl From<String> for Failure {
 ///
 /// # Errors
 /// What part of the surface could not be triangulated or filled, and where.
-pub fn run(model: &Model, finer: f64, limit: Duration) -> Result<Option<Own>, Failure> {
+pub fn run(team: Team<'_>, model: &Model, finer: f64, limit: Duration) -> Result<Option<Own>, Failure> {
     let Model::Occt(cad) = model else { return Err("it is no CAD model".to_string().into()) };
     let options = Options::new(model.topology().diagonal()).finer(finer);
     let end = Instant::now().checked_add(limit);
     let go_on = || end.is_none_or(|end| Instant::now() < end);
-    let Some(surface) = triangulate(cad, &options, &go_on) else { return Ok(None) };
-    crate::tasks::stage("surface");
+    let Some(surface) = triangulate(team, cad, &options, &go_on) else { return Ok(None) };
+    stage("surface");
     if let Some(face) = surface.missing.first() {
         let count = surface.missing.len();
         return Err(format!("{count} faces have no triangles, the first is face {}", face + 1).into());
@@ -65,7 +66,7 @@ pub fn run(model: &Model, finer: f64, limit: Duration) -> Result<Option<Own>, Fa
             None => part,
         });
     }
-    crate::tasks::stage("tetrahedra");
+    stage("tetrahedra");
     own.map(Some).ok_or_else(|| "its surface has no triangles".to_string().into())
 }
 

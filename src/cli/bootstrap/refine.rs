@@ -4,7 +4,7 @@ use super::domain;
 use super::ladder::Meshed;
 use super::rung::Rung;
 use crate::adapt::forecast::most_in_memory;
-use crate::adapt::{self, Adapted, Options};
+use crate::adapt::{self, Adapted, Extracted, Options};
 use crate::cli::Outcome;
 use crate::cli::adapt::files::Targets;
 use crate::cli::adapt::input::Input;
@@ -27,10 +27,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Most cycles. All but the last are for the sizes alone: what they make is a mesh that the geometry is asked on again.
-const MOST_CYCLES: usize = 7;
+/// Most cycles. The first is for the sizes alone: what it makes is a mesh that the geometry is asked on again.
+const MOST_CYCLES: usize = 6;
 
-/// The sizes are known when the complexity that the geometry asks for will differ on the next mesh by less than this share.
+/// A mesh is good enough when the complexity that the geometry asks for on it differs by less than this share. Where it will, it is not asked.
 const SETTLED: f64 = 0.05;
 
 /// The mesher's mesh and what came of it.
@@ -66,25 +66,33 @@ pub fn run(
     for cycle in 1.. {
         stage(&format!("geometry asks for {:.0}", sizes.complexity));
         let progress = Progress::new(stop);
-        progress.expect_further(usize::from(!is_last));
+        progress.expect_further(usize::from(cycle == 1));
         if cycle == 2 {
             // On the mesher's own mesh what the geometry asks for is not known well.
             progress.tell_forecasts(max_vertices);
         }
-        let options = Options { max_vertices, sizes_only: !is_last, ..Options::default() };
-        let adapted = adapt::adapt(&mesh, &place, model, &sizes.source, &options, pool, &progress)
-            .map_err(|error| named(error.to_string()))?;
+        let adapt = |sizes_only| {
+            let options = Options { max_vertices, sizes_only, ..Options::default() };
+            adapt::adapt(&mesh, &place, model, &sizes.source, &options, pool, &progress)
+        };
+        let mut adapted = adapt(cycle == 1).map_err(|error| named(error.to_string()))?;
+        if cycle == 1 && Flaws::of_surface(&adapted.extracted).are_refused() && !progress.interrupted() {
+            // Passes for the shapes make room.
+            adapted = adapt(false).map_err(|error| named(error.to_string()))?;
+        }
         progress.finish();
         let interrupted = progress.interrupted();
         if !is_last && !interrupted {
+            let result = (Arc::new(adapted.extracted.mesh.clone()), adapted.extracted.classification.clone());
+            let next = self::sizes(arguments, team, &result.0, &result.1, model).map_err(named)?;
+            let new = next.complexity / sizes.complexity - 1.0;
             // Nothing is gained where the mesh may have no more vertices.
-            let is_full = adapted.growth_end.is_some();
-            (mesh, place) = (Arc::new(adapted.extracted.mesh), adapted.extracted.classification);
-            let next = self::sizes(arguments, team, &mesh, &place, model).map_err(named)?;
-            let new = (next.complexity / sizes.complexity - 1.0).abs();
-            is_last = is_full || cycle + 1 == MOST_CYCLES || next_change(change, new) < SETTLED;
-            (sizes, change) = (next, Some(new));
-            continue;
+            let is_known = new.abs() < SETTLED || adapted.growth_end.is_some();
+            if cycle == 1 || !is_known {
+                is_last = is_known || cycle + 1 == MOST_CYCLES || next_change(change, new) < SETTLED;
+                ((mesh, place), sizes, change) = (result, next, Some(new));
+                continue;
+            }
         }
         notices.extend(sizes.notice);
         let source = sizes.source;
@@ -95,22 +103,19 @@ pub fn run(
     unreachable!("the last cycle returns")
 }
 
-/// How much the complexity will change on the next mesh, where it has changed by these shares on the last two: they shrink from mesh to mesh by
-/// about the same factor. After the first mesh alone, which no metric was known for, nothing is foretold.
+/// By what share the complexity will change on the next mesh, where it changed by these on the last two: while it goes on in one direction,
+/// changes shrink by about the same factor.
 fn next_change(before: Option<f64>, last: f64) -> f64 {
-    match before {
-        Some(before) if last < before => last * last / before,
-        _ => last,
+    match before.map(|before| last / before) {
+        Some(ratio) if (0.0..1.0).contains(&ratio) => last.abs() * ratio,
+        _ => last.abs(),
     }
 }
 
 impl Refined {
     fn flaws(&self) -> Flaws {
-        Flaws {
-            off: self.adapted.extracted.off_model.len(),
-            folded: self.fidelity.worst_normal.is_some_and(|worst| worst.degrees > FOLDED),
-            crossings: self.adapted.extracted.crossings.count,
-        }
+        let folded = self.fidelity.worst_normal.is_some_and(|worst| worst.degrees > FOLDED);
+        Flaws { folded, ..Flaws::of_surface(&self.adapted.extracted) }
     }
 
     /// Why another mesh to begin with may be better.
@@ -181,6 +186,11 @@ struct Flaws {
 }
 
 impl Flaws {
+    /// Of a mesh whose normals were not compared with the model's.
+    fn of_surface(mesh: &Extracted) -> Self {
+        Self { off: mesh.off_model.len(), folded: false, crossings: mesh.crossings.count }
+    }
+
     /// Whether other commands refuse such a mesh.
     fn are_refused(&self) -> bool {
         self.off > 0 || self.crossings > 0
@@ -256,12 +266,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn changes_go_on_to_shrink_as_they_do() {
+    fn changes_in_one_direction_go_on_to_shrink() {
         assert_eq!(next_change(None, 0.5), 0.5);
         assert!((next_change(Some(0.5), 0.1) - 0.02).abs() < 1e-15);
-        // What grows is not foretold.
+        assert!((next_change(Some(-0.5), -0.1) - 0.02).abs() < 1e-15);
+        // What grows, or goes back, is not foretold.
         assert_eq!(next_change(Some(0.1), 0.2), 0.2);
-        assert_eq!(next_change(Some(0.0), 0.0), 0.0);
+        assert_eq!(next_change(Some(-0.5), 0.1), 0.1);
     }
 
     #[test]

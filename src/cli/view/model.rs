@@ -48,6 +48,7 @@ pub fn read(path: &Path) -> Result<(TetMesh, Given, Vec<String>), Box<dyn Error>
 #[cfg(feature = "occt")]
 fn triangles(model: &Model) -> Result<(TetMesh, Vec<String>), String> {
     use crate::surface::{Options, triangulate};
+    use crate::tasks::Team;
     use std::time::{Duration, Instant};
     /// How long the faces may take to be triangulated.
     const LIMIT: Duration = Duration::from_secs(600);
@@ -65,7 +66,7 @@ fn triangles(model: &Model) -> Result<(TetMesh, Vec<String>), String> {
         ..Options::new(topology.diagonal())
     };
     let start = Instant::now();
-    let surface = triangulate(cad, &options, &|| start.elapsed() < LIMIT)
+    let surface = triangulate(Team::alone(), cad, &options, &|| start.elapsed() < LIMIT)
         .ok_or_else(|| format!("its faces are not triangulated after {} s", LIMIT.as_secs()))?;
     let mut mesh = TetMesh { vertices: surface.points, ..TetMesh::default() };
     mesh.vertex_refs = vec![0; mesh.vertices.len()];
