@@ -39,8 +39,6 @@ pub struct Options {
     pub surface: SurfaceBounds,
     /// Most vertices: a mesh that has so many gets no more.
     pub max_vertices: Option<usize>,
-    /// Whether only the sizes are wanted: a mesh that the next metric is asked for on needs no better shapes.
-    pub sizes_only: bool,
 }
 
 impl Default for Options {
@@ -54,7 +52,6 @@ impl Default for Options {
             freeze: Freeze::default(),
             surface: SurfaceBounds::default(),
             max_vertices: None,
-            sizes_only: false,
         }
     }
 }
@@ -110,7 +107,6 @@ pub fn adapt(
     pipeline.crowded = crowded;
     pipeline.surface = options.surface;
     pipeline.max_vertices = options.max_vertices.unwrap_or(usize::MAX);
-    pipeline.sizes_only = options.sizes_only;
     pipeline.run();
     if pipeline.torn {
         return Err(fill::Error::Torn);

@@ -106,8 +106,6 @@ pub struct Pipeline<'c, 'm> {
     pub growth_end: Option<GrowthEnd>,
     /// Most vertices.
     pub max_vertices: usize,
-    /// Whether the passes for the shapes are left out.
-    pub sizes_only: bool,
     /// Whether the last sweep that was to add vertices could not add all, since there would be too many.
     is_limited: bool,
     /// Complexity that the metric is known to ask for.
@@ -155,7 +153,6 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             input,
             growth_end: None,
             max_vertices: usize::MAX,
-            sizes_only: false,
             is_limited: false,
             expected: 0.0,
             complexity_given: 0.0,
@@ -170,16 +167,6 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
-        self.run_sizes();
-        if self.sizes_only {
-            self.project();
-        } else if !self.observer.stop() {
-            self.run_shapes();
-        }
-        self.note_limit();
-    }
-
-    fn run_sizes(&mut self) {
         self.limit(size_limits());
         self.observer.vertices(self.live());
         self.forecast();
@@ -194,9 +181,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.pass += 1;
             self.tell_share_of_sizes();
         }
-    }
-
-    fn run_shapes(&mut self) {
+        if self.observer.stop() {
+            return;
+        }
         self.looked = [0; KINDS];
         self.reorder();
         self.limit(shape_limits());
@@ -217,6 +204,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             before = after;
             self.tell_share_of_shapes(pass);
         }
+        self.note_limit();
     }
 
     /// The threads, for lists.

@@ -4,7 +4,7 @@ use super::domain;
 use super::ladder::Meshed;
 use super::rung::Rung;
 use crate::adapt::forecast::most_in_memory;
-use crate::adapt::{self, Adapted, Extracted, Options};
+use crate::adapt::{self, Adapted, Options};
 use crate::cli::Outcome;
 use crate::cli::adapt::files::Targets;
 use crate::cli::adapt::input::Input;
@@ -27,7 +27,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Most cycles. The first is for the sizes alone: what it makes is a mesh that the geometry is asked on again.
+/// Most cycles. There are two at least: what comes of a poor mesh at once can still be made better.
 const MOST_CYCLES: usize = 6;
 
 /// A mesh is good enough when the complexity that the geometry asks for on it differs by less than this share. Where it will, it is not asked.
@@ -63,6 +63,7 @@ pub fn run(
     let mut sizes = self::sizes(arguments, team, &mesh, &place, model).map_err(named)?;
     let (mut is_last, mut change) = (false, None);
     let max_vertices = arguments.max_vertices.map(|most| most as usize).or_else(most_in_memory);
+    let options = Options { max_vertices, ..Options::default() };
     for cycle in 1.. {
         stage(&format!("geometry asks for {:.0}", sizes.complexity));
         let progress = Progress::new(stop);
@@ -71,15 +72,8 @@ pub fn run(
             // On the mesher's own mesh what the geometry asks for is not known well.
             progress.tell_forecasts(max_vertices);
         }
-        let adapt = |sizes_only| {
-            let options = Options { max_vertices, sizes_only, ..Options::default() };
-            adapt::adapt(&mesh, &place, model, &sizes.source, &options, pool, &progress)
-        };
-        let mut adapted = adapt(cycle == 1).map_err(|error| named(error.to_string()))?;
-        if cycle == 1 && Flaws::of_surface(&adapted.extracted).are_refused() && !progress.interrupted() {
-            // Passes for the shapes make room.
-            adapted = adapt(false).map_err(|error| named(error.to_string()))?;
-        }
+        let adapted = adapt::adapt(&mesh, &place, model, &sizes.source, &options, pool, &progress)
+            .map_err(|error| named(error.to_string()))?;
         progress.finish();
         let interrupted = progress.interrupted();
         if !is_last && !interrupted {
@@ -114,8 +108,11 @@ fn next_change(before: Option<f64>, last: f64) -> f64 {
 
 impl Refined {
     fn flaws(&self) -> Flaws {
-        let folded = self.fidelity.worst_normal.is_some_and(|worst| worst.degrees > FOLDED);
-        Flaws { folded, ..Flaws::of_surface(&self.adapted.extracted) }
+        Flaws {
+            off: self.adapted.extracted.off_model.len(),
+            folded: self.fidelity.worst_normal.is_some_and(|worst| worst.degrees > FOLDED),
+            crossings: self.adapted.extracted.crossings.count,
+        }
     }
 
     /// Why another mesh to begin with may be better.
@@ -186,11 +183,6 @@ struct Flaws {
 }
 
 impl Flaws {
-    /// Of a mesh whose normals were not compared with the model's.
-    fn of_surface(mesh: &Extracted) -> Self {
-        Self { off: mesh.off_model.len(), folded: false, crossings: mesh.crossings.count }
-    }
-
     /// Whether other commands refuse such a mesh.
     fn are_refused(&self) -> bool {
         self.off > 0 || self.crossings > 0
