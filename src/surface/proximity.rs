@@ -76,7 +76,7 @@ mod tests {
             vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.1, 0.1, gap], [0.9, 0.1, gap], [0.1, 0.9, gap]];
         let surface =
             Surface { points, triangles: vec![[0, 1, 2], [3, 5, 4]], faces: vec![0, 1], ..Surface::default() };
-        too_near(&surface, &off, &|| true)
+        too_near(Team::alone(), &surface, &off, &|| true)
     }
 
     #[test]
