@@ -59,8 +59,9 @@ impl Voids {
         });
         let triangles = narrow.triangles.get_mut().expect("it is new");
         for i in inside {
-            let Wall { vertices, corners, .. } = walls[i];
-            triangles.insert(Triangle { vertices, corners });
+            let Wall { vertices: mut key, corners, .. } = walls[i];
+            key.sort_unstable();
+            triangles.insert(Triangle { key, corners });
         }
         Self { narrow: Some(narrow) }
     }
