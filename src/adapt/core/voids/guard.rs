@@ -1,6 +1,6 @@
 //! Tests a change of the surface against the triangles near it across a void.
 use super::Voids;
-use super::triangles::{Key, Triangle};
+use super::triangles::{Key, Triangle, key};
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ids::{FACE, TetId, VertexId};
 use crate::adapt::core::refusal::Refusal;
@@ -33,14 +33,14 @@ impl SurfaceChange {
 
     /// A triangle comes, of a face of a tetrahedron as [`FACE`] has it.
     pub fn comes(&mut self, [a, b, c]: [VertexId; 3], at: impl Fn(VertexId) -> Vec3) {
-        self.come.push(Triangle { key: key([a, b, c]), corners: [at(a), at(c), at(b)] });
+        self.come.push(Triangle { vertices: [a, c, b], corners: [at(a), at(c), at(b)] });
     }
 
     /// Forgets triangles that go and come again at the same place.
     fn drop_common(&mut self) {
         let Self { gone, come, moving } = self;
         let moves = |key: &Key| moving.is_some_and(|v| key.contains(&v));
-        come.retain(|triangle| match gone.iter().position(|key| *key == triangle.key && !moves(key)) {
+        come.retain(|triangle| match gone.iter().position(|key| *key == triangle.key() && !moves(key)) {
             Some(at) => {
                 gone.swap_remove(at);
                 false
@@ -48,11 +48,6 @@ impl SurfaceChange {
             None => true,
         });
     }
-}
-
-fn key(mut face: [VertexId; 3]) -> Key {
-    face.sort_unstable();
-    face
 }
 
 /// Whether a change has to be noted when it is made.

@@ -59,9 +59,8 @@ impl Voids {
         });
         let triangles = narrow.triangles.get_mut().expect("it is new");
         for i in inside {
-            let Wall { vertices: mut key, corners, .. } = walls[i];
-            key.sort_unstable();
-            triangles.insert(Triangle { key, corners });
+            let Wall { vertices, corners, .. } = walls[i];
+            triangles.insert(Triangle { vertices, corners });
         }
         Self { narrow: Some(narrow) }
     }

@@ -66,26 +66,50 @@ fn triangles_are_found_as_they_come_and_go() {
         // Of sizes from a thousandth to one.
         let (size, at) = (10f64.powf(-3.0 * next()), [0; 3].map(|_| next()));
         let corners = [0; 3].map(|_| at.map(|x| x + size * next()));
-        let key = [3 * i, 3 * i + 1, 3 * i + 2].map(VertexId);
-        all.push(Triangle { key, corners });
+        let vertices = [3 * i, 3 * i + 2, 3 * i + 1].map(VertexId);
+        all.push(Triangle { vertices, corners });
         triangles.insert(all[all.len() - 1]);
         if i % 3 == 2 {
             let gone = all.swap_remove((next() * all.len() as f64) as usize);
-            triangles.remove(&gone.key);
-            assert!(triangles.get(&gone.key).is_none());
+            triangles.remove(&gone.key());
+            assert!(triangles.get(&gone.key()).is_none());
         }
     }
     assert_eq!(triangles.len(), all.len());
     let mut met = 0;
     for triangle in &all {
-        assert_eq!(triangles.get(&triangle.key).map(|t| t.corners), Some(triangle.corners));
-        let others = all.iter().filter(|other| other.key != triangle.key);
-        let of = |t: &Triangle| (t.key, t.corners);
-        let (key, corners) = of(triangle);
-        let is_met = |other: &&Triangle| crossing((&key, &corners), (&other.key, &other.corners)).is_some();
+        assert_eq!(triangles.get(&triangle.key()).map(|t| t.corners), Some(triangle.corners));
+        let others = all.iter().filter(|other| other.key() != triangle.key());
+        let Triangle { vertices, corners } = triangle;
+        let is_met = |other: &&Triangle| crossing((vertices, corners), (&other.vertices, &other.corners)).is_some();
         let expected = others.filter(is_met).count();
-        assert_eq!(triangles.crossings(&[*triangle], |key| *key == triangle.key), expected);
+        assert_eq!(triangles.crossings(&[*triangle], |key| *key == triangle.key()), expected);
         met += expected;
     }
     assert!(met > 20, "{met}");
+}
+
+/// Vertex 5 is the last of one triangle and the first of the other; by its number it is the middle one, and the last.
+#[test]
+fn neighbours_at_a_vertex_do_not_cross_whatever_their_numbers() {
+    let vertex = [-0.496_075_338_411_882_45, 0.037_514_438_594_134_16, 0.649_085_880_723_569_3];
+    let one = Triangle {
+        vertices: [4, 6, 5].map(VertexId),
+        corners: [
+            [-0.470_986_509_389_844_9, 0.100_706_578_088_012_87, 0.594_250_764_416_368_3],
+            [-0.499_250_617_121_759_17, 0.016_418_759_675_302_704, 0.653_475_079_713_031_1],
+            vertex,
+        ],
+    };
+    let other = Triangle {
+        vertices: [5, 2, 3].map(VertexId),
+        corners: [
+            vertex,
+            [-0.499_980_233_734_038_77, -0.002_667_529_773_431_284, 0.679_799_988_667_067_9],
+            [-0.496_052_664_404_195, 0.037_622_220_688_041_13, 0.659_864_998_418_824_7],
+        ],
+    };
+    let mut triangles = Triangles::default();
+    triangles.insert(other);
+    assert_eq!(triangles.crossings(&[one], |_| false), 0);
 }

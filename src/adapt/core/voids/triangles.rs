@@ -5,16 +5,29 @@ use crate::mesh::box_tree::Bounds;
 use crate::mesh::triangle_pair::{Corners, crossing};
 use std::collections::{BTreeMap, HashMap};
 
-/// A triangle's vertices, ascending.
+/// A triangle's vertices, ascending: which triangle it is, whichever way it is seen.
 pub type Key = [VertexId; 3];
+
+/// The key of a triangle of these vertices.
+pub fn key(mut vertices: [VertexId; 3]) -> Key {
+    vertices.sort_unstable();
+    vertices
+}
 
 /// A boundary triangle, seen from outside.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
-    /// Its vertices.
-    pub key: Key,
-    /// Where they are, so that the normal points out of the mesh.
+    /// Its vertices, so that the normal points out of the mesh.
+    pub vertices: [VertexId; 3],
+    /// Where they are, in this order.
     pub corners: Corners,
+}
+
+impl Triangle {
+    /// Which it is.
+    pub fn key(&self) -> Key {
+        key(self.vertices)
+    }
 }
 
 type Cell = [i64; 3];
@@ -50,7 +63,7 @@ impl Triangles {
             Some(old) => *old = triangle,
             None => self.slots.push(triangle),
         }
-        self.of.insert(triangle.key, slot);
+        self.of.insert(triangle.key(), slot);
         let (level, cell) = home(&triangle.corners);
         self.levels.entry(level).or_default().entry(cell).or_default().push(slot);
     }
@@ -117,11 +130,10 @@ impl Triangles {
         let mut count = 0;
         for (i, triangle) in some.iter().enumerate() {
             let around = bounds(&triangle.corners, 0.0);
-            let with = |of: &Triangle| (of.key, of.corners);
-            let (key, corners) = with(triangle);
-            let is_met = |other: &Triangle| crossing((&key, &corners), (&other.key, &other.corners)).is_some();
+            let Triangle { vertices, corners } = triangle;
+            let is_met = |other: &Triangle| crossing((vertices, corners), (&other.vertices, &other.corners)).is_some();
             count += some[..i].iter().filter(|other| is_met(other)).count();
-            self.each_near(&around, |other| count += usize::from(!left_out(&other.key) && is_met(other)));
+            self.each_near(&around, |other| count += usize::from(!left_out(&other.key()) && is_met(other)));
         }
         count
     }
