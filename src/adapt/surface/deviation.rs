@@ -34,6 +34,12 @@ const CLEAR: f64 = 0.5;
 /// A triangle whose normal has a greater cosine than this with that of another lies as the other does.
 const SAME_PLANE: f64 = 0.97;
 
+/// Normals beside an apex are taken at this part of the way to another vertex.
+const NEAR_APEX: f64 = 0.01;
+
+/// The greatest angle between normals of an apex that a triangle may span: that of a cone, however sharp, with five triangles.
+const APEX_ANGLE: f64 = 0.4 * std::f64::consts::PI + 1e-9;
+
 /// A distance; one that is no number is beyond any bound.
 fn or_far(distance: f64) -> f64 {
     if distance.is_nan() { f64::INFINITY } else { distance }
@@ -79,8 +85,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let known = triangle.map(|v| self.uv_of(v, face));
         let foot = self.foot_of_centroid([a, b, c], known, face);
         let cos_deviation = dot(normal, self.state.evaluator.face_normal(face, foot.uv));
-        let ends = [(a, known[0]), (b, known[1]), (c, known[2])].map(|(p, uv)| self.normal_near(face, p, uv, foot.uv));
-        let least = dot(ends[0], ends[1]).min(dot(ends[1], ends[2])).min(dot(ends[2], ends[0]));
+        let least = self.least_normal_cosine(face, [a, b, c], known, foot.uv);
         SurfaceDeviation {
             cos_deviation,
             cos_variation: (0.5 * (1.0 + least)).max(0.0).sqrt(),
@@ -106,16 +111,50 @@ impl<A: Access> Worker<'_, '_, A> {
         or_far(distance(middle, self.place(entity, middle, &[a, b]).point))
     }
 
-    /// Normal of a face at a vertex, at the vertex' parameters if they are known. At a pole or an apex, where there is no normal, it is taken
-    /// a little towards `inner`.
-    fn normal_near(&mut self, face: u32, p: Vec3, uv: Option<[f64; 2]>, inner: [f64; 2]) -> Vec3 {
-        let evaluator = &mut self.state.evaluator;
-        let uv = uv.unwrap_or_else(|| evaluator.foot_on_surface(face, p, inner).uv);
-        let normal = evaluator.face_normal(face, uv);
-        if normal != [0.0; 3] {
-            return normal;
+    /// The least cosine between the normals of a face at the vertices of a triangle. `inner` are the parameters of the foot of its centroid.
+    fn least_normal_cosine(&mut self, face: u32, p: [Vec3; 3], known: [Option<[f64; 2]>; 3], inner: [f64; 2]) -> f64 {
+        let mut at = [[0.0; 2]; 3];
+        let mut normals = [[0.0; 3]; 3];
+        for k in 0..3 {
+            at[k] = known[k].unwrap_or_else(|| self.state.evaluator.foot_on_surface(face, p[k], inner).uv);
+            normals[k] = self.state.evaluator.face_normal(face, at[k]);
         }
-        evaluator.face_normal(face, [0, 1].map(|k| uv[k] + 1e-3 * (inner[k] - uv[k])))
+        if normals.contains(&[0.0; 3]) {
+            return self.least_normal_cosine_at_apex(face, p, normals, at, inner);
+        }
+        let [a, b, c] = normals;
+        dot(a, b).min(dot(b, c)).min(dot(c, a))
+    }
+
+    /// As [`Worker::least_normal_cosine`] where the face has no normal at a vertex, the apex of a cone or the pole of a sphere: there it has
+    /// one towards each other vertex. At an apex these differ however small the triangle is, so the normals at the other two may differ by
+    /// as much more, up to what five triangles round it need.
+    fn least_normal_cosine_at_apex(
+        &mut self,
+        face: u32,
+        p: [Vec3; 3],
+        normals: [Vec3; 3],
+        at: [[f64; 2]; 3],
+        inner: [f64; 2],
+    ) -> f64 {
+        let mut towards = |i: usize, j: usize| {
+            if normals[i] != [0.0; 3] {
+                return normals[i];
+            }
+            let guess = if normals[j] == [0.0; 3] { inner } else { at[j] };
+            let evaluator = &mut self.state.evaluator;
+            let foot = evaluator.foot_on_surface(face, lerp(p[i], p[j], NEAR_APEX), guess);
+            evaluator.face_normal(face, foot.uv)
+        };
+        let angle = |a: Vec3, b: Vec3| dot(a, b).clamp(-1.0, 1.0).acos();
+        let mut greatest = 0.0_f64;
+        for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let across = angle(towards(i, j), towards(j, i));
+            let of_apex = angle(towards(k, i), towards(k, j));
+            let allowed = if of_apex <= APEX_ANGLE { of_apex } else { 0.0 };
+            greatest = greatest.max(across - allowed);
+        }
+        greatest.cos()
     }
 
     /// Cosine of half the angle between the model edge's tangents at two neighbours on it.
