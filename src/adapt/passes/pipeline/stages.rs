@@ -2,6 +2,11 @@
 //!
 //! What that saves, and how the limits were chosen: docs/decisions/stages.md.
 use super::Pipeline;
+use crate::adapt::core::edge_list::Classed;
+use crate::adapt::core::measure::is_shorter;
+use crate::geometry::{Entity, Geometry};
+use crate::mesh::vector::sub;
+use crate::tasks::GRAIN;
 
 /// A stage makes cells flatter by no more than this factor.
 const FACTOR: f64 = 4.0;
@@ -53,6 +58,37 @@ impl Pipeline<'_, '_> {
                 break;
             }
         }
+    }
+
+    /// In a stage, takes from the short edges those along a curved face or model edge that the source does not want to be short. Without
+    /// them the surface would lie beside the model by more than the layers that come later are thick, and find no way back through them.
+    pub(super) fn leave_for_later_stages(&self, short: &mut Vec<Classed>) {
+        if self.context.stage.is_none() {
+            return;
+        }
+        let (context, store) = (&self.context, &self.context.store);
+        let topology = context.model.topology();
+        let is_curved = |face: u32| context.planes[face as usize].is_none();
+        let on_curved = |v| match store.entity(v) {
+            Entity::Face(face) => is_curved(face),
+            Entity::Edge(edge) => topology.edges[edge as usize].faces.iter().any(|&face| is_curved(face)),
+            Entity::Vertex(_) | Entity::Interior => false,
+        };
+        let kept = self.team().chunks(GRAIN, short.len(), |range| {
+            let mut hint = 0;
+            let mut is_kept = |edge: &Classed| {
+                let ends = [edge.item.a, edge.item.b];
+                if !ends.into_iter().any(on_curved) || ends.into_iter().any(|v| store.dimension(v) > 2) {
+                    return true;
+                }
+                let [p, q] = ends.map(|v| store.position(v));
+                let [at_p, at_q] = [p, q].map(|x| context.source.log_at(x, &mut hint).exp().quadratic(sub(q, p)));
+                is_shorter(at_p, at_q, context.limits.short)
+            };
+            short[range].iter().map(&mut is_kept).collect::<Vec<_>>()
+        });
+        let mut kept = kept.into_iter().flatten();
+        short.retain(|_| kept.next() == Some(true));
     }
 }
 
