@@ -409,8 +409,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
         let (store, limit) = (&self.context.store, self.context.limits.short);
-        let mut found = edge_list::listed(self.team(), store, since, |a, b| is_shorter(a, b, limit));
-        self.leave_for_later_stages(&mut found);
+        let found = edge_list::listed(self.team(), store, since, |a, b| is_shorter(a, b, limit));
         edge_list::in_order(self.team(), &found, |edge| u32::from(edge.class))
     }
 }

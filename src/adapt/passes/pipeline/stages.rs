@@ -1,12 +1,8 @@
 //! Stages: where a metric asks for cells many times flatter than those of the mesh, the mesh comes to it step by step.
 //!
 //! What that saves, and how the limits were chosen: docs/decisions/stages.md.
-use super::Pipeline;
-use crate::adapt::core::edge_list::Classed;
-use crate::adapt::core::measure::is_shorter;
-use crate::geometry::{Entity, Geometry};
-use crate::mesh::vector::sub;
-use crate::tasks::GRAIN;
+use super::{Pipeline, size_limits};
+use crate::adapt::core::context::Limits;
 
 /// A stage makes cells flatter by no more than this factor.
 const FACTOR: f64 = 4.0;
@@ -26,6 +22,15 @@ const STAGES: usize = 600;
 /// Most passes in a stage.
 const PASSES: usize = 3;
 
+/// Least cosine of both angles between a surface triangle and the model in a stage, unless it is less already: 1.8°. A surface that became
+/// coarser would lie beside the model by more than the layers that come later are thick, and find no way back through them.
+const COSINE: f64 = 0.9995;
+
+/// Limits of the passes in a stage.
+fn stage_limits() -> Limits {
+    Limits { cos_deviation: COSINE, cos_variation: COSINE, ..size_limits() }
+}
+
 impl Pipeline<'_, '_> {
     /// Brings the mesh near to its metric, in stages.
     pub(super) fn come_near(&mut self) {
@@ -36,6 +41,7 @@ impl Pipeline<'_, '_> {
         if asked_for(self, ENTRY).is_none() {
             return;
         }
+        self.limit(stage_limits());
         let mut before = 0.0;
         for _ in 0..STAGES {
             let Some(stage) = asked_for(self, (MUCH, FACTOR)).filter(|stage| stage.complexity > FINER * before) else {
@@ -58,37 +64,7 @@ impl Pipeline<'_, '_> {
                 break;
             }
         }
-    }
-
-    /// In a stage, takes from the short edges those along a curved face or model edge that the source does not want to be short. Without
-    /// them the surface would lie beside the model by more than the layers that come later are thick, and find no way back through them.
-    pub(super) fn leave_for_later_stages(&self, short: &mut Vec<Classed>) {
-        if self.context.stage.is_none() {
-            return;
-        }
-        let (context, store) = (&self.context, &self.context.store);
-        let topology = context.model.topology();
-        let is_curved = |face: u32| context.planes[face as usize].is_none();
-        let on_curved = |v| match store.entity(v) {
-            Entity::Face(face) => is_curved(face),
-            Entity::Edge(edge) => topology.edges[edge as usize].faces.iter().any(|&face| is_curved(face)),
-            Entity::Vertex(_) | Entity::Interior => false,
-        };
-        let kept = self.team().chunks(GRAIN, short.len(), |range| {
-            let mut hint = 0;
-            let mut is_kept = |edge: &Classed| {
-                let ends = [edge.item.a, edge.item.b];
-                if !ends.into_iter().any(on_curved) || ends.into_iter().any(|v| store.dimension(v) > 2) {
-                    return true;
-                }
-                let [p, q] = ends.map(|v| store.position(v));
-                let [at_p, at_q] = [p, q].map(|x| context.source.log_at(x, &mut hint).exp().quadratic(sub(q, p)));
-                is_shorter(at_p, at_q, context.limits.short)
-            };
-            short[range].iter().map(&mut is_kept).collect::<Vec<_>>()
-        });
-        let mut kept = kept.into_iter().flatten();
-        short.retain(|_| kept.next() == Some(true));
+        self.limit(size_limits());
     }
 }
 
