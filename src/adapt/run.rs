@@ -39,6 +39,8 @@ pub struct Options {
     pub surface: SurfaceBounds,
     /// Most vertices: a mesh that has so many gets no more.
     pub max_vertices: Option<usize>,
+    /// Whether the mesh is only a draft, that the next metric is asked for on: its shapes need not be the best.
+    pub is_draft: bool,
 }
 
 impl Default for Options {
@@ -52,6 +54,7 @@ impl Default for Options {
             freeze: Freeze::default(),
             surface: SurfaceBounds::default(),
             max_vertices: None,
+            is_draft: false,
         }
     }
 }
@@ -107,6 +110,7 @@ pub fn adapt(
     pipeline.crowded = crowded;
     pipeline.surface = options.surface;
     pipeline.max_vertices = options.max_vertices.unwrap_or(usize::MAX);
+    pipeline.is_draft = options.is_draft;
     pipeline.run();
     if pipeline.torn {
         return Err(fill::Error::Torn);

@@ -49,6 +49,9 @@ pub struct Limits {
     pub cos_variation: f64,
     /// Greatest distance of a surface triangle from the model, at its centroid and the middles of its edges.
     pub chord: f64,
+    /// Greatest distance of a surface triangle's centroid from the model, in the metric, unless it is more already. Across a layer much thinner
+    /// than this, vertices on the triangle would find no way to the model.
+    pub rise: f64,
     /// Most tetrahedra in an enlarged cavity.
     pub cavity: usize,
     /// A vertex of more tetrahedra stays where it is: to try it on each of its neighbours would take the square of their number.
@@ -74,6 +77,7 @@ impl Default for Limits {
             cos_deviation: 0.5,
             cos_variation: 0.94,
             chord: f64::INFINITY,
+            rise: 1.0,
             cavity: 96,
             ball: usize::MAX,
         }

@@ -46,6 +46,9 @@ const SHAPE_PASSES: usize = 6;
 /// After so many shape passes, vertices that are still unprojected are removed.
 const PATIENCE: usize = 1;
 
+/// From then on, most tetrahedra of a cavity: what lies in the way to the model goes.
+const LARGE_CAVITY: usize = 4096;
+
 /// The store is renumbered when it has grown by this factor.
 const OUT_OF_ORDER: usize = 2;
 
@@ -106,6 +109,8 @@ pub struct Pipeline<'c, 'm> {
     pub growth_end: Option<GrowthEnd>,
     /// Most vertices.
     pub max_vertices: usize,
+    /// Whether the mesh is only a draft: then one pass for the shapes is enough.
+    pub is_draft: bool,
     /// Whether the last sweep that was to add vertices could not add all, since there would be too many.
     is_limited: bool,
     /// Complexity that the metric is known to ask for.
@@ -153,6 +158,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             input,
             growth_end: None,
             max_vertices: usize::MAX,
+            is_draft: false,
             is_limited: false,
             expected: 0.0,
             complexity_given: 0.0,
@@ -190,7 +196,13 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth();
         let mut before = self.cost();
+        if self.is_draft {
+            self.project();
+        }
         for pass in 0..SHAPE_PASSES {
+            if self.is_draft && self.unprojected.is_empty() {
+                break;
+            }
             self.pass += 1;
             self.limit(shape_limits());
             self.shape_pass();
@@ -282,6 +294,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Brings unprojected vertices to the model; after some passes they are removed instead.
     fn settle(&mut self, pass: usize) {
+        if pass >= PATIENCE {
+            self.context.limits.cavity = LARGE_CAVITY;
+        }
         self.project();
         if !self.unprojected.is_empty() && pass >= PATIENCE {
             self.remove_unprojected(pass + 1 == SHAPE_PASSES);
@@ -294,8 +309,13 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.context.limits = Limits { collapse_floor: 0.0, longest_new: f64::INFINITY, ball: usize::MAX, ..limits };
         if at_any_price {
             // A coarse surface can be refined again, one beside the model stays there.
-            self.context.limits =
-                Limits { cos_deviation: -1.0, cos_variation: -1.0, chord: f64::INFINITY, ..self.context.limits };
+            self.context.limits = Limits {
+                cos_deviation: -1.0,
+                cos_variation: -1.0,
+                chord: f64::INFINITY,
+                rise: f64::INFINITY,
+                ..self.context.limits
+            };
         }
         let items = std::mem::take(&mut self.unprojected);
         self.sweep(Kind::Project, &RemoveUnprojected, &items);

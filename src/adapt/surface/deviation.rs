@@ -5,7 +5,7 @@ use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::worker::Worker;
 use crate::geometry::{Entity, Evaluate, Geometry, OnSurface};
-use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, scale, unit};
+use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, scale, sub, unit};
 
 /// How far a surface triangle deviates from the model: two angles as cosines, and a distance.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +17,8 @@ pub struct SurfaceDeviation {
     pub cos_variation: f64,
     /// Greatest distance from the model of the centroid and of the middles of the edges, where that is bounded; else 0.
     pub chord: f64,
+    /// Distance of the centroid from the model, in the metric.
+    pub rise: f64,
 }
 
 /// The worst deviation of several surface triangles.
@@ -80,6 +82,7 @@ impl<A: Access> Worker<'_, '_, A> {
                 cos_deviation: dot(normal, plane),
                 cos_variation: 1.0,
                 chord: self.chord(triangle, face, 0.0),
+                rise: 0.0,
             };
         }
         let known = triangle.map(|v| self.uv_of(v, face));
@@ -90,7 +93,15 @@ impl<A: Access> Worker<'_, '_, A> {
             cos_deviation,
             cos_variation: (0.5 * (1.0 + least)).max(0.0).sqrt(),
             chord: self.chord(triangle, face, foot.distance),
+            rise: self.rise(triangle, [a, b, c], foot.point),
         }
+    }
+
+    /// How far the centroid of a triangle is from its foot on the model, in the mean of the metrics of its vertices.
+    fn rise(&self, triangle: [VertexId; 3], [a, b, c]: [Vec3; 3], foot: Vec3) -> f64 {
+        let way = sub(foot, scale(add(a, add(b, c)), 1.0 / 3.0));
+        let lengths = triangle.map(|v| self.store.metric(v).quadratic(way).sqrt());
+        or_far((lengths[0] + lengths[1] + lengths[2]) / 3.0)
     }
 
     /// The chord error of a triangle, where it is bounded; else 0. The distance of the `centroid` is given.
@@ -166,7 +177,8 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// The worst deviation of some triangles, given with their tags.
     pub fn worst_deviation(&mut self, triangles: &[([VertexId; 3], u32)]) -> WorstDeviation {
-        let (mut worst, mut sum) = (SurfaceDeviation { cos_deviation: 1.0, cos_variation: 1.0, chord: 0.0 }, 0.0);
+        let (mut worst, mut sum) =
+            (SurfaceDeviation { cos_deviation: 1.0, cos_variation: 1.0, chord: 0.0, rise: 0.0 }, 0.0);
         for &(triangle, tag) in triangles {
             let deviation = self.surface_deviation(triangle, tag - 1);
             sum += deviation.cos_deviation;
@@ -174,6 +186,7 @@ impl<A: Access> Worker<'_, '_, A> {
                 cos_deviation: worst.cos_deviation.min(deviation.cos_deviation.abs()),
                 cos_variation: worst.cos_variation.min(deviation.cos_variation),
                 chord: worst.chord.max(deviation.chord),
+                rise: worst.rise.max(deviation.rise),
             };
         }
         WorstDeviation { worst, side: if sum < 0.0 { -1.0 } else { 1.0 } }
@@ -242,6 +255,7 @@ impl<A: Access> Worker<'_, '_, A> {
             side * deviation.cos_deviation >= limits.cos_deviation.max(1e-3)
                 && deviation.cos_variation >= limits.cos_variation
                 && deviation.chord <= limits.chord
+                && deviation.rise <= limits.rise
         })
     }
 
@@ -261,11 +275,13 @@ impl<A: Access> Worker<'_, '_, A> {
         };
         let cos_variation = old.worst.cos_variation.min(limits.cos_variation);
         let chord = old.worst.chord.max(limits.chord);
+        let rise = old.worst.rise.max(limits.rise);
         let turned = new.iter().any(|&(triangle, tag)| {
             let deviation = self.surface_deviation(triangle, tag - 1);
             old.side * deviation.cos_deviation < cos_deviation
                 || deviation.cos_variation < cos_variation
                 || deviation.chord > chord
+                || deviation.rise > rise
         });
         if turned { Err(Refusal::Normal) } else { Ok(()) }
     }

@@ -201,6 +201,6 @@ impl Arguments {
         let surface = SurfaceBounds { normal_deviation: self.normal_deviation, hausdorff: self.hausdorff };
         let max_vertices = self.max_vertices.map(|most| most as usize).or_else(most_in_memory);
         let Self { criterion, points, grain: grains, .. } = *self;
-        Options { criterion, points, scheduler, plan, grains, freeze, surface, max_vertices }
+        Options { criterion, points, scheduler, plan, grains, freeze, surface, max_vertices, is_draft: false }
     }
 }

@@ -27,7 +27,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Most cycles. There are two at least: what comes of a poor mesh at once can still be made better.
+/// Most cycles. There are two at least: all but the last make drafts.
 const MOST_CYCLES: usize = 6;
 
 /// A mesh is good enough when the complexity that the geometry asks for on it differs by less than this share. Where it will, it is not asked.
@@ -63,7 +63,6 @@ pub fn run(
     let mut sizes = self::sizes(arguments, team, &mesh, &place, model).map_err(named)?;
     let (mut is_last, mut change) = (false, None);
     let max_vertices = arguments.max_vertices.map(|most| most as usize).or_else(most_in_memory);
-    let options = Options { max_vertices, ..Options::default() };
     for cycle in 1.. {
         stage(&format!("geometry asks for {:.0}", sizes.complexity));
         let progress = Progress::new(stop);
@@ -72,6 +71,7 @@ pub fn run(
             // On the mesher's own mesh what the geometry asks for is not known well.
             progress.tell_forecasts(max_vertices);
         }
+        let options = Options { max_vertices, is_draft: !is_last, ..Options::default() };
         let adapted = adapt::adapt(&mesh, &place, model, &sizes.source, &options, pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
@@ -82,11 +82,9 @@ pub fn run(
             let new = next.complexity / sizes.complexity - 1.0;
             // Nothing is gained where the mesh may have no more vertices.
             let is_known = new.abs() < SETTLED || adapted.growth_end.is_some();
-            if cycle == 1 || !is_known {
-                is_last = is_known || cycle + 1 == MOST_CYCLES || next_change(change, new) < SETTLED;
-                ((mesh, place), sizes, change) = (result, next, Some(new));
-                continue;
-            }
+            is_last = is_known || cycle + 1 == MOST_CYCLES || next_change(change, new) < SETTLED;
+            ((mesh, place), sizes, change) = (result, next, Some(new));
+            continue;
         }
         notices.extend(sizes.notice);
         let source = sizes.source;
