@@ -126,21 +126,22 @@ fn interfaces(mesh: &TetMesh) -> BTreeSet<i32> {
 
 #[test]
 fn models_become_valid_meshes_on_all_their_faces() {
-    let volume = [
-        ("cube-cylinder", 1.0 - std::f64::consts::PI / 16.0),
-        ("cone", f64::NAN),
-        ("torus", f64::NAN),
-        ("sphere-in-box", f64::NAN),
-        ("thin-plate", 0.04),
-        ("wing", f64::NAN),
+    // Volume, where it is known, and the least mean ratio. At the cone's apex normals were once taken on one side for all triangles: 0.06.
+    let models = [
+        ("cube-cylinder", 1.0 - std::f64::consts::PI / 16.0, 0.2),
+        ("cone", f64::NAN, 0.4),
+        ("torus", f64::NAN, 0.2),
+        ("sphere-in-box", f64::NAN, 0.2),
+        ("thin-plate", 0.04, 0.2),
+        ("wing", f64::NAN, 0.2),
     ];
-    for (name, volume) in volume {
+    for (name, volume, least) in models {
         let place = Place::new();
         let model = model(&format!("{name}.step"));
         let report = text(&place.path("report.json"));
         let mesh = place.mesh(&model, &["--report", &report]);
         let report = place.json("report.json");
-        assert!(report["statistics"]["mean_ratios"]["min"].as_f64().unwrap() > 0.2, "{name}: {}", report["statistics"]);
+        assert!(report["statistics"]["mean_ratios"]["min"].as_f64() > Some(least), "{name}: {}", report["statistics"]);
         assert!(report["fidelity"]["from_model"]["distance"].as_f64().unwrap() < 1e-9, "{name}");
         assert_eq!(report["off_model"], serde_json::json!([]), "{name}");
         // References are the numbers of the faces: what classify finds by itself agrees.

@@ -144,7 +144,7 @@ fn oriented(vertices: Vec<Vec3>, tets: Vec<[u32; 4]>) -> TetMesh {
 }
 
 /// So many tetrahedra about an edge.
-fn fan(n: u32) -> TetMesh {
+pub fn fan(n: u32) -> TetMesh {
     let rim = |i: u32| {
         let (s, c) = (TAU * f64::from(i) / f64::from(n)).sin_cos();
         [c, s, 0.5]

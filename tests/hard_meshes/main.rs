@@ -240,6 +240,23 @@ fn repair_ends_where_nearly_all_tetrahedra_are_bad() {
     assert!(report["overgrown"].as_bool().unwrap() && report["unrepaired"].as_u64().is_some(), "{report}");
 }
 
+/// Layers far thinner than the chords of a round surface rise. Its chords became so long that vertices found no way back through the layers:
+/// up to nine were off the model, and triangles stood across it.
+#[test]
+fn a_round_surface_under_thin_layers_stays_on_its_model() {
+    let mesh = kinds::fan(24);
+    for name in ["stretched 1e3", "one is odd"] {
+        let metric = METRICS.iter().find(|metric| metric.name == name).unwrap();
+        let report = report(&mesh, |work| {
+            let size = write_metric(work, &mesh, metric);
+            vec!["--metric".into(), size, "--complexity".into(), "30".into()]
+        });
+        assert_eq!(report["off_model"], serde_json::json!([]), "{name}");
+        let worst = &report["fidelity"]["worst_normal"];
+        assert!(worst["degrees"].as_f64().is_some_and(|degrees| degrees < 90.0), "{name}: {worst}");
+    }
+}
+
 /// The files on which it was first seen.
 #[test]
 fn the_shared_hard_cases_end() {
