@@ -46,7 +46,7 @@ const SHAPE_PASSES: usize = 6;
 /// After so many shape passes, vertices that are still unprojected are removed.
 const PATIENCE: usize = 1;
 
-/// From then on, most tetrahedra of a cavity: what lies in the way to the model goes.
+/// Most tetrahedra of a cavity from then on: inner vertices that are in the way to the model go.
 const LARGE_CAVITY: usize = 4096;
 
 /// The store is renumbered when it has grown by this factor.
@@ -109,7 +109,7 @@ pub struct Pipeline<'c, 'm> {
     pub growth_end: Option<GrowthEnd>,
     /// Most vertices.
     pub max_vertices: usize,
-    /// Whether the mesh is only a draft: then one pass for the shapes is enough.
+    /// Whether the mesh is only a draft: then there are passes for the shapes only while vertices are off the model.
     pub is_draft: bool,
     /// Whether the last sweep that was to add vertices could not add all, since there would be too many.
     is_limited: bool,

@@ -22,8 +22,8 @@ const STAGES: usize = 600;
 /// Most passes in a stage.
 const PASSES: usize = 3;
 
-/// Least cosine of both angles between a surface triangle and the model in a stage, unless it is less already: 1.8°. A surface that became
-/// coarser would lie beside the model by more than the layers that come later are thick, and find no way back through them.
+/// Least cosine of the normal deviation and of the normal variation in a stage, unless it is less already: 1.8°. A coarser surface would be
+/// farther from the model than the layers that come later are thick, and its new vertices would find no way through them.
 const COSINE: f64 = 0.9995;
 
 /// Limits of the passes in a stage.

@@ -31,11 +31,10 @@ impl Pipeline<'_, '_> {
             return;
         }
         let limits = self.context.limits;
-        self.context.limits = Limits { long: 0.0, shortest_new: 0.0, insert_floor: 0.01, ..limits };
-        // Not the stricter bounds of a stage.
-        let (own, surface) = (Limits::default(), self.surface);
-        self.context.limits.cos_deviation = surface.cosine(own.cos_deviation);
-        self.context.limits.cos_variation = surface.cosine(own.cos_variation);
+        // A stage has stricter angles, which the user did not ask for.
+        let Limits { cos_deviation, cos_variation, .. } = Limits::default();
+        let splits_all = Limits { long: 0.0, shortest_new: 0.0, insert_floor: 0.01, ..limits };
+        self.limit(Limits { cos_deviation, cos_variation, ..splits_all });
         for _ in 0..SWEEPS {
             let mut items = self.on_curved_faces();
             items.truncate(self.max_vertices.saturating_sub(self.live()));
