@@ -28,6 +28,8 @@ pub fn crossing<I: PartialEq>((nodes_a, a): (&[I; 3], &Corners), (nodes_b, b): (
     if of_a.iter().filter(|shared| **shared).count() > 1 {
         return meeting(a, b);
     }
+    // What does not meet does not cross, be the body between the two thinner than they draw back.
+    meeting(a, b)?;
     // Both by the same, so that two in one plane which look the same way stay in one.
     let step = drawing_back(a).max(drawing_back(b));
     meeting(&drawn_back(a, of_a, step), &drawn_back(b, of_b, step))
@@ -354,6 +356,19 @@ mod tests {
         assert_eq!(crossing((&[0, 1, 2], &FLAT), (&[0, 4, 5], &beside)), None);
         let through = [[0.0, 0.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0]];
         assert!(crossing((&[0, 1, 2], &FLAT), (&[0, 4, 5], &through)).is_some());
+    }
+
+    /// A bottom and a side of a layer of 1e-18, and a layer of 1e-3 at 1e12 from the origin, were said to cross.
+    #[test]
+    fn sides_of_a_body_thinner_than_they_draw_back_do_not_cross() {
+        for (offset, height) in [(0.0, 1e-18), (1e12, 1e-3)] {
+            let at = |x: f64, y: f64, z: f64| [x, y, z].map(|x| x + offset);
+            let bottom = [at(0.0, 0.5, 0.0), at(0.5, 0.5, 0.0), at(0.0, 0.0, 0.0)];
+            let side = [at(0.0, 0.0, height), at(0.0, 0.5, height), at(0.0, 0.0, 0.0)];
+            assert_eq!(crossing((&[4, 5, 1], &bottom), (&[10, 13, 1], &side)), None, "{height}");
+            let top = [at(0.0, 0.0, height), at(0.5, 0.5, height), at(0.0, 0.5, height)];
+            assert_eq!(crossing((&[4, 5, 1], &bottom), (&[10, 14, 13], &top)), None, "{height}");
+        }
     }
 
     #[test]
