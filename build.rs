@@ -39,9 +39,10 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 17] = [
+    const SOURCES: [&str; 18] = [
         "cpp/load.cpp",
         "cpp/names.cpp",
+        "cpp/divide.cpp",
         "cpp/connect.cpp",
         "cpp/separate.cpp",
         "cpp/domain.cpp",

@@ -25,9 +25,6 @@
 namespace geo_adapt {
 namespace {
 
-/// Of the diagonal.
-constexpr double TOUCHING = 1e-7;
-
 using Solids = TopTools_IndexedMapOfShape;
 
 /// Whether the boxes of two solids meet.

@@ -229,7 +229,7 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
   }
   shape = bounded(shape, labels);
   BRepLib::BuildCurves3d(shape);
-  const TopoDS_Shape solids = connected(closed(shape, labels, format == 1), labels);
+  const TopoDS_Shape solids = divided(connected(closed(shape, labels, format == 1), labels), labels);
   const TopoDS_Shape apart = separated(solids, labels);
   return std::make_shared<Model>(apart, labels, solids);
 }

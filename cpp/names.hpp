@@ -44,6 +44,12 @@ TopoDS_Shape sewn(const TopoDS_Shape& shape, Labels& labels, double tolerance, b
 /// meshers number them, refuse them, or make points of them in the midst of a face. Null where nothing is left.
 TopoDS_Shape with_faces(const TopoDS_Shape& shape);
 
+/// What is nearer than this touches; of the diagonal.
+constexpr double TOUCHING = 1e-7;
+
+/// Where faces of a solid lie on each other, the solids that its faces enclose, which have one face in common there. Labels are handed on.
+TopoDS_Shape divided(const TopoDS_Shape& shape, Labels& labels);
+
 /// A file of several solids that touch in faces: these, their edges and vertices are made one, and there once. Solids that touch in edges
 /// or points alone stay as they are. Labels are handed on.
 TopoDS_Shape connected(const TopoDS_Shape& shape, Labels& labels);

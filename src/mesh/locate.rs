@@ -131,13 +131,9 @@ impl Locator {
             {
                 (tet, previous) = (nearer, NONE);
             }
-            let corners = self.corners(tet);
-            let volumes = sub_volumes(&corners, p);
-            let total = volumes[0] + volumes[1] + volumes[2] + volumes[3];
-            if total > 0.0 && volumes.iter().all(|&v| v >= INSIDE * total) {
-                let weights = volumes.map(|v| v.max(0.0));
-                let sum: f64 = weights.iter().sum();
-                return Walk::Found(Location { tet, weights: weights.map(|w| w / sum), distance: 0.0 });
+            let volumes = sub_volumes(&self.corners(tet), p);
+            if let Some(weights) = weights_inside(volumes) {
+                return Walk::Found(Location { tet, weights, distance: 0.0 });
             }
             let mut next = NONE;
             let mut least = 0.0;
@@ -225,6 +221,12 @@ impl Locator {
             Box::new(tree)
         });
         let mut best = bound;
+        // First those whose boxes contain p: most points are inside, and a test of that costs a small part of a distance.
+        tree.nearest(p, f64::MIN_POSITIVE.min(best.distance), |tet| {
+            let Some(weights) = weights_inside(sub_volumes(&self.corners(tet), p)) else { return f64::MIN_POSITIVE };
+            best = Location { tet, weights, distance: 0.0 };
+            0.0
+        });
         tree.nearest(p, best.distance * best.distance, |tet| {
             let found = self.nearest_in(tet, p);
             if found.distance < best.distance {
@@ -268,6 +270,18 @@ fn nearest_on_face(corners: &[Vec3; 4], face: usize, p: Vec3) -> ([f64; 3], f64)
     let weights = nearest_on_triangle(p, points);
     let foot = points.iter().zip(weights).fold([0.0; 3], |q, (&x, w)| add(q, scale(x, w)));
     (weights, distance(p, foot))
+}
+
+/// Barycentric coordinates from [`sub_volumes`], where the point is inside.
+#[inline(always)]
+fn weights_inside(volumes: [f64; 4]) -> Option<[f64; 4]> {
+    let total = volumes[0] + volumes[1] + volumes[2] + volumes[3];
+    let is_inside = total > 0.0 && volumes.iter().all(|&v| v >= INSIDE * total);
+    is_inside.then(|| {
+        let weights = volumes.map(|v| v.max(0.0));
+        let sum: f64 = weights.iter().sum();
+        weights.map(|w| w / sum)
+    })
 }
 
 /// Six times the volumes with p in place of each corner: p's barycentric coordinates times six times the volume.

@@ -32,8 +32,6 @@ const ROUNDS: usize = 32;
 /// Most vertices that are added, and so many times those of the mesh: where more are asked for, the metric is too fine for a first mesh, and
 /// whoever uses it bounds its complexity.
 const MOST: [usize; 2] = [50_000, 2];
-/// Fewer vertices than one in so many are few.
-const FEW: usize = 100;
 /// Vertices a task. Each task makes an evaluator.
 const TASK: usize = 1 << 6;
 
@@ -70,10 +68,7 @@ pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limit
     for round in 0.. {
         let mesh = found.mesh(sizing.mesh);
         let around = VertexNeighbours::of_mesh(team, mesh);
-        // Where few vertices were added, what is graded stays so.
-        if FEW * (found.logs.len() - logs.len()) > found.logs.len() {
-            logs.clear();
-        }
+        // What is graded stays so: sizes grow with the distance, whatever vertices lie between.
         logs.extend(&found.logs[logs.len()..]);
         gradation::grade_with(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
         if round == ROUNDS {

@@ -71,6 +71,22 @@ fn gaps_between_faces_are_closed() {
     assert!(run.status.code() == Some(2) && stderr(&run).contains("has no solid"), "{}", stderr(&run));
 }
 
+/// Bodies that touch and were sewn to one shell, with both of the walls between them: no mesher made a mesh, after two minutes.
+#[test]
+fn bodies_that_were_sewn_with_both_of_their_walls_share_one() {
+    let shared = shared_case("cad-faults/wingSew3.stp").map(|path| (path, 10));
+    for (model, count) in [(here("geometry/faults/double-wall.step"), 8)].into_iter().chain(shared) {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out.meshb");
+        let run = heal(&model, &[], &out);
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        let mesh = io::read_mesh(&out).unwrap().content;
+        assert!(validity::check(&mesh).is_valid());
+        assert_eq!(faces(&mesh), count, "{}", model.display());
+        assert_eq!(mesh.tets.refs.iter().collect::<BTreeSet<_>>().len(), 2);
+    }
+}
+
 #[test]
 fn tiny_fillets_go() {
     let Some(model) = shared_case("cad-faults/n-tinyfillet.egads") else { return };

@@ -37,6 +37,9 @@ const SIZE_PASSES: usize = 20;
 /// A size pass that changes less than this share of the vertices is the last.
 const LITTLE: f64 = 0.05;
 
+/// The same for a draft.
+const LITTLE_OF_DRAFT: f64 = 0.2;
+
 /// A shape pass that saves less than this share of the mean of 1/Q − 1 is the last.
 const SETTLED: f64 = 0.2;
 
@@ -179,7 +182,10 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         if self.crowded {
             self.thin();
         }
-        self.come_near();
+        // The first mesh of a model is far from its metric everywhere, not in layers alone, and its draft is made better later.
+        if !self.is_draft {
+            self.come_near();
+        }
         for _ in 0..SIZE_PASSES {
             if self.size_pass() || self.growth_end.is_some() || self.observer.stop() {
                 break;
@@ -325,7 +331,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Whether so many changes are few for a mesh of this size.
     fn is_little(&self, changes: u64) -> bool {
-        (changes as f64) < LITTLE * self.live() as f64
+        let share = if self.is_draft { LITTLE_OF_DRAFT } else { LITTLE };
+        (changes as f64) < share * self.live() as f64
     }
 
     fn changes(&self) -> u64 {
