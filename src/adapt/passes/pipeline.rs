@@ -38,7 +38,7 @@ const SIZE_PASSES: usize = 20;
 const LITTLE: f64 = 0.05;
 
 /// The same for a draft.
-const LITTLE_OF_DRAFT: f64 = 0.2;
+const LITTLE_OF_DRAFT: f64 = 0.1;
 
 /// A shape pass that saves less than this share of the mean of 1/Q − 1 is the last.
 const SETTLED: f64 = 0.2;

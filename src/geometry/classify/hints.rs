@@ -61,6 +61,11 @@ impl Hints {
         votes.into_iter().max_by_key(|&(face, n)| (n, std::cmp::Reverse(face))).map(|(face, _)| face)
     }
 
+    /// Whether the file lists one of the vertices inside this face.
+    pub fn has_inside(&self, face: u32, mut vertices: impl Iterator<Item = u32>) -> bool {
+        vertices.any(|vertex| self.lowest.get(&vertex) == Some(&Entity::Face(face)))
+    }
+
     /// Lines about entries that do not hold.
     pub fn notices(&self, result: &Classification) -> Vec<String> {
         let mut notices = Vec::new();

@@ -79,8 +79,9 @@ fn match_patch(fit: &Fit, evaluator: &mut Evaluator, patch: &[u32], on_ridge: &[
     inside.sort_unstable();
     inside.dedup();
     let hinted = named(fit, fit.mesh.triangles.refs[*patch.first()? as usize]).or_else(|| fit.hints.face_of(nodes()));
-    // If a patch has no vertex inside, all of its vertices may lie on the border of another face. No hint decides that.
-    if let (Some(face), false) = (hinted, inside.is_empty())
+    // If a patch has no vertex inside, all of its vertices may lie on the border of another face. Only a vertex that is listed inside decides that.
+    if let Some(face) = hinted
+        && (!inside.is_empty() || fit.hints.has_inside(face, nodes()))
         && let Ok(landings) = land_patch(fit, evaluator, patch, face)
         && landings.iter().all(|(_, on)| on.distance <= fit.sure(Entity::Face(face)))
     {
