@@ -172,7 +172,7 @@ impl Arguments {
         let named = |error| format!("{}: {error}", self.input.mesh.display());
         let freeze = parts::frozen(&self.freeze, &input.mesh, &input.names).map_err(named)?;
         let options = self.options(plan, freeze);
-        progress.tell_forecasts(options.max_vertices);
+        progress.tell_forecasts(options.max_vertices, &self.output);
         if !is_last && !options.freeze.surfaces.is_empty() {
             self.check_references(input).map_err(named)?;
         }
@@ -180,6 +180,7 @@ impl Arguments {
             let Input { mesh, place, model, source, .. } = input;
             let adapted = adapt::adapt(mesh, place, model, source, &options, pool, progress);
             progress.finish();
+            progress.has_room()?;
             adapted.map_err(|error| named(error.to_string()).into())
         };
         meet::adapted(&self.input, team, input, adapt, || progress.interrupted())

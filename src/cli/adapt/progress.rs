@@ -1,8 +1,10 @@
 //! Progress on the terminal: a bar a pass, with counts; and the interrupt.
 use crate::adapt::forecast::{Forecast, seconds_left};
 use crate::adapt::{Counts, KINDS, Kind, Observer};
+use crate::cli::files::room;
 use crate::cli::{interrupt, terminal};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
@@ -32,6 +34,8 @@ fn about(seconds: f64) -> String {
 pub struct Progress {
     shown: bool,
     stop: &'static AtomicBool,
+    /// Whether there is no room for the mesh.
+    is_in_vain: AtomicBool,
     state: Mutex<State>,
 }
 
@@ -49,6 +53,10 @@ struct State {
     tells_forecasts: bool,
     /// Most that there may be.
     most: Option<usize>,
+    /// Where the mesh goes.
+    output: Option<PathBuf>,
+    /// Why it cannot be written there.
+    no_room: Option<String>,
     /// What the first run was expected to take.
     forecast: Option<Forecast>,
     /// When the passes began, how long they were expected to take, s, and what share of them is done.
@@ -70,18 +78,29 @@ impl Progress {
             expected: 0,
             tells_forecasts: false,
             most: None,
+            output: None,
+            no_room: None,
             forecast: None,
             passes: (Instant::now(), 0.0, 0.0),
             further: 0,
         };
         let shown = !terminal::is_quiet() && std::io::IsTerminal::is_terminal(&std::io::stderr());
-        Self { shown, stop, state: Mutex::new(state) }
+        Self { shown, stop, is_in_vain: AtomicBool::new(false), state: Mutex::new(state) }
     }
 
-    /// Forecasts are told, and where there are to be more than so many vertices a warning.
-    pub fn tell_forecasts(&self, most: Option<usize>) {
+    /// Forecasts are told, and where there are to be more than so many vertices a warning. A run ends at once if the disk has no room for its mesh.
+    pub fn tell_forecasts(&self, most: Option<usize>, output: &Path) {
         let mut state = self.state.lock().expect("no panic while drawing");
         (state.tells_forecasts, state.most) = (!terminal::is_quiet(), most);
+        state.output = Some(output.to_owned());
+    }
+
+    /// Why the mesh of the last run could not be written.
+    ///
+    /// # Errors
+    /// The disk has no room for it.
+    pub fn has_room(&self) -> Result<(), String> {
+        self.state.lock().expect("no panic while drawing").no_room.take().map_or(Ok(()), Err)
     }
 
     /// So many runs come after this one at least, each of which takes about as long.
@@ -137,6 +156,9 @@ impl Observer for Progress {
         state.expected = vertices.round() as u64;
         state.forecast = Some(*forecast);
         state.passes = (Instant::now(), seconds, 0.0);
+        let written = state.most.map_or(vertices, |most| vertices.min(most as f64));
+        state.no_room = state.output.as_deref().and_then(|output| room::lacking(output, written));
+        self.is_in_vain.store(state.no_room.is_some(), Relaxed);
         if !state.tells_forecasts {
             return;
         }
@@ -210,7 +232,7 @@ impl Observer for Progress {
     }
 
     fn stop(&self) -> bool {
-        self.interrupted()
+        self.interrupted() || self.is_in_vain.load(Relaxed)
     }
 }
 

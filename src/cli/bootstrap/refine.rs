@@ -69,12 +69,13 @@ pub fn run(
         progress.expect_further(usize::from(cycle == 1));
         if cycle == 2 {
             // On the mesher's own mesh what the geometry asks for is not known well.
-            progress.tell_forecasts(max_vertices);
+            progress.tell_forecasts(max_vertices, &arguments.output);
         }
         let options = Options { max_vertices, is_draft: !is_last, ..Options::default() };
         let adapted = adapt::adapt(&mesh, &place, model, &sizes.source, &options, pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();
+        progress.has_room()?;
         let interrupted = progress.interrupted();
         if !is_last && !interrupted {
             let result = (Arc::new(adapted.extracted.mesh.clone()), adapted.extracted.classification.clone());

@@ -6,6 +6,7 @@
 mod identity;
 mod outputs;
 pub mod reading;
+pub mod room;
 pub mod text;
 
 pub use outputs::{On, Outputs};

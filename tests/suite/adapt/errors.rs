@@ -199,6 +199,36 @@ fn a_metric_of_more_vertices_than_a_mesh_can_number_is_refused_at_once() {
     assert_says(&work.refusal(&input, &["--metric", &metric]), &["2e12 vertices", "units", "--complexity"]);
 }
 
+/// Bytes that may be written to the disk of a folder.
+#[cfg(target_os = "linux")]
+fn free_bytes(folder: &str) -> f64 {
+    let df = std::process::Command::new("df").args(["--output=avail", "-B1", folder]).output().unwrap();
+    String::from_utf8(df.stdout)
+        .unwrap()
+        .lines()
+        .last()
+        .and_then(|free| free.trim().parse().ok())
+        .unwrap_or(f64::INFINITY)
+}
+
+/// It was found after the whole adaptation.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_without_room_for_the_mesh_is_told_before_the_work() {
+    // It takes 34 GB; this disk is half of the memory.
+    let free = free_bytes("/dev/shm");
+    let folder = tempfile::tempdir_in("/dev/shm");
+    let (Ok(folder), true) = (folder, free < 30e9) else {
+        eprintln!("/dev/shm cannot be written, or has {free} bytes free: not tried");
+        return;
+    };
+    let (_work, _, input, _) = prepared();
+    let output = folder.path().join("out.meshb");
+    let arguments = ["--analytic", "linear", "--complexity", "2e8", "--max-vertices", "400000000"];
+    assert_says(&refused_output(&input, &output, &arguments), &["out.meshb", "MB free", "vertices", "make room"]);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
 #[test]
 fn an_error_is_all_that_quiet_lets_through() {
     let (work, _, input, _) = prepared();
