@@ -71,15 +71,18 @@ impl Search<'_> {
     /// Fills what the front encloses; the front is as before when it cannot.
     fn advance(&mut self) -> bool {
         let Some(&f) = self.front.last() else { return true };
-        let mut apices: Vec<u32> = Vec::new();
-        for &v in &self.vertices {
-            if !f.contains(&v) && self.orient(f[0], f[1], f[2], v) > 0.0 && self.fits(f, v) {
-                // In the order of the Delaunay criterion: no earlier one's sphere holds a later one.
-                let k = apices.iter().position(|&w| in_sphere_perturbed(self.points, [f[0], f[1], f[2], w], v));
-                apices.insert(k.unwrap_or(apices.len()), v);
+        let is_above = |v: &u32| !f.contains(v) && self.orient(f[0], f[1], f[2], *v) > 0.0;
+        let mut apices: Vec<u32> = self.vertices.iter().copied().filter(is_above).collect();
+        while !apices.is_empty() {
+            // In the order of the Delaunay criterion: the sphere of the first holds no other. Most often that one will do.
+            let nearer = |best: usize, k: usize| {
+                if in_sphere_perturbed(self.points, [f[0], f[1], f[2], apices[best]], apices[k]) { k } else { best }
+            };
+            let first = (1..apices.len()).fold(0, nearer);
+            let v = apices.swap_remove(first);
+            if !self.fits(f, v) {
+                continue;
             }
-        }
-        for v in apices {
             if self.budget == 0 {
                 return false;
             }

@@ -178,6 +178,7 @@ mod tests {
     use crate::adapt::schedule::{Execution, Grains, Scheduler};
     use crate::adapt::tests::bench::{Bench, Shape, sample};
     use crate::tasks::{Plan, Pool, Team};
+    use std::hint::black_box;
 
     /// Whether a cube of 22 000 vertices may grow from a mesh of so many, for a metric of this size.
     fn may_grow(size: f64, input: usize) -> bool {
@@ -234,7 +235,7 @@ mod tests {
     #[test]
     fn where_there_is_no_memory_for_much_a_store_grows_by_what_is_needed() {
         // The largest array of records of a vertex, 128 bytes each, to a power of two.
-        let fits = |count: usize| bytemuck::allocation::try_zeroed_vec::<[u64; 16]>(count).is_ok();
+        let fits = |count: usize| black_box(bytemuck::allocation::try_zeroed_vec::<[u64; 16]>(count)).is_ok();
         let mut most = 1 << 20;
         while fits(2 * most) {
             most *= 2;
