@@ -27,7 +27,7 @@ fn free(folder: &Path) -> Option<f64> {
     let mut found = std::mem::MaybeUninit::<libc::statvfs>::zeroed();
     // SAFETY: the path ends with a zero, and zeros are a value of the structure, which the call fills.
     let (code, found) = unsafe { (libc::statvfs(path.as_ptr(), found.as_mut_ptr()), found.assume_init()) };
-    (code == 0).then(|| found.f_bavail as f64 * found.f_frsize as f64)
+    (code == 0).then_some(found.f_bavail as f64 * found.f_frsize as f64)
 }
 
 #[cfg(test)]
