@@ -112,7 +112,8 @@ pub struct Pipeline<'c, 'm> {
     pub growth_end: Option<GrowthEnd>,
     /// Most vertices.
     pub max_vertices: usize,
-    /// Whether the mesh is only a draft: then there are passes for the shapes only while vertices are off the model.
+    /// Whether the mesh is only a draft: then there are no stages, fewer passes for the sizes, and passes for the shapes only while vertices are off
+    /// the model.
     pub is_draft: bool,
     /// Whether the last sweep that was to add vertices could not add all, since there would be too many.
     is_limited: bool,
@@ -182,7 +183,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         if self.crowded {
             self.thin();
         }
-        // The first mesh of a model is far from its metric everywhere, not in layers alone, and its draft is made better later.
+        // Stages save insertions in thin layers. A first mesh is too coarse everywhere, and there they only take time.
         if !self.is_draft {
             self.come_near();
         }

@@ -88,17 +88,18 @@ impl Progress {
         Self { shown, stop, is_in_vain: AtomicBool::new(false), state: Mutex::new(state) }
     }
 
-    /// Forecasts are told, and where there are to be more than so many vertices a warning. A run ends at once if the disk has no room for its mesh.
+    /// Forecasts are told, and where there are to be more than so many vertices a warning. A run ends at once where the disk of the output has no
+    /// room for its mesh ([`Progress::has_room`]).
     pub fn tell_forecasts(&self, most: Option<usize>, output: &Path) {
         let mut state = self.state.lock().expect("no panic while drawing");
         (state.tells_forecasts, state.most) = (!terminal::is_quiet(), most);
         state.output = Some(output.to_owned());
     }
 
-    /// Why the mesh of the last run could not be written.
+    /// Whether the disk has room for the mesh of the last run, by its forecast.
     ///
     /// # Errors
-    /// The disk has no room for it.
+    /// How much room there is, and how much it takes.
     pub fn has_room(&self) -> Result<(), String> {
         self.state.lock().expect("no panic while drawing").no_room.take().map_or(Ok(()), Err)
     }

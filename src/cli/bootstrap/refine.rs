@@ -188,7 +188,8 @@ impl Flaws {
     }
 }
 
-/// Normal deviation of a triangle that is turned over, or nearly so, degrees. The kernel makes none beyond 60°, at an apex 72°, where it is not given one.
+/// Normal deviation of a triangle that is turned over or nearly so, degrees. The kernel's limit is 60°: beyond it are triangles of the first
+/// surface that were never mended, or some that were left where a vertex found no room on the model.
 const FOLDED: f64 = 75.0;
 
 /// What the geometry asks for.

@@ -3,8 +3,7 @@ use std::ffi::CString;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
-/// What a vertex takes in files at the least, with its six tetrahedra and its metric, bytes: half of a .meshb and its .solb, for a forecast may be
-/// wrong by as much.
+/// Bytes that a vertex takes in files at the least: half of what it takes in a .meshb and its .solb, since a forecast may be wrong by a factor of 2.
 const BYTES_A_VERTEX: f64 = 100.0;
 
 /// Why a mesh of so many vertices cannot be written to this path.
@@ -20,14 +19,14 @@ pub fn lacking(path: &Path, vertices: f64) -> Option<String> {
     })
 }
 
-/// Bytes that we may write to the disk of a folder, as far as the system tells.
+/// Bytes that we may write to the disk of a folder, as far as the system tells: some network disks say that they have no blocks at all.
 fn free(folder: &Path) -> Option<f64> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let path = CString::new(folder.as_os_str().as_bytes()).ok()?;
     let mut found = std::mem::MaybeUninit::<libc::statvfs>::zeroed();
     // SAFETY: the path ends with a zero, and zeros are a value of the structure, which the call fills.
     let (code, found) = unsafe { (libc::statvfs(path.as_ptr(), found.as_mut_ptr()), found.assume_init()) };
-    (code == 0).then_some(found.f_bavail as f64 * found.f_frsize as f64)
+    (code == 0 && found.f_blocks > 0).then_some(found.f_bavail as f64 * found.f_frsize as f64)
 }
 
 #[cfg(test)]
