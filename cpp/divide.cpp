@@ -20,6 +20,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace geo_adapt {
@@ -81,8 +83,8 @@ bool lies_on(const TopoDS_Face& face, const TopoDS_Face& other, double distance)
   return true;
 }
 
-/// Whether two faces of a solid lie on each other.
-bool has_double_wall(const TopoDS_Shape& solid, double distance)
+/// Where two faces of a solid lie on each other.
+std::optional<gp_Pnt> double_wall(const TopoDS_Shape& solid, double distance)
 {
   std::vector<Corners> faces;
   for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
@@ -94,15 +96,19 @@ bool has_double_wall(const TopoDS_Shape& solid, double distance)
       const Corners &a = faces[i], &b = faces[j];
       const bool may_be = a.count == b.count && (a.mean - b.mean).Modulus() <= distance && !are_neighbours(a.face, b.face);
       if (may_be && lies_on(a.face, b.face, distance) && lies_on(b.face, a.face, distance)) {
-        return true;
+        gp_Pnt inside;
+        gp_Pnt2d parameters;
+        BOPTools_AlgoTools3D::PointInFace(a.face, inside, parameters, new IntTools_Context);
+        return inside;
       }
     }
   }
-  return false;
+  return {};
 }
 
-/// Adds the solids that the faces of a solid enclose, if all of these bound one. The labels of what was divided go to the parts.
-bool add_enclosed(const TopoDS_Shape& solid, double fuzzy, TopoDS_Compound& all, Labels& labels)
+/// Adds the solids that the faces of a solid enclose, if all of these bound one, and returns their number. The labels of what was divided go
+/// to the parts.
+std::uint64_t add_enclosed(const TopoDS_Shape& solid, double fuzzy, TopoDS_Compound& all, Labels& labels)
 {
   BOPAlgo_MakerVolume maker;
   TopTools_IndexedMapOfShape faces, edges, solids;
@@ -118,7 +124,7 @@ bool add_enclosed(const TopoDS_Shape& solid, double fuzzy, TopoDS_Compound& all,
   maker.SetRunParallel(Standard_False); // the same shape on every run
   maker.Perform();
   if (maker.HasErrors()) {
-    return false;
+    return 0;
   }
   TopTools_IndexedMapOfShape bounding;
   TopExp::MapShapes(maker.Shape(), TopAbs_SOLID, solids);
@@ -129,7 +135,7 @@ bool add_enclosed(const TopoDS_Shape& solid, double fuzzy, TopoDS_Compound& all,
     const TopTools_ListOfShape& images = maker.Modified(faces(i));
     const auto bounds = [&](const TopoDS_Shape& face) { return bounding.Contains(face); };
     if (images.IsEmpty() ? !bounds(faces(i)) : !std::all_of(images.begin(), images.end(), bounds)) {
-      return false;
+      return 0;
     }
   }
   const BRep_Builder builder;
@@ -144,12 +150,12 @@ bool add_enclosed(const TopoDS_Shape& solid, double fuzzy, TopoDS_Compound& all,
       }
     }
   }
-  return true;
+  return static_cast<std::uint64_t>(solids.Extent());
 }
 
 } // namespace
 
-TopoDS_Shape divided(const TopoDS_Shape& shape, Labels& labels)
+TopoDS_Shape divided(const TopoDS_Shape& shape, Labels& labels, std::vector<DoubleWall>& walls)
 {
   Bnd_Box box;
   for (TopExp_Explorer it(shape, TopAbs_VERTEX); it.More(); it.Next()) {
@@ -164,10 +170,12 @@ TopoDS_Shape divided(const TopoDS_Shape& shape, Labels& labels)
   builder.MakeCompound(all);
   TopTools_IndexedMapOfShape solids;
   TopExp::MapShapes(shape, TopAbs_SOLID, solids);
-  bool is_same = true;
+  const std::size_t before = walls.size();
   for (int i = 1; i <= solids.Extent(); ++i) {
-    if (has_double_wall(solids(i), fuzzy) && add_enclosed(solids(i), fuzzy, all, labels)) {
-      is_same = false;
+    const std::optional<gp_Pnt> wall = double_wall(solids(i), fuzzy);
+    const std::uint64_t parts = wall ? add_enclosed(solids(i), fuzzy, all, labels) : 0;
+    if (parts > 0) {
+      walls.push_back({{wall->X(), wall->Y(), wall->Z()}, parts});
     } else {
       builder.Add(all, solids(i));
     }
@@ -175,7 +183,7 @@ TopoDS_Shape divided(const TopoDS_Shape& shape, Labels& labels)
   for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SOLID); it.More(); it.Next()) {
     builder.Add(all, it.Current());
   }
-  return is_same ? shape : all;
+  return walls.size() == before ? shape : all;
 }
 
 } // namespace geo_adapt

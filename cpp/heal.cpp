@@ -147,7 +147,8 @@ std::shared_ptr<Model> Model::healed(double length, rust::Vec<HealRecord>& done)
   if (!TopExp_Explorer(now, TopAbs_FACE).More()) {
     throw std::runtime_error("nothing is left of it; give a smaller length");
   }
-  const TopoDS_Shape solids = divided(connected(now, named), named);
+  std::vector<DoubleWall> walls;
+  const TopoDS_Shape solids = divided(connected(now, named), named, walls);
   return std::make_shared<Model>(separated(solids, named), named, solids);
 }
 

@@ -229,9 +229,10 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
   }
   shape = bounded(shape, labels);
   BRepLib::BuildCurves3d(shape);
-  const TopoDS_Shape solids = divided(connected(closed(shape, labels, format == 1), labels), labels);
+  std::vector<DoubleWall> walls;
+  const TopoDS_Shape solids = divided(connected(closed(shape, labels, format == 1), labels), labels, walls);
   const TopoDS_Shape apart = separated(solids, labels);
-  return std::make_shared<Model>(apart, labels, solids);
+  return std::make_shared<Model>(apart, labels, solids, std::vector<Model::Box>(), walls);
 }
 
 } // namespace geo_adapt

@@ -19,6 +19,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace geo_adapt {
 namespace {
@@ -104,8 +105,9 @@ double length_on_surface(const BRepAdaptor_Curve& curve)
 
 } // namespace
 
-Model::Model(const TopoDS_Shape& loaded, const Labels& given, const TopoDS_Shape& whole, std::vector<Box> known)
-  : shape(loaded), joined(whole.IsNull() ? loaded : whole), labels(given), boxes(known.begin(), known.end())
+Model::Model(const TopoDS_Shape& loaded, const Labels& given, const TopoDS_Shape& whole, std::vector<Box> known,
+             std::vector<DoubleWall> divided)
+  : shape(loaded), joined(whole.IsNull() ? loaded : whole), labels(given), walls(std::move(divided)), boxes(known.begin(), known.end())
 {
   TopExp::MapShapes(shape, TopAbs_SOLID, solids);
   TopExp::MapShapes(shape, TopAbs_FACE, faces);
@@ -114,6 +116,15 @@ Model::Model(const TopoDS_Shape& loaded, const Labels& given, const TopoDS_Shape
   if (boxes.size() != face_count() + 1) {
     boxes.assign(face_count() + 1, std::nullopt);
   }
+}
+
+rust::Vec<DoubleWallRecord> Model::double_walls() const
+{
+  rust::Vec<DoubleWallRecord> all;
+  for (const DoubleWall& wall : walls) {
+    all.push_back({wall.at, wall.solids});
+  }
+  return all;
 }
 
 TopoDS_Face Model::face(std::uint32_t index) const

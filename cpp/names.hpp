@@ -5,7 +5,10 @@
 #include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS_Shape.hxx>
 
+#include <array>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 class STEPControl_Reader;
 
@@ -47,8 +50,16 @@ TopoDS_Shape with_faces(const TopoDS_Shape& shape);
 /// What is nearer than this touches; of the diagonal.
 constexpr double TOUCHING = 1e-7;
 
-/// Where faces of a solid lie on each other, the solids that its faces enclose, which have one face in common there. Labels are handed on.
-TopoDS_Shape divided(const TopoDS_Shape& shape, Labels& labels);
+/// A solid with faces that lie on each other.
+struct DoubleWall
+{
+  std::array<double, 3> at; // a point of them
+  std::uint64_t solids;     // so many were made of it
+};
+
+/// Where faces of a solid lie on each other, the solids that its faces enclose, which have one face in common there. Labels are handed on, and
+/// what was done is added to `walls`.
+TopoDS_Shape divided(const TopoDS_Shape& shape, Labels& labels, std::vector<DoubleWall>& walls);
 
 /// A file of several solids that touch in faces: these, their edges and vertices are made one, and there once. Solids that touch in edges
 /// or points alone stay as they are. Labels are handed on.

@@ -64,6 +64,7 @@ struct NamedRecord;
 struct DomainRecord;
 struct FlawRecord;
 struct HealRecord;
+struct DoubleWallRecord;
 struct EdgeUse;
 struct FaceSide;
 
@@ -76,7 +77,7 @@ public:
 
   /// `boxes` are those of the faces and of all, where they are known: OpenCASCADE takes long to find them.
   explicit Model(const TopoDS_Shape& shape, const Labels& labels = Labels(), const TopoDS_Shape& joined = TopoDS_Shape(),
-                 std::vector<Box> boxes = {});
+                 std::vector<Box> boxes = {}, std::vector<DoubleWall> walls = {});
 
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces.Extent()); }
   std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.Extent()); }
@@ -91,6 +92,8 @@ public:
   std::array<double, 3> face_centre(std::uint32_t face) const;
   double edge_length(std::uint32_t edge) const;
   void write_brep(rust::Str path) const;
+  /// Solids that were divided when the file was read, since faces of theirs lay on each other.
+  rust::Vec<DoubleWallRecord> double_walls() const;
   /// What OpenCASCADE's own check finds wrong with faces.
   rust::Vec<FlawRecord> flaws() const;
   /// Writes all that it is made of in binary form, for `load_saved` of this same program.
@@ -127,6 +130,7 @@ private:
   TopoDS_Shape joined;
   TopTools_IndexedMapOfShape solids, faces, edges, vertices;
   Labels labels;
+  std::vector<DoubleWall> walls;
   /// Of each face, then of all; found when the records are first read, before threads share the model.
   mutable std::vector<std::optional<Box>> boxes;
 

@@ -59,6 +59,9 @@ void Model::save(rust::Str path) const
   }
   out << "-1 " << known.size() << '\n';
   out.write(reinterpret_cast<const char*>(known.data()), static_cast<std::streamsize>(known.size() * sizeof(Box)));
+  const std::size_t count = walls.size();
+  out.write(reinterpret_cast<const char*>(&count), sizeof count);
+  out.write(reinterpret_cast<const char*>(walls.data()), static_cast<std::streamsize>(count * sizeof(DoubleWall)));
   TopoDS_Compound both;
   const BRep_Builder builder;
   builder.MakeCompound(both);
@@ -99,6 +102,13 @@ std::shared_ptr<Model> load_saved(rust::Str path)
   }
   std::vector<Model::Box> boxes(count);
   in.read(reinterpret_cast<char*>(boxes.data()), static_cast<std::streamsize>(boxes.size() * sizeof(Model::Box)));
+  std::size_t divided = 0;
+  in.read(reinterpret_cast<char*>(&divided), sizeof divided);
+  if (!in) {
+    throw std::runtime_error("the saved model cannot be read");
+  }
+  std::vector<DoubleWall> walls(divided);
+  in.read(reinterpret_cast<char*>(walls.data()), static_cast<std::streamsize>(divided * sizeof(DoubleWall)));
   TopoDS_Shape both;
   BinTools::Read(both, in);
   if (!in || both.IsNull() || both.NbChildren() != 2) {
@@ -117,7 +127,7 @@ std::shared_ptr<Model> load_saved(rust::Str path)
       }
     }
   }
-  return std::make_shared<Model>(apart, labels, part.Value(), std::move(boxes));
+  return std::make_shared<Model>(apart, labels, part.Value(), std::move(boxes), std::move(walls));
 }
 
 } // namespace geo_adapt

@@ -7,7 +7,7 @@ use crate::adapt::core::required::{Freeze, Required};
 use crate::adapt::extract::{self, Extracted, References};
 use crate::adapt::operations::insertion::centroid::PointCreation;
 use crate::adapt::operations::reconnection::criteria::Criterion;
-use crate::adapt::passes::pipeline::{GrowthEnd, Pipeline};
+use crate::adapt::passes::pipeline::{Effort, GrowthEnd, Pipeline};
 use crate::adapt::schedule::work::{KINDS, Observer, Work};
 use crate::adapt::schedule::{Execution, Grains, Scheduler};
 use crate::adapt::surface::bounds::SurfaceBounds;
@@ -110,7 +110,7 @@ pub fn adapt(
     pipeline.crowded = crowded;
     pipeline.surface = options.surface;
     pipeline.max_vertices = options.max_vertices.unwrap_or(usize::MAX);
-    pipeline.is_draft = options.is_draft;
+    pipeline.effort = if options.is_draft { Effort::DRAFT } else { Effort::FULL };
     pipeline.run();
     if pipeline.torn {
         return Err(fill::Error::Torn);

@@ -1,6 +1,7 @@
 //! Reads CAD models in a child process ([`super::child`]), so that a damaged file does no harm. The child hands over what it has read in a file
 //! of its own: to join the solids of an assembly takes seconds, so it is done once.
 use super::child::{self, Answer, Task};
+use super::table;
 use super::waiting::Waiting;
 use super::workplace::Workplace;
 use crate::geometry::{Error, Geometry, Model, names};
@@ -43,6 +44,14 @@ pub fn model(path: &Path) -> Result<Model, Box<dyn error::Error>> {
         Some(model) => model,
         None => Model::read(path)?,
     };
+    for wall in model.double_walls() {
+        super::note(format_args!(
+            "{}: faces of a solid lie on each other, at {}: they are one now, and what was one solid is {}",
+            path.display(),
+            table::place(wall.at),
+            wall.solids
+        ));
+    }
     give_names(&mut model, path)?;
     Ok(model)
 }

@@ -1,4 +1,4 @@
-//! What healing has done to a model.
+//! What was done to a model: by healing, or when it was read.
 use crate::mesh::vector::Vec3;
 
 /// What was done at one place.
@@ -21,4 +21,13 @@ pub struct Healed {
     pub at: Vec3,
     /// Its length, or its area; model units or their square.
     pub size: f64,
+}
+
+/// A solid that was divided when its file was read, since faces of it lay on each other: both walls between parts of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DoubleWall {
+    /// A point of these faces, model units.
+    pub at: Vec3,
+    /// So many solids were made of it.
+    pub solids: u64,
 }

@@ -1,7 +1,8 @@
 //! A model of any backend. The kernel works on this type: backends are told apart by a match, not by a virtual call.
 use super::classify::Classification;
 use super::{
-    CurveFrame, Discrete, Evaluate, FarField, Geometry, Healed, Names, OnCurve, OnSurface, SurfaceFrame, Topology,
+    CurveFrame, Discrete, DoubleWall, Evaluate, FarField, Geometry, Healed, Names, OnCurve, OnSurface, SurfaceFrame,
+    Topology,
 };
 use crate::mesh::TetMesh;
 use crate::mesh::vector::Vec3;
@@ -131,6 +132,15 @@ impl Model {
                 let message = "a mesh's own surface is no CAD model";
                 Err(super::Error::Model { path: "the healed model".into(), message: message.into() })
             }
+        }
+    }
+
+    /// The solids that were divided when the model's file was read.
+    pub fn double_walls(&self) -> Vec<DoubleWall> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.double_walls(),
+            Model::Discrete(_) => Vec::new(),
         }
     }
 

@@ -67,8 +67,9 @@ impl Body {
 
 /// What is known of a vertex.
 #[derive(Clone, Copy)]
-struct Found {
-    metric: Sym3,
+pub(super) struct Found {
+    /// Not graded.
+    pub metric: Sym3,
     gap: Option<Gap>,
     is_limit: bool,
 }
@@ -87,24 +88,40 @@ pub fn geometry_metric(
     options: &Options,
 ) -> (Vec<Sym3>, Summary) {
     let sizing = Sizing::new(team, mesh, place, model, options);
-    let found = sizing.at_vertices(team);
-    let mut metrics = team.map(GRAIN, found.len(), |v| found[v].metric);
-    let mut summary = summarize(place, &found);
-    let (samples, gap) = add_between(team, &sizing, &mut metrics);
-    summary.between = samples;
-    summary.note(gap);
     let limits = limits(options);
-    let mut logs = team.map(GRAIN, metrics.len(), |v| limits.apply_to_log(&metrics[v].ln()));
+    let Some(ratio) = options.gradation else {
+        let found = sizing.at_vertices(team);
+        let mut metrics = team.map(GRAIN, found.len(), |v| found[v].metric);
+        let mut summary = summarize(place, &found);
+        summary.note_between(add_between(team, &sizing, &mut metrics));
+        let logs = team.map(GRAIN, metrics.len(), |v| limits.apply_to_log(&metrics[v].ln()));
+        summary.at_least_size = at_least_size(team, options, &logs);
+        return (logs, summary);
+    };
+    let around = VertexNeighbours::of_mesh(team, mesh);
+    let (mut found, mut logs) = sizing.graded_at_vertices(team, &around, &limits);
+    let mut summary = summarize(place, &found);
+    let graded = team.map(GRAIN, logs.len(), |v| logs[v].exp());
+    let mut metrics = graded.clone();
+    summary.note_between(add_between(team, &sizing, &mut metrics));
+    let finer: Vec<u32> = (0..).zip(&metrics).zip(&graded).filter(|((_, a), b)| a != b).map(|((v, _), _)| v).collect();
+    finer.iter().map(|&v| v as usize).for_each(|v| logs[v] = limits.apply_to_log(&metrics[v].ln()));
+    gradation::grade_again(team, &mesh.vertices, &around, &mut logs, (ratio, &finer));
+    finer.iter().map(|&v| v as usize).for_each(|v| found[v].metric = metrics[v]);
+    let asked = team.map(GRAIN, logs.len(), |v| limits.apply_to_log(&found[v].metric.ln()));
+    summary.at_least_size = at_least_size(team, options, &asked);
+    summary.graded = asked.iter().zip(&logs).filter(|(asked, graded)| asked != graded).count();
+    // Grown metrics that meet at an angle can leave sizes a little below the least.
+    limits.apply(team, &mut logs);
+    summary.enlarged = restrict(team, mesh, &mut logs, ratio);
+    (logs, summary)
+}
+
+/// How many metrics have the least size.
+fn at_least_size(team: Team<'_>, options: &Options, logs: &[Sym3]) -> usize {
     let least = -2.0 * options.least.ln() - 1e-9;
     let at_least = |range: std::ops::Range<usize>| range.filter(|&v| logs[v].eigen().values[2] >= least).count();
-    summary.at_least_size = team.chunks(GRAIN, logs.len(), at_least).into_iter().sum();
-    if let Some(ratio) = options.gradation {
-        summary.graded = gradation::grade(team, mesh, &mut logs, ratio).changed;
-        // Grown metrics that meet at an angle can leave sizes a little below the least.
-        limits.apply(team, &mut logs);
-        summary.enlarged = restrict(team, mesh, &mut logs, ratio);
-    }
-    (logs, summary)
+    team.chunks(GRAIN, logs.len(), at_least).into_iter().sum()
 }
 
 /// The same without gradation, on a mesh that resolves it: the given one with vertices added. On the faces of a `body` sizes are no greater than
@@ -118,8 +135,8 @@ pub fn resolved_metric(
 ) -> Resolved {
     let sizing = Sizing { body, ..Sizing::new(team, mesh, place, model, options) };
     let limits = limits(options);
-    let metrics = sizing.where_gradation_leaves_room(team, &limits);
-    resolve(team, &sizing, &metrics, &limits)
+    let (found, graded) = sizing.graded_at_vertices(team, &VertexNeighbours::of_mesh(team, mesh), &limits);
+    resolve(team, &sizing, (&found, graded), &limits)
 }
 
 fn limits(options: &Options) -> Limits {
@@ -174,21 +191,29 @@ impl<'a> Sizing<'a> {
         })
     }
 
-    /// The metrics at the vertices, without the gaps that change nothing once the metric is graded: most gaps are wider than the sizes that
-    /// gradation leaves beside small ones. First the curvature is asked at all vertices, then gaps at more and more of them, each time
-    /// as far as the graded metric that is known by then reaches.
-    fn where_gradation_leaves_room(&self, team: Team<'_>, limits: &Limits) -> Vec<Sym3> {
+    /// What is asked at the vertices, without the gaps that change nothing once the metric is graded, and ln M graded: most gaps are wider than
+    /// the sizes that gradation leaves beside small ones. First the curvature is asked at all vertices, then gaps at more and more of them,
+    /// each time as far as the graded metric that is known by then reaches.
+    fn graded_at_vertices(
+        &self,
+        team: Team<'_>,
+        around: &VertexNeighbours,
+        limits: &Limits,
+    ) -> (Vec<Found>, Vec<Sym3>) {
         let count = self.mesh.vertices.len();
-        let mut metrics: Vec<Sym3> = team.collect(VERTICES, count, |range, found| {
+        let mut found: Vec<Found> = team.collect(VERTICES, count, |range, found| {
             let (mut evaluator, mut asked) = (self.model.evaluator(), Asked::default());
-            found.extend(range.map(|v| self.curvature_at_vertex(&mut evaluator, v, &mut asked)));
+            found.extend(range.map(|v| {
+                let metric = self.curvature_at_vertex(&mut evaluator, v, &mut asked);
+                let is_boundary = self.place.entities[v] != Entity::Interior;
+                Found { metric, gap: None, is_limit: is_boundary && asked.local.is_limit }
+            }));
         });
-        let Some(near) = &self.near else { return metrics };
         let limited = |metric: &Sym3| limits.apply_to_log(&metric.ln());
-        let mut graded = team.map(GRAIN, count, |v| limited(&metrics[v]));
-        let (vertices, around) = (&self.mesh.vertices, VertexNeighbours::of_mesh(team, self.mesh));
-        let ratio = self.growth.exp();
-        gradation::grade_with(team, vertices, &around, &mut graded, ratio);
+        let mut graded = team.map(GRAIN, count, |v| limited(&found[v].metric));
+        let (vertices, ratio) = (&self.mesh.vertices, self.growth.exp());
+        gradation::grade_with(team, vertices, around, &mut graded, ratio);
+        let Some(near) = &self.near else { return (found, graded) };
         let mut before: Option<usize> = None;
         for stride in STRIDES {
             let is_next = |&v: &u32| {
@@ -197,28 +222,29 @@ impl<'a> Sizing<'a> {
                     && before.is_none_or(|before| !(v as usize).is_multiple_of(before))
             };
             let list: Vec<u32> = (0..count as u32).filter(is_next).collect();
-            let found = team.collect(VERTICES, list.len(), |range, found| {
+            let limits = team.collect(VERTICES, list.len(), |range, limits| {
                 let (mut evaluator, mut asked) = (self.model.evaluator(), Asked::default());
-                found.extend(list[range].iter().map(|&v| {
+                limits.extend(list[range].iter().map(|&v| {
                     let metric = self.curvature_at_vertex(&mut evaluator, v as usize, &mut asked);
                     let (before, Asked { local, scratch }) = (graded[v as usize].exp(), &mut asked);
                     let (mut known, place) = (before.times(ROOM.powi(-2)), self.place_of(v as usize));
                     let (metric, gap) = near.limit(&mut evaluator, &place, local, metric, &mut known, scratch);
-                    (metric, gap.map(|_| limited(&before.intersect(&known))))
+                    (metric, gap.map(|gap| (gap, limited(&before.intersect(&metric)))))
                 }));
             });
             let mut finer = Vec::new();
-            for (&v, (metric, log)) in list.iter().zip(found) {
-                metrics[v as usize] = metric;
-                if let Some(log) = log {
+            for (&v, (metric, limit)) in list.iter().zip(limits) {
+                found[v as usize].metric = metric;
+                if let Some((gap, log)) = limit {
+                    found[v as usize].gap = Some(gap);
                     graded[v as usize] = log;
                     finer.push(v);
                 }
             }
-            gradation::grade_again(team, vertices, &around, &mut graded, (ratio, &finer));
+            gradation::grade_again(team, vertices, around, &mut graded, (ratio, &finer));
             before = Some(stride);
         }
-        metrics
+        (found, graded)
     }
 
     /// The metric of a mesh vertex.
@@ -295,27 +321,42 @@ mod tests {
 
     #[test]
     fn what_gradation_leaves_no_room_for_changes_nothing() {
-        // A wedge: a gap from 0.01 to 0.3 across, and flat beside it.
+        // A wedge: a gap from 0.01 to 0.3 across, and flat beside it; then the same bent about an axis, where thin parts limit the chords too.
         let mut mesh = cube(12);
         mesh.vertices.iter_mut().for_each(|p| p[2] *= 0.01 + 0.29 * p[0] * p[0]);
-        let (model, place) = Discrete::from_mesh(Team::alone(), &mesh, 20.0).unwrap();
+        leaves_no_room(&mesh);
+        mesh.vertices.iter_mut().for_each(|p| {
+            let ((sin, cos), radius) = (p[0].sin_cos(), 1.0 + p[2]);
+            *p = [radius * sin, p[1], radius * cos];
+        });
+        leaves_no_room(&mesh);
+    }
+
+    fn leaves_no_room(mesh: &TetMesh) {
+        let (model, place) = Discrete::from_mesh(Team::alone(), mesh, 20.0).unwrap();
         let model = Model::Discrete(model);
         let options = Options { greatest: 0.5, least: 1e-4, gradation: Some(1.5), ..Options::of(model.topology()) };
-        let sizing = Sizing::new(Team::alone(), &mesh, &place, &model, &options);
+        let sizing = Sizing::new(Team::alone(), mesh, &place, &model, &options);
         let limits = limits(&options);
         let all: Vec<Sym3> = sizing.at_vertices(Team::alone()).iter().map(|found| found.metric).collect();
-        let some = sizing.where_gradation_leaves_room(Team::alone(), &limits);
+        let around = VertexNeighbours::of_mesh(Team::alone(), mesh);
+        let (some, graded) = sizing.graded_at_vertices(Team::alone(), &around, &limits);
+        let some: Vec<Sym3> = some.iter().map(|found| found.metric).collect();
         assert!(all.iter().zip(&some).filter(|(all, some)| all != some).count() > 10);
-        let graded = |metrics: &[Sym3]| {
+        let graded_from = |metrics: &[Sym3]| {
             let mut logs: Vec<Sym3> = metrics.iter().map(|metric| limits.apply_to_log(&metric.ln())).collect();
-            gradation::grade(Team::alone(), &mesh, &mut logs, 1.5);
+            gradation::grade(Team::alone(), mesh, &mut logs, 1.5);
             logs
         };
-        let (all, some) = (graded(&all), graded(&some));
-        // Of the mean size.
-        let most = all.iter().zip(&some).map(|(a, b)| (a.trace() - b.trace()).abs() / 6.0).fold(0.0, f64::max);
-        let [of_all, of_some] = [&all, &some].map(|logs| Interpolation::Sizes.complexity(Team::alone(), &mesh, logs));
-        // Where metrics turn, gradation depends on what it begins with.
-        assert!(most < 0.1 && (of_some / of_all - 1.0).abs() < 0.01, "{most} {of_some} {of_all}");
+        let of_all = graded_from(&all);
+        let complexity = |logs: &[Sym3]| Interpolation::Sizes.complexity(Team::alone(), mesh, logs);
+        for of_some in [graded_from(&some), graded] {
+            // Of the mean size.
+            let difference = |(a, b): (&Sym3, &Sym3)| (a.trace() - b.trace()).abs() / 6.0;
+            let most = of_all.iter().zip(&of_some).map(difference).fold(0.0, f64::max);
+            // Where metrics turn, gradation depends on what it begins with.
+            let [a, b] = [&of_all, &of_some].map(|logs| complexity(logs));
+            assert!(most < 0.1 && (b / a - 1.0).abs() < 0.01, "{most} {b} {a}");
+        }
     }
 }

@@ -5,7 +5,7 @@
 //! distance, as gradation lets them. What that misses are places that are far from all that is fine, and have no vertex: there edges are
 //! halved, and on the boundary the geometry is asked at their middles, until interpolation and growth agree.
 use super::feature::Place;
-use super::field::{Asked, Sizing};
+use super::field::{Asked, Found, Sizing};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::sorted2;
@@ -57,28 +57,32 @@ impl Resolved {
     }
 }
 
-/// Adds vertices until the metric, with its limits, is resolved. `metrics` are those at the vertices of the mesh. The metric that comes
-/// back is not graded.
-pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limits) -> Resolved {
+/// Adds vertices until the metric, with its limits, is resolved. It begins with what was found at the vertices of the mesh, and ln M graded.
+pub fn resolve(
+    team: Team<'_>,
+    sizing: &Sizing,
+    (at_vertices, mut graded): (&[Found], Vec<Sym3>),
+    limits: &Limits,
+) -> Resolved {
     let limited = |metric: &Sym3| limits.apply_to_log(&metric.ln());
-    let logs = team.map(GRAIN, metrics.len(), |v| limited(&metrics[v]));
+    let logs = team.map(GRAIN, at_vertices.len(), |v| limited(&at_vertices[v].metric));
     let mut found = Resolved { halved: None, logs, graded: Vec::new() };
     let mut finer = Finer::of(sizing);
-    let mut logs: Vec<Sym3> = Vec::new();
     for round in 0.. {
         let mesh = found.mesh(sizing.mesh);
         let around = VertexNeighbours::of_mesh(team, mesh);
         // What is graded stays so: sizes grow with the distance, whatever vertices lie between.
-        logs.extend(&found.logs[logs.len()..]);
-        gradation::grade_with(team, &mesh.vertices, &around, &mut logs, sizing.growth.exp());
+        let added = graded.len();
+        graded.extend(&found.logs[added..]);
+        gradation::grade_added(team, &mesh.vertices, &around, &mut graded, (sizing.growth.exp(), added));
         if round == ROUNDS {
             break;
         }
-        let edges = finer.unresolved(team, sizing, mesh, &around, &logs);
+        let edges = finer.unresolved(team, sizing, mesh, &around, &graded);
         let places = finer.middles(mesh, &edges);
         let asked: Vec<Sym3> = ask(team, sizing, mesh, &edges, &places).iter().map(limited).collect();
         let wrong = finer.wrong(edges, places, asked);
-        if wrong.is_empty() || found.added() + wrong.len() > MOST[0] + MOST[1] * metrics.len() {
+        if wrong.is_empty() || found.added() + wrong.len() > MOST[0] + MOST[1] * at_vertices.len() {
             break;
         }
         let (edges, places): (Vec<[u32; 2]>, Vec<Middle>) =
@@ -93,7 +97,7 @@ pub fn resolve(team: Team<'_>, sizing: &Sizing, metrics: &[Sym3], limits: &Limit
         found.halved = Some(Halved { mesh, parents });
         stage("geometry resolved");
     }
-    found.graded = logs;
+    found.graded = graded;
     found
 }
 

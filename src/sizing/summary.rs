@@ -30,6 +30,12 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Takes what was found between the vertices: how many places were looked at, and the nearest gap there.
+    pub(super) fn note_between(&mut self, (places, gap): (usize, Option<Gap>)) {
+        self.between = places;
+        self.note(gap);
+    }
+
     /// Takes the nearer of the gaps.
     pub(super) fn note(&mut self, gap: Option<Gap>) {
         self.nearest_gap = Gap::nearer(self.nearest_gap, gap);

@@ -30,6 +30,8 @@ pub struct Limits {
     pub long_first: bool,
     /// Where the worst mean ratio is below the floor already, the share of it that must be left.
     pub insert_loss: f64,
+    /// Whether an edge waits for the next sweep where a tetrahedron about it was made in this one, so that flips come between.
+    pub waits: bool,
     /// As the floor of insertion, for a collapse. Where the worst mean ratio is below it already, nothing may be lost.
     pub collapse_floor: f64,
     /// Smoothing and repair look at tetrahedra below this mean ratio.
@@ -68,6 +70,7 @@ impl Default for Limits {
             insert_floor: 0.1,
             long_first: false,
             insert_loss: 0.5,
+            waits: false,
             collapse_floor: 0.2,
             improve_below: 1.0,
             flip_below: 1.0,

@@ -1,4 +1,5 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
+mod effort;
 mod forecast;
 mod growth;
 mod refinement;
@@ -8,6 +9,7 @@ mod surface_bounds;
 mod thinning;
 mod voids;
 
+pub use effort::Effort;
 pub use growth::GrowthEnd;
 
 use crate::adapt::core::context::{Context, Limits};
@@ -33,12 +35,6 @@ use std::time::Instant;
 
 /// Most passes for the sizes.
 const SIZE_PASSES: usize = 20;
-
-/// A size pass that changes less than this share of the vertices is the last.
-const LITTLE: f64 = 0.05;
-
-/// The same for a draft.
-const LITTLE_OF_DRAFT: f64 = 0.1;
 
 /// A shape pass that saves less than this share of the mean of 1/Q − 1 is the last.
 const SETTLED: f64 = 0.2;
@@ -112,9 +108,8 @@ pub struct Pipeline<'c, 'm> {
     pub growth_end: Option<GrowthEnd>,
     /// Most vertices.
     pub max_vertices: usize,
-    /// Whether the mesh is only a draft: then there are no stages, fewer passes for the sizes, and passes for the shapes only while vertices are off
-    /// the model.
-    pub is_draft: bool,
+    /// How much they do.
+    pub effort: Effort,
     /// Whether the last sweep that was to add vertices could not add all, since there would be too many.
     is_limited: bool,
     /// Complexity that the metric is known to ask for.
@@ -162,7 +157,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             input,
             growth_end: None,
             max_vertices: usize::MAX,
-            is_draft: false,
+            effort: Effort::FULL,
             is_limited: false,
             expected: 0.0,
             complexity_given: 0.0,
@@ -177,14 +172,13 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Adapts the mesh: first to the sizes, then to the shapes.
     pub fn run(&mut self) {
-        self.limit(size_limits());
+        self.limit(Limits { waits: self.effort.waits, ..size_limits() });
         self.observer.vertices(self.live());
         self.forecast();
         if self.crowded {
             self.thin();
         }
-        // Stages save insertions in thin layers. A first mesh is too coarse everywhere, and there they only take time.
-        if !self.is_draft {
+        if self.effort.stages {
             self.come_near();
         }
         for _ in 0..SIZE_PASSES {
@@ -203,11 +197,11 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth();
         let mut before = self.cost();
-        if self.is_draft {
+        if !self.effort.shapes {
             self.project();
         }
         for pass in 0..SHAPE_PASSES {
-            if self.is_draft && self.unprojected.is_empty() {
+            if !self.effort.shapes && self.unprojected.is_empty() {
                 break;
             }
             self.pass += 1;
@@ -284,7 +278,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.refine();
         self.collapse();
         self.reconnect(self.criterion, 1);
-        self.smooth();
+        if self.effort.smooths {
+            self.smooth();
+        }
         self.is_little(self.changes() - before)
     }
 
@@ -332,8 +328,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// Whether so many changes are few for a mesh of this size.
     fn is_little(&self, changes: u64) -> bool {
-        let share = if self.is_draft { LITTLE_OF_DRAFT } else { LITTLE };
-        (changes as f64) < share * self.live() as f64
+        (changes as f64) < self.effort.little * self.live() as f64
     }
 
     fn changes(&self) -> u64 {

@@ -85,6 +85,14 @@ pub mod ffi {
         size: f64,
     }
 
+    /// A solid that was divided, since faces of it lay on each other.
+    struct DoubleWallRecord {
+        /// A point of these.
+        at: [f64; 3],
+        /// So many solids were made of it.
+        solids: u64,
+    }
+
     /// An edge as a wire of a face has it.
     struct EdgeUse {
         edge: u32,
@@ -173,6 +181,7 @@ pub mod ffi {
         fn label(self: &Model, dimension: u32, index: u32) -> Result<LabelRecord>;
         fn domain(self: &Model, domain: &DomainRecord) -> Result<SharedPtr<Model>>;
         fn placed(self: &Model, factor: f64, by: &[f64; 3]) -> Result<SharedPtr<Model>>;
+        fn double_walls(self: &Model) -> Result<Vec<DoubleWallRecord>>;
         fn healed(self: &Model, length: f64, done: &mut Vec<HealRecord>) -> Result<SharedPtr<Model>>;
 
         fn surface_spline(model: &Model, face: u32) -> Result<Spline>;

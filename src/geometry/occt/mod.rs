@@ -21,7 +21,7 @@ mod swept;
 mod tree;
 mod trim;
 
-use super::{Error, FarField, Geometry, Healed, Names, Topology};
+use super::{DoubleWall, Error, FarField, Geometry, Healed, Names, Topology};
 use bridge::ffi;
 use copy::PCurve;
 use curve::Curve;
@@ -119,6 +119,12 @@ impl OcctModel {
     /// [`Error::Model`] when OpenCASCADE cannot transform it.
     pub fn placed(&self, factor: f64, by: [f64; 3]) -> Result<Self, Error> {
         load::placed(&self.occt, &self.names, factor, &by)
+    }
+
+    /// The solids that were divided when the file was read.
+    pub fn double_walls(&self) -> Vec<DoubleWall> {
+        let found = self.occt.double_walls().unwrap_or_default();
+        found.into_iter().map(|wall| DoubleWall { at: wall.at, solids: wall.solids }).collect()
     }
 
     /// Area of a face, in the square of the model's unit; none where OCCT finds none.

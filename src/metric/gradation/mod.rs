@@ -68,7 +68,19 @@ pub fn grade_with(
     ratio: f64,
 ) -> Graded {
     assert_eq!(vertices.len(), logs.len(), "one ln M a vertex");
-    Grading::new(team, vertices, around, logs, ratio.ln()).run(|_| true)
+    Grading::new(team, vertices, around, logs, ratio.ln()).run(|_, _| true)
+}
+
+/// As [`grade_with`], where all but the vertices from `first` on were graded together before the others came between them.
+pub fn grade_added(
+    team: Team<'_>,
+    vertices: &[Vec3],
+    around: &VertexNeighbours,
+    logs: &mut [Sym3],
+    (ratio, first): (f64, usize),
+) -> Graded {
+    let is_added = |v: u32| v as usize >= first;
+    Grading::new(team, vertices, around, logs, ratio.ln()).run(|p, q| is_added(p) || is_added(q))
 }
 
 /// As [`grade_with`], where only the metrics of some vertices have become finer since all were graded.
@@ -81,7 +93,7 @@ pub fn grade_again(
 ) -> Graded {
     let mut is_finer = vec![false; logs.len()];
     finer.iter().for_each(|&v| is_finer[v as usize] = true);
-    Grading::new(team, vertices, around, logs, ratio.ln()).run(|v| is_finer[v as usize])
+    Grading::new(team, vertices, around, logs, ratio.ln()).run(|p, _| is_finer[p as usize])
 }
 
 /// The list in which a vertex waits to be a source.
@@ -143,10 +155,10 @@ impl<'a> Grading<'a> {
         }
     }
 
-    /// Grades all, where only edges from the vertices that `may_violate` need to be looked at.
-    fn run(mut self, may_violate: impl Fn(u32) -> bool + Sync) -> Graded {
+    /// Grades all, where only edges from p to q that are `open` need to be looked at.
+    fn run(mut self, is_open: impl Fn(u32, u32) -> bool + Sync) -> Graded {
         let mut graded = Graded::default();
-        let mut waiting = self.violators(|p, _| may_violate(p));
+        let mut waiting = self.violators(is_open);
         loop {
             let [rounds, updates] = self.propagate(&waiting);
             graded.rounds += rounds;

@@ -44,6 +44,9 @@ impl Operation for Split {
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Splits an edge that is too long, at its middle or its third in the metric, on its entity of the model.
+    ///
+    /// # Errors
+    /// `Stale` when it is not too long, or waits for the next sweep; else the refusal of the insertion.
     pub fn split_edge(&mut self, item: EdgeItem) -> Result<(), Refusal> {
         let EdgeItem { a, b, tet } = item;
         self.claim_live(a)?;
@@ -52,6 +55,13 @@ impl<A: Access> Worker<'_, '_, A> {
         let length = self.length(a, b);
         if length <= self.context.limits.long {
             return Err(Refusal::Stale);
+        }
+        if self.context.limits.waits {
+            self.gather_shell(a, b, tet)?;
+            let now = self.store.clock();
+            if self.state.shell.tets.iter().any(|&t| self.store.stamp(t) == now) {
+                return Err(Refusal::Stale);
+            }
         }
         self.split_at(EdgeItem { a, b, tet }, self.cut(a, b))
     }

@@ -1,5 +1,5 @@
 //! Thinning of what coarsening left of a crowded mesh. It comes before the passes, which would list and measure all edges again and again.
-use super::{LITTLE, Pipeline, size_limits};
+use super::{Pipeline, size_limits};
 use crate::adapt::core::context::Limits;
 use crate::adapt::operations::collapse::thinning::Thin;
 use crate::adapt::schedule::work::Kind;
@@ -37,7 +37,7 @@ impl Pipeline<'_, '_> {
             let items = self.vertices(|store, v| store.stamp(store.tet_of(v)) >= since);
             since = self.context.store.clock() + 1;
             let done = if self.observer.stop() { 0 } else { self.sweep(Kind::Collapse, &Thin, &items).done as usize };
-            if (done as f64) < LITTLE * items.len() as f64 {
+            if (done as f64) < self.effort.little * items.len() as f64 {
                 break;
             }
             if SHRUNK * (live - done) < self.context.store.vertex_bound() {
