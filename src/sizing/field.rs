@@ -350,13 +350,13 @@ mod tests {
         };
         let of_all = graded_from(&all);
         let complexity = |logs: &[Sym3]| Interpolation::Sizes.complexity(Team::alone(), mesh, logs);
-        for of_some in [graded_from(&some), graded] {
+        // Where metrics turn, gradation depends on what it begins with, and on the order in which they were intersected: less so in the first.
+        for (of_some, [size, share]) in [(graded_from(&some), [0.1, 0.01]), (graded, [0.2, 0.08])] {
             // Of the mean size.
             let difference = |(a, b): (&Sym3, &Sym3)| (a.trace() - b.trace()).abs() / 6.0;
             let most = of_all.iter().zip(&of_some).map(difference).fold(0.0, f64::max);
-            // Where metrics turn, gradation depends on what it begins with.
             let [a, b] = [&of_all, &of_some].map(|logs| complexity(logs));
-            assert!(most < 0.1 && (b / a - 1.0).abs() < 0.01, "{most} {b} {a}");
+            assert!(most < size && (b / a - 1.0).abs() < share, "{most} {b} {a}");
         }
     }
 }

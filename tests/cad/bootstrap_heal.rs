@@ -80,6 +80,8 @@ fn bodies_that_were_sewn_with_both_of_their_walls_share_one() {
         let out = folder.path().join("out.meshb");
         let run = heal(&model, &[], &out);
         assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        assert!(stderr(&run).contains("faces of a solid lie on each other, at ("), "{}", stderr(&run));
+        assert!(stderr(&run).contains("what was one solid is 2"), "{}", stderr(&run));
         let mesh = io::read_mesh(&out).unwrap().content;
         assert!(validity::check(&mesh).is_valid());
         assert_eq!(faces(&mesh), count, "{}", model.display());

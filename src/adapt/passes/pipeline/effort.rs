@@ -23,3 +23,47 @@ impl Effort {
     /// For a draft.
     pub const DRAFT: Self = Self { stages: false, waits: true, smooths: false, little: 0.1, shapes: false };
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::operations::reconnection::criteria::Criterion;
+    use crate::adapt::passes::pipeline::Pipeline;
+    use crate::adapt::schedule::work::{Kind, Silent};
+    use crate::adapt::schedule::{Execution, Grains, Scheduler};
+    use crate::adapt::tests::bench::{Bench, Sample, Shape, sample};
+    use crate::mesh::samples::cube;
+    use crate::mesh::vector::norm;
+    use crate::metric::{Background, Source, Sym3};
+    use crate::tasks::{Plan, Pool};
+
+    /// A cube of eight vertices, with sizes that grow from 0.02 at one of them.
+    fn first_mesh() -> Sample {
+        let (mut sample, fine) = (sample(Shape::Cube, 1, 1.0), cube(12));
+        let logs = fine.vertices.iter().map(|&p| Sym3::IDENTITY.times((0.02 + 0.3 * norm(p)).powi(-2)).ln()).collect();
+        sample.source = Source::Background(Background::new(fine.vertices.clone(), fine.tets.nodes.clone(), logs));
+        sample
+    }
+
+    /// Insertions a vertex that is left.
+    fn inserted(effort: Effort) -> f64 {
+        let sample = first_mesh();
+        let mut bench = Bench::new(&sample, 1, 3);
+        let pool = Pool::new(1).unwrap();
+        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
+        let execution = Execution { pool: &pool, scheduler, plan, grains };
+        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
+        pipeline.effort = effort;
+        pipeline.run();
+        let (inserted, left) = (pipeline.work[Kind::Split as usize].counts.done as f64, pipeline.live() as f64);
+        bench.check("a first mesh");
+        assert!(left > 200.0, "{left}");
+        inserted / left
+    }
+
+    #[test]
+    fn few_of_the_vertices_of_a_draft_are_inserted_in_vain() {
+        let [draft, all] = [Effort::DRAFT, Effort::FULL].map(inserted);
+        assert!(draft < 1.5 && draft < all, "{draft} {all}");
+    }
+}
