@@ -27,7 +27,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Most cycles. There are two at least: all but the last make drafts.
+/// Most cycles. There are two at least: of a large mesh all but the last make drafts.
 const MOST_CYCLES: usize = 6;
 
 /// A mesh is good enough when the complexity that the geometry asks for on it differs by less than this share. Where it will, it is not asked.
@@ -37,7 +37,8 @@ const SETTLED: f64 = 0.05;
 /// and the last cycle halves all edges. (With 1.5 it does so too, and they are too short then.)
 const COARSER: f64 = 2.0;
 
-/// Where the geometry asks for no more than this complexity they are not: a draft of a few hundred vertices would miss what it asks for.
+/// Where the geometry asks for no more than this complexity there are no drafts: they would save no second, and on a few hundred vertices what it
+/// asks for is not known.
 const SMALL: f64 = 8_000.0;
 
 /// The mesher's mesh and what came of it.
@@ -78,9 +79,9 @@ pub fn run(
             // On the mesher's own mesh what the geometry asks for is not known well.
             progress.tell_forecasts(max_vertices, &arguments.output);
         }
-        let options = Options { max_vertices, is_draft: !is_last, ..Options::default() };
-        let is_coarser = !is_last && sizes.complexity > SMALL;
-        let source = sizes.source(team, if is_coarser { COARSER } else { 1.0 });
+        let is_draft = !is_last && sizes.complexity > SMALL;
+        let options = Options { max_vertices, is_draft, ..Options::default() };
+        let source = sizes.source(team, if is_draft { COARSER } else { 1.0 });
         let adapted = adapt::adapt(&mesh, &place, model, &source, &options, pool, &progress)
             .map_err(|error| named(error.to_string()))?;
         progress.finish();

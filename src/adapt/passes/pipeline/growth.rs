@@ -33,6 +33,9 @@ const TETS_A_VERTEX: usize = 12;
 /// With this share of the vertices that it may have, a mesh has them all: of the last edges most are refused.
 const FULL: f64 = 0.995;
 
+/// A mesh whose metric asks for so many times the vertices that it may have is not met, however many it has in the end.
+const FAR: f64 = 1.25;
+
 /// Why a mesh stopped growing before its metric was met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -112,7 +115,8 @@ impl Pipeline<'_, '_> {
 
     /// Notes at the end of a run whether more vertices were wanted than there may be.
     pub(super) fn note_limit(&mut self) {
-        if self.is_limited && self.is_full(self.live()) {
+        let is_far = self.expected > FAR * self.max_vertices as f64;
+        if self.is_limited && (is_far || self.is_full(self.live())) {
             self.growth_end.get_or_insert(GrowthEnd::MaxVertices);
         }
     }
