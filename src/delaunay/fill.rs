@@ -6,9 +6,6 @@ use crate::mesh::vector::{Vec3, area2, dot, lerp, sub, unit};
 /// Tetrahedra that the search may place in all.
 const BUDGET: u32 = 400;
 
-/// Tetrahedra that it places before it is asked whether there can be a way at all. Most polyhedra are filled with fewer.
-const FIRST: u32 = 40;
-
 /// Faces of the polyhedra that are tried at all.
 const MOST: usize = 120;
 
@@ -21,15 +18,7 @@ pub fn fill(points: &[Vec3], faces: Vec<[u32; 3]>) -> Option<Vec<[u32; 4]>> {
     let mut vertices: Vec<u32> = faces.iter().flatten().copied().collect();
     vertices.sort_unstable();
     vertices.dedup();
-    let mut search = Search { points, vertices, front: faces, tets: Vec::new(), budget: FIRST };
-    if search.advance() {
-        return Some(search.tets);
-    }
-    if search.budget > 0 || !search.may_be_filled() {
-        return None;
-    }
-    // The front is as at first, so the same search goes on beyond where it ended.
-    search.budget = BUDGET;
+    let mut search = Search { points, vertices, front: faces, tets: Vec::new(), budget: BUDGET };
     search.advance().then_some(search.tets)
 }
 
@@ -115,14 +104,6 @@ impl Search<'_> {
             self.front = saved;
         }
         false
-    }
-
-    /// Whether each face has a vertex that makes a tetrahedron with it which fits: one of these must be there in whatever fills the polyhedron.
-    fn may_be_filled(&self) -> bool {
-        self.front.iter().all(|&f| {
-            let is_above = |v: u32| !f.contains(&v) && self.orient(f[0], f[1], f[2], v) > 0.0;
-            self.vertices.iter().any(|&v| is_above(v) && self.fits(f, v))
-        })
     }
 
     /// Whether the tetrahedron of face f and vertex v meets the front in nothing but common vertices, edges and faces.
