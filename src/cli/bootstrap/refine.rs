@@ -37,8 +37,8 @@ const SETTLED: f64 = 0.05;
 /// and the last cycle halves all edges. (With 1.5 it does so too, and they are too short then.)
 const COARSER: f64 = 2.0;
 
-/// Where the geometry asks for no more than this complexity there are no drafts: they would save no second, and on a few hundred vertices what it
-/// asks for is not known.
+/// Where the geometry asks for no more than this complexity there are no drafts: they would save less than a second, and a few hundred vertices do
+/// not show what it asks for.
 const SMALL: f64 = 8_000.0;
 
 /// The mesher's mesh and what came of it.
@@ -74,9 +74,9 @@ pub fn run(
     for cycle in 1.. {
         stage(&format!("geometry asks for {:.0}", sizes.complexity));
         let progress = Progress::new(stop);
-        progress.expect_further(usize::from(cycle == 1));
-        if cycle == 2 {
-            // On the mesher's own mesh what the geometry asks for is not known well.
+        progress.expect_further(usize::from(!is_last));
+        if is_last {
+            // Before, what the geometry asks for is not known well, and a draft has fewer vertices.
             progress.tell_forecasts(max_vertices, &arguments.output);
         }
         let is_draft = !is_last && sizes.complexity > SMALL;

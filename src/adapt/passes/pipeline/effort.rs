@@ -1,4 +1,4 @@
-//! How much the passes do: all that a unit mesh takes, or what a draft takes, a mesh that is only asked for the sizes of the next.
+//! How much the passes do: all that a unit mesh takes, or less for a draft. A draft serves only to find the sizes of the next mesh.
 
 /// How much the passes do.
 #[derive(Clone, Copy, Debug, PartialEq)]
