@@ -292,6 +292,9 @@ impl Evaluate for Evaluator<'_> {
     fn closest_on_edge_within(&mut self, edge: u32, point: Vec3, limit: f64) -> Option<OnCurve> {
         forward!(self, closest_on_edge_within(edge, point, limit))
     }
+    fn edge_box(&self, edge: u32) -> Option<[Vec3; 2]> {
+        forward!(self, edge_box(edge))
+    }
 
     fn closest_on_surface(&mut self, face: u32, point: Vec3, guess: [f64; 2]) -> OnSurface {
         forward!(self, closest_on_surface(face, point, guess))

@@ -109,6 +109,12 @@ pub trait Evaluate {
         Some(self.closest_on_edge(edge, point, None)).filter(|on| on.distance < limit)
     }
 
+    /// A box about the whole edge (least and greatest corner), where it is known at no cost.
+    fn edge_box(&self, edge: u32) -> Option<[Vec3; 2]> {
+        let _ = edge;
+        None
+    }
+
     /// Closest point on the face's surface near the guess: what the adapter uses for points inside a face. The trimming is looked at only
     /// where chords of the face's edges leave it (a plane with a round edge): a vertex in a layer thinner than the chord's rise would
     /// come to lie beside the face. Falls back to [`Evaluate::closest_on_face`] when it does not converge to a true foot point.

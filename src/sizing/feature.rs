@@ -104,12 +104,13 @@ impl<'a> Near<'a> {
         [least, greatest]: [f64; 2],
     ) -> Self {
         let topology = model.topology();
+        let touching = topology.tolerance.max(TOUCHING * topology.diagonal());
         let (boxes, owners): (Vec<Box3>, Vec<Entity>) = pieces(team, model, greatest).into_iter().unzip();
         Self {
             topology,
             mesh,
             place,
-            touch: Touch::new(topology),
+            touch: Touch::new(model, touching),
             bodies: Bodies::new(topology, mesh, place),
             sight: Obstacles::new(team, mesh),
             pieces: Tree::new(team, &boxes),
@@ -117,7 +118,7 @@ impl<'a> Near<'a> {
             owners,
             cells,
             least,
-            touching: topology.tolerance.max(TOUCHING * topology.diagonal()),
+            touching,
             has_sides: topology.solids <= 1,
         }
     }

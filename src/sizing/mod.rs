@@ -20,6 +20,7 @@ mod sight;
 mod summary;
 mod touch;
 mod tree;
+mod twins;
 
 pub use curvature::{Curvature, Local};
 pub use feature::Gap;

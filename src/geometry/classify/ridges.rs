@@ -3,7 +3,8 @@ use super::Error;
 use super::error::numbers;
 use super::fit::Fit;
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, OnCurve};
-use crate::mesh::vector::lerp;
+use crate::mesh::box_tree::BoxTree;
+use crate::mesh::vector::{Vec3, lerp};
 use std::collections::HashMap;
 
 /// Mesh edges on model edges.
@@ -119,17 +120,80 @@ impl Search<'_> {
         let inner: Vec<u32> = (0..topology.edges.len() as u32)
             .filter(|e| topology.is_ridge(*e) && !covered.contains(e) && topology.edges[*e as usize].faces.len() == 1)
             .collect();
+        let Some(within) = Within::new(self.fit, faces, &inner) else { return };
         for edge in inner {
             let (face, reach) = (topology.edges[edge as usize].faces[0], self.fit.reach(Entity::Edge(edge)));
-            for mesh_edge in 0..self.fit.features.edges.len() {
-                let nodes = self.fit.features.edges.nodes[mesh_edge];
-                if self.fit.features.edges.triangles(mesh_edge).all(|t| faces[t] == face)
-                    && nodes.iter().all(|&v| self.land(v, edge).distance <= reach)
-                {
+            for nodes in within.near(face, self.evaluator.edge_box(edge), reach) {
+                if nodes.iter().all(|&v| self.is_near(v, edge, reach)) {
                     list.push((nodes, edge));
                 }
             }
         }
+    }
+
+    /// Whether a vertex is within reach of a model edge. What is not is not kept: most vertices are far from most edges.
+    fn is_near(&mut self, vertex: u32, edge: u32, reach: f64) -> bool {
+        if let Some(on) = self.landings.get(&(vertex, edge)) {
+            return on.distance <= reach;
+        }
+        let (fit, evaluator) = (self.fit, &mut self.evaluator);
+        if fit.hints.parameters(vertex, Entity::Edge(edge)).is_none()
+            && evaluator.closest_on_edge_within(edge, fit.point(vertex), reach.next_up()).is_none()
+        {
+            return false;
+        }
+        self.land(vertex, edge).distance <= reach
+    }
+}
+
+/// Mesh edges within faces.
+struct Within<'a> {
+    fit: &'a Fit<'a>,
+    /// Face and mesh edge, sorted.
+    edges: Vec<(u32, u32)>,
+    tree: BoxTree,
+}
+
+impl<'a> Within<'a> {
+    /// Those of the faces that model edges lie in; none if there are none.
+    fn new(fit: &'a Fit, faces: &[u32], inner: &[u32]) -> Option<Self> {
+        let mut wanted = vec![false; fit.topology.faces.len()];
+        inner.iter().for_each(|&edge| wanted[fit.topology.edges[edge as usize].faces[0] as usize] = true);
+        let mut edges: Vec<(u32, u32)> = (0..fit.features.edges.len())
+            .filter_map(|edge| {
+                let mut beside = fit.features.edges.triangles(edge).map(|t| faces[t]);
+                let face = beside.next()?;
+                (wanted[face as usize] && beside.all(|other| other == face)).then_some((face, edge as u32))
+            })
+            .collect();
+        edges.sort_unstable();
+        let bounds = |&(_, edge): &(u32, u32)| {
+            let [a, b] = fit.features.edges.nodes[edge as usize].map(|v| fit.point(v));
+            [[0, 1, 2].map(|i| a[i].min(b[i])), [0, 1, 2].map(|i| a[i].max(b[i]))]
+        };
+        (!edges.is_empty()).then(|| Self {
+            fit,
+            tree: BoxTree::new(edges.len(), |i| bounds(&edges[i as usize])),
+            edges,
+        })
+    }
+
+    /// The nodes of those of a face that come within reach of a box; all of the face where there is no box. In the mesh's order.
+    fn near(&self, face: u32, about: Option<[Vec3; 2]>, reach: f64) -> Vec<[u32; 2]> {
+        let mut found = Vec::new();
+        match about {
+            Some([low, high]) => {
+                let about = [low.map(|x| x - reach), high.map(|x| x + reach)];
+                self.tree.overlapping(&about, |i| found.push(self.edges[i as usize]));
+                found.retain(|edge| edge.0 == face);
+                found.sort_unstable();
+            }
+            None => {
+                let begin = self.edges.partition_point(|edge| edge.0 < face);
+                found.extend(self.edges[begin..].iter().take_while(|edge| edge.0 == face));
+            }
+        }
+        found.iter().map(|edge| self.fit.features.edges.nodes[edge.1 as usize]).collect()
     }
 }
 

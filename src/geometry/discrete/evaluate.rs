@@ -44,6 +44,10 @@ impl Evaluate for DiscreteEvaluator<'_> {
         self.0.curves[edge as usize].closest(point, guess)
     }
 
+    fn edge_box(&self, edge: u32) -> Option<[Vec3; 2]> {
+        Some(self.0.curves[edge as usize].bounds())
+    }
+
     fn closest_on_face(&mut self, face: u32, point: Vec3, guess: Option<[f64; 2]>) -> OnSurface {
         self.0.patches[face as usize].closest(point, guess)
     }

@@ -1,6 +1,6 @@
 //! The shape of a discrete edge: a chain of segments, each straight or a cubic curve, by arc length.
 use super::cubic::{CubicCurve, curve_at, straight};
-use super::tree::{BoxTree, box_of};
+use super::tree::{Box3, BoxTree, box_of};
 use crate::geometry::{CurveFrame, OnCurve};
 use crate::mesh::vector::{Vec3, add, distance, dot, lerp, norm, scale, sub, unit};
 
@@ -46,6 +46,11 @@ impl Polyline {
         };
         let bends = if curves.is_empty() { bends(&points, ring) } else { Vec::new() };
         Self { tree: BoxTree::new(&boxes), points, curves, lengths, bends, ring }
+    }
+
+    /// The box about the whole.
+    pub fn bounds(&self) -> Box3 {
+        self.tree.bounds()
     }
 
     /// Arc length of the whole.

@@ -53,6 +53,11 @@ impl BoxTree {
         tree
     }
 
+    /// The box about all items.
+    pub fn bounds(&self) -> Box3 {
+        self.nodes.first().map_or(EMPTY, |root| root.bounds)
+    }
+
     fn build(&mut self, boxes: &[Box3], first: usize, last: usize) {
         let items = &mut self.items[first..last];
         let bounds = items.iter().fold(EMPTY, |b, &i| join(b, boxes[i as usize]));
