@@ -1,5 +1,5 @@
 //! Fidelity of a mesh's boundary to its model: distances, and the deviation of the normals.
-use super::classify::Classification;
+use super::classify::{Classification, usual_tolerance};
 use super::{Entity, Evaluate, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, Side, TriangleIndex};
@@ -49,6 +49,8 @@ pub struct Fidelity {
     pub from_model: Option<Farthest>,
     /// The vertex farthest from its own entity.
     pub from_entity: Option<Farthest>,
+    /// How many vertices are farther from their own entity than other commands take.
+    pub off: usize,
     /// The vertex farthest from its own entity of those that had to stay where the input has them. These do not count above.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held: Option<Farthest>,
@@ -108,6 +110,7 @@ fn measure_vertices(
         found.retain(|found| !is_held(found));
     }
     fidelity.from_entity = found.first().copied();
+    fidelity.off = found.iter().filter(|found| found.distance > usual_tolerance(topology, found.entity)).count();
     // The model is no farther than the vertex' own entity. So most vertices need no search.
     let mut evaluator = model.evaluator();
     for near in found {

@@ -48,3 +48,49 @@ fn firsts(
     }
     (0..count as u32).map(|i| parts.first(i)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::touch::Touch;
+    use super::*;
+    use crate::geometry::{Discrete, Entity};
+    use crate::mesh::samples::cube;
+    use crate::tasks::Team;
+
+    /// Two cubes that meet in the edge x = y = 1, each with its own edge there.
+    #[test]
+    fn edges_that_lie_on_each_other_are_one() {
+        let (mut mesh, other) = (cube(2), cube(2));
+        let count = mesh.vertices.len() as u32;
+        mesh.vertices.extend(other.vertices.iter().map(|p| [p[0] + 1.0, p[1] + 1.0, p[2]]));
+        mesh.vertex_refs.extend(&other.vertex_refs);
+        other.tets.iter().for_each(|(nodes, reference)| mesh.tets.push(nodes.map(|v| v + count), reference));
+        let moved = other.triangles.iter().map(|(nodes, reference)| (nodes.map(|v| v + count), reference + 6));
+        moved.for_each(|(nodes, reference)| mesh.triangles.push(nodes, reference));
+        let (model, _) = Discrete::from_mesh(Team::alone(), &mesh, 30.0).unwrap();
+        let model = Model::Discrete(model);
+        let topology = model.topology();
+        assert_eq!((topology.vertices.len(), topology.edges.len()), (16, 24));
+        let twins = Twins::new(&model, 1e-9);
+        let second = |firsts: &[u32]| (0..).zip(firsts).filter(|(i, first)| *i != **first).map(|pair| pair.0).collect();
+        let (vertices, edges): (Vec<u32>, Vec<u32>) = (second(&twins.vertices), second(&twins.edges));
+        assert_eq!((vertices.len(), edges.len()), (2, 1), "{vertices:?} {edges:?}");
+        // So do the faces beside them touch, and faces that only meet there; faces that do not meet are apart.
+        let touch = Touch::new(&model, 1e-9);
+        let [own, of_other] = [twins.edges[edges[0] as usize], edges[0]];
+        for f in topology.edges[own as usize].faces.iter() {
+            assert!(touch.touches(Entity::Edge(of_other), Entity::Face(*f)));
+            for g in topology.edges[of_other as usize].faces.iter() {
+                assert!(touch.touches(Entity::Face(*f), Entity::Face(*g)));
+            }
+        }
+        let far = |own: f64, all: f64| {
+            (0..12).find(|f| {
+                let [low, high] = topology.faces[*f as usize].bounds;
+                low[0] == own && high[0] == own && low[1].floor() == all
+            })
+        };
+        let (left, right) = (far(0.0, 0.0).unwrap(), far(2.0, 1.0).unwrap());
+        assert!(!touch.touches(Entity::Face(left), Entity::Face(right)));
+    }
+}

@@ -117,7 +117,7 @@ fn next_change(before: Option<f64>, last: f64) -> f64 {
 impl Refined {
     fn flaws(&self) -> Flaws {
         Flaws {
-            off: self.adapted.extracted.off_model.len(),
+            off: self.adapted.extracted.off_model.len().max(self.fidelity.off),
             folded: self.fidelity.worst_normal.is_some_and(|worst| worst.degrees > FOLDED),
             crossings: self.adapted.extracted.crossings.count,
         }
@@ -130,9 +130,8 @@ impl Refined {
         if self.interrupted || off == 0 && !folded && crossings == 0 {
             None
         } else if off > 0 {
-            let first = self.adapted.extracted.off_model[0] as usize;
-            let at = at(self.adapted.extracted.mesh.vertices.get(first).copied());
-            Some(format!("{off} vertices of its surface found no room on the model, the first{at}"))
+            let at = at(self.fidelity.from_entity.map(|farthest| farthest.at));
+            Some(format!("{off} vertices of its surface are off the model, the farthest{at}"))
         } else if folded {
             Some(format!("its surface is folded{}", at(self.fidelity.worst_normal.map(|worst| worst.at))))
         } else {
@@ -156,7 +155,15 @@ impl Refined {
         start: Instant,
     ) -> Outcome {
         let is_refused = self.flaws().are_refused();
-        let flaw = self.flaw().map(|flaw| format!("{}: {flaw}; no mesh to begin with gave a better one", self.by));
+        let way_out = match &model {
+            Model::Discrete(_) if arguments.patches().smooth => {
+                "smooth patches do not fit so rough a surface: --flat-surface takes its triangles as they are"
+            }
+            Model::Discrete(_) => "repair the surface in the program that made it",
+            #[cfg(feature = "occt")]
+            Model::Occt(_) => "no mesh to begin with gave a better one",
+        };
+        let flaw = self.flaw().map(|flaw| format!("{}: {flaw}; {way_out}", self.by));
         self.notices.iter().chain(&flaw).for_each(crate::cli::note);
         let place = self.adapted.extracted.classification.clone();
         let input =

@@ -103,6 +103,17 @@ fn borders(topology: &Topology) -> (Vec<f64>, Vec<f64>) {
     (edges, faces)
 }
 
+/// How far a vertex may be from its entity by default: 1e-6 of the model's diagonal, or twice what the model states for the entity; model units.
+pub fn usual_tolerance(topology: &Topology, entity: Entity) -> f64 {
+    let stated = match entity {
+        Entity::Vertex(i) => topology.vertices[i as usize].tolerance,
+        Entity::Edge(i) => topology.edges[i as usize].tolerance,
+        Entity::Face(i) => topology.faces[i as usize].tolerance,
+        Entity::Interior => 0.0,
+    };
+    (TOLERANCE * topology.diagonal()).max(2.0 * stated)
+}
+
 impl Fit<'_> {
     /// How far a vertex may be from an entity.
     pub fn allowed(&self, entity: Entity) -> f64 {
@@ -111,13 +122,7 @@ impl Fit<'_> {
 
     /// How far a vertex is from its entity at most in a mesh that was made on the model.
     fn usual(&self, entity: Entity) -> f64 {
-        let stated = match entity {
-            Entity::Vertex(i) => self.topology.vertices[i as usize].tolerance,
-            Entity::Edge(i) => self.topology.edges[i as usize].tolerance,
-            Entity::Face(i) => self.topology.faces[i as usize].tolerance,
-            Entity::Interior => 0.0,
-        };
-        (TOLERANCE * self.topology.diagonal()).max(2.0 * stated)
+        usual_tolerance(self.topology, entity)
     }
 
     /// How far it may be while the entity is looked for.

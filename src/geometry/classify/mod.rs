@@ -23,6 +23,6 @@ mod units;
 
 pub use associate::{Associated, associate, keeps_references};
 pub use error::Error;
-pub use fit::{Options, classify};
+pub use fit::{Options, classify, usual_tolerance};
 pub use report::{Dimension, Offset, Report};
 pub use result::Classification;
