@@ -254,7 +254,7 @@ mod tests {
         // The orientation of the triangles in the file does not matter.
         mesh.triangles.nodes[3].swap(0, 1);
         let fidelity = measure(Team::alone(), &mesh, &model, &classification);
-        assert_eq!(fidelity.vertices, 26);
+        assert_eq!((fidelity.vertices, fidelity.off), (26, 0));
         assert!(fidelity.from_entity.unwrap().distance < 1e-14 && fidelity.from_model.unwrap().distance < 1e-14);
         assert!(fidelity.worst_normal.unwrap().degrees < 1e-12);
         // A vertex within a side, pushed in: by 0.1 from both, and the triangles around it lean.
@@ -281,5 +281,6 @@ mod tests {
         let fidelity = measure(Team::alone(), &mesh, &model, &classification);
         assert!((fidelity.from_entity.unwrap().distance - 0.2).abs() < 1e-12);
         assert!((fidelity.from_model.unwrap().distance - 0.1).abs() < 1e-12);
+        assert_eq!(fidelity.off, 2);
     }
 }

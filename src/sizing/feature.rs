@@ -27,6 +27,9 @@ pub(super) const ACROSS: f64 = 0.5;
 const AWAY: f64 = 0.25;
 /// A gap goes across an edge if its direction makes at least 45° with the tangent.
 pub(super) const ALONG: f64 = 0.707;
+/// A gap that has this share of its cells along the way across it limits nothing: a way that leans (to the rim of a face across a thin part, say)
+/// has them by what the nearest one asks for, and a slab across it would limit the sizes along the walls.
+const DIVIDED: f64 = 0.9;
 /// Entities nearer than this share of the diagonal touch, whether the model says so or not.
 const TOUCHING: f64 = 1e-7;
 
@@ -170,7 +173,8 @@ impl<'a> Near<'a> {
             let share = norm(across);
             let (g, size) = (unit(across), (share * length / self.cells).max(self.least));
             // The line of sight is tested last: it costs most.
-            if share < ALONG || dot(g, known.solve(g)) <= size * size || !self.is_facing(local, way, normal) {
+            let is_small = dot(g, known.solve(g)) <= size * size || known.quadratic(g).sqrt() * size >= DIVIDED;
+            if share < ALONG || is_small || !self.is_facing(local, way, normal) {
                 continue;
             }
             let in_face = normal.is_none() && self.touch.share_face(at.entity, edge_of(to));

@@ -16,5 +16,6 @@ mod metric_geometry;
 mod model;
 mod projections;
 mod reading;
+mod settled;
 mod spline_faces;
 mod view_model;
