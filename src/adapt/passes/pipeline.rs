@@ -208,9 +208,10 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.limit(shape_limits());
             self.shape_pass();
             self.repair();
-            self.settle(pass);
+            let moved = self.settle(pass);
             let after = self.cost();
-            let settled = before - after < SETTLED * before;
+            // What came onto the model late has not been looked at since.
+            let settled = !moved && before - after < SETTLED * before;
             if (settled && self.unprojected.is_empty()) || self.observer.stop() {
                 break;
             }
@@ -295,15 +296,18 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.smooth();
     }
 
-    /// Brings unprojected vertices to the model; after some passes they are removed instead.
-    fn settle(&mut self, pass: usize) {
+    /// Brings unprojected vertices to the model; after some passes they are removed instead. Returns whether there are fewer now.
+    fn settle(&mut self, pass: usize) -> bool {
         if pass >= PATIENCE {
             self.context.limits.cavity = LARGE_CAVITY;
         }
+        self.collect_unprojected();
+        let before = self.unprojected.len();
         self.project();
         if !self.unprojected.is_empty() && pass >= PATIENCE {
             self.remove_unprojected(pass + 1 == SHAPE_PASSES);
         }
+        self.unprojected.len() < before
     }
 
     /// Takes out the vertices that found no room on the model: where the surface becomes no worse, or at any price.
