@@ -157,7 +157,7 @@ impl Refined {
         let is_refused = self.flaws().are_refused();
         let way_out = match &model {
             Model::Discrete(_) if arguments.patches().smooth => {
-                "smooth patches do not fit so rough a surface: --flat-surface takes its triangles as they are"
+                "smooth patches do not fit this surface everywhere: --flat-surface takes its triangles as they are"
             }
             Model::Discrete(_) => "repair the surface in the program that made it",
             #[cfg(feature = "occt")]

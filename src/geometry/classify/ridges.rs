@@ -123,12 +123,25 @@ impl Search<'_> {
         let Some(within) = Within::new(self.fit, faces, &inner) else { return };
         for edge in inner {
             let (face, reach) = (topology.edges[edge as usize].faces[0], self.fit.reach(Entity::Edge(edge)));
-            for nodes in within.near(face, self.evaluator.edge_box(edge), reach) {
-                if nodes.iter().all(|&v| self.is_near(v, edge, reach)) {
-                    list.push((nodes, edge));
-                }
-            }
+            let mut found = within.near(face, self.evaluator.edge_box(edge), reach);
+            found.retain(|nodes| nodes.iter().all(|&v| self.is_near(v, edge, reach)));
+            self.keep_neighbours(edge, &mut found);
+            list.extend(found.into_iter().map(|nodes| (nodes, edge)));
         }
+    }
+
+    /// Keeps mesh edges between vertices that follow each other along a model edge: not those that leave one out, as the third side of a
+    /// triangle at a bend does.
+    fn keep_neighbours(&mut self, edge: u32, found: &mut Vec<[u32; 2]>) {
+        let mut along: Vec<(f64, u32)> = found.iter().flatten().map(|&v| (self.land(v, edge).t, v)).collect();
+        along.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        along.dedup();
+        let rank: HashMap<u32, usize> = along.iter().zip(0..).map(|(&(_, v), rank)| (v, rank)).collect();
+        let [first, last] = self.fit.topology.edges[edge as usize].vertices;
+        found.retain(|nodes| {
+            let apart = rank[&nodes[0]].abs_diff(rank[&nodes[1]]);
+            apart == 1 || first == last && apart + 1 == along.len()
+        });
     }
 
     /// Whether a vertex is within reach of a model edge. What is not is not kept: most vertices are far from most edges.
