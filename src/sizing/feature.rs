@@ -173,7 +173,7 @@ impl<'a> Near<'a> {
             let share = norm(across);
             let (g, size) = (unit(across), (share * length / self.cells).max(self.least));
             // The line of sight is tested last: it costs most.
-            let is_small = dot(g, known.solve(g)) <= size * size || known.quadratic(g).sqrt() * size >= DIVIDED;
+            let is_small = dot(g, known.solve(g)) <= size * size || metric.quadratic(g).sqrt() * size >= DIVIDED;
             if share < ALONG || is_small || !self.is_facing(local, way, normal) {
                 continue;
             }
