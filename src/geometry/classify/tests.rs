@@ -3,7 +3,7 @@ use super::{Classification, Error, Options, Report, associate, classify};
 use crate::geometry::discrete::samples::{cube, sphere};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
 use crate::geometry::{Discrete, Entity, Geometry, Model};
-use crate::mesh::vector::distance;
+use crate::mesh::vector::{distance, lerp};
 use crate::mesh::{Elements, TetMesh};
 use crate::tasks::Team;
 
@@ -243,4 +243,34 @@ fn a_sphere_has_no_ridge_along_its_seam_and_no_corner_at_its_poles() {
     for &v in inner.triangles.nodes.iter().flatten() {
         assert_eq!(result.entities[(base + v) as usize], Entity::Face(ball as u32));
     }
+}
+
+/// A wire within a side that bends by less than a corner does: its ends are joined by an edge of the mesh too.
+#[test]
+fn a_chord_over_a_bend_is_no_piece_of_a_wire() {
+    let mut mesh = closed_cube(3);
+    let is_inside = |p: [f64; 3]| p[2] == 0.0 && (0..2).all(|i| p[i] > 0.1 && p[i] < 0.9);
+    let inside = |nodes: &[u32; 3]| nodes.iter().all(|&v| is_inside(mesh.vertices[v as usize]));
+    let nodes = *mesh.triangles.nodes.iter().find(|nodes| inside(nodes)).unwrap();
+    // The corner across from the longest side goes towards that side.
+    let length = |k: usize| distance(mesh.vertices[nodes[k] as usize], mesh.vertices[nodes[(k + 1) % 3] as usize]);
+    let long = (0..3).find(|&k| length(k) > 0.4).unwrap();
+    let [a, c, b] = [long, (long + 1) % 3, (long + 2) % 3].map(|k| nodes[k]);
+    let [pa, pb, pc] = [a, b, c].map(|v| mesh.vertices[v as usize]);
+    mesh.vertices[b as usize] = lerp(pb, lerp(pa, pc, 0.5), 0.8);
+    let mut with_wire = mesh.clone();
+    [[a, b], [b, c]].iter().for_each(|side| with_wire.edges.push(*side, 9));
+    let (model, on) = Discrete::from_mesh(Team::alone(), &with_wire, DEFAULT_RIDGE_ANGLE).unwrap();
+    assert_eq!((model.topology().edges.len(), model.topology().faces.len()), (13, 6));
+    let (result, _) = fit(&mesh, &Model::Discrete(model)).unwrap();
+    assert_eq!(result.entities, on.entities);
+    let wire = |place: &Classification| {
+        let mut nodes: Vec<[u32; 2]> = place.ridges.iter().map(|(nodes, _)| *nodes).collect();
+        nodes.iter_mut().for_each(|nodes| nodes.sort_unstable());
+        nodes.sort_unstable();
+        nodes
+    };
+    assert_eq!(wire(&result), wire(&on));
+    let chord = if a < c { [a, c] } else { [c, a] };
+    assert!(!wire(&result).contains(&chord));
 }
