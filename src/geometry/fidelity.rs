@@ -49,7 +49,7 @@ pub struct Fidelity {
     pub from_model: Option<Farthest>,
     /// The vertex farthest from its own entity.
     pub from_entity: Option<Farthest>,
-    /// How many vertices are farther from their own entity than other commands take.
+    /// How many vertices are farther from their own entity than `classify` allows by default.
     pub off: usize,
     /// The vertex farthest from its own entity of those that had to stay where the input has them. These do not count above.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -27,8 +27,8 @@ pub(super) const ACROSS: f64 = 0.5;
 const AWAY: f64 = 0.25;
 /// A gap goes across an edge if its direction makes at least 45° with the tangent.
 pub(super) const ALONG: f64 = 0.707;
-/// A gap that has this share of its cells along the way across it limits nothing: a way that leans (to the rim of a face across a thin part, say)
-/// has them by what the nearest one asks for, and a slab across it would limit the sizes along the walls.
+/// A gap limits nothing where the way across it already has this share of its cells. A way that leans, as to the rim of a face across a thin part,
+/// has them once the nearest gap is limited; limited itself, it would make the sizes along the walls small.
 const DIVIDED: f64 = 0.9;
 /// Entities nearer than this share of the diagonal touch, whether the model says so or not.
 const TOUCHING: f64 = 1e-7;
@@ -107,13 +107,12 @@ impl<'a> Near<'a> {
         [least, greatest]: [f64; 2],
     ) -> Self {
         let topology = model.topology();
-        let touching = topology.tolerance.max(TOUCHING * topology.diagonal());
         let (boxes, owners): (Vec<Box3>, Vec<Entity>) = pieces(team, model, greatest).into_iter().unzip();
         Self {
             topology,
             mesh,
             place,
-            touch: Touch::new(model, touching),
+            touch: Touch::new(model, TOUCHING * topology.diagonal()),
             bodies: Bodies::new(topology, mesh, place),
             sight: Obstacles::new(team, mesh),
             pieces: Tree::new(team, &boxes),
@@ -121,7 +120,7 @@ impl<'a> Near<'a> {
             owners,
             cells,
             least,
-            touching,
+            touching: topology.tolerance.max(TOUCHING * topology.diagonal()),
             has_sides: topology.solids <= 1,
         }
     }

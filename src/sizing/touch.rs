@@ -1,5 +1,5 @@
-//! Which entities of a model touch: they share a vertex or an edge. Where solids touch without a face between them, each has an edge or a vertex of
-//! its own there (cpp/separate); those lie on each other and count as one.
+//! Which entities of a model touch: they share a vertex or an edge. Where solids touch without a common face, each has its own edge or vertex there
+//! (cpp/separate). These lie on each other and count as one.
 use super::twins::Twins;
 use crate::geometry::{Entity, Geometry, Model, Topology};
 
@@ -16,7 +16,7 @@ pub struct Touch<'a> {
 }
 
 impl<'a> Touch<'a> {
-    /// Of a model. What lies within `tolerance` of each other is one.
+    /// Of a model. Vertices and edges within `tolerance` of each other count as one.
     pub fn new(model: &'a Model, tolerance: f64) -> Self {
         let topology = model.topology();
         let twins = Twins::new(model, tolerance);

@@ -1,16 +1,17 @@
 //! Vertices and edges of a model that lie on each other.
 use crate::geometry::{Evaluate, Geometry, Model, Topology};
 use crate::mesh::disjoint_sets::DisjointSets;
-use crate::mesh::vector::distance;
+use crate::mesh::vector::{Vec3, distance};
 
-/// For each vertex and each edge the first one that lies where it does: itself, but where there are several.
+/// For each vertex and each edge the first one at the same place; itself where it is alone.
 pub struct Twins {
     pub vertices: Vec<u32>,
     pub edges: Vec<u32>,
 }
 
 impl Twins {
-    /// Vertices nearer than the tolerance are at one place; so are edges with the same ends whose middles are that near.
+    /// Vertices within the tolerance of each other are at one place. So are edges with the same ends whose middles are that near. (The tolerances that
+    /// a model states are no measure: a thin part may be thinner.)
     pub fn new(model: &Model, tolerance: f64) -> Self {
         let topology = model.topology();
         let vertices = firsts(topology.vertices.len(), tolerance, |v| Some((topology.vertices[v].point, [0; 2])));
@@ -32,11 +33,7 @@ impl Twins {
 }
 
 /// The first item at the place of each, with the same mark; items without a place are alone.
-fn firsts(
-    count: usize,
-    tolerance: f64,
-    mut place: impl FnMut(usize) -> Option<(crate::mesh::vector::Vec3, [u32; 2])>,
-) -> Vec<u32> {
+fn firsts(count: usize, tolerance: f64, mut place: impl FnMut(usize) -> Option<(Vec3, [u32; 2])>) -> Vec<u32> {
     let mut parts = DisjointSets::new(count);
     let mut items: Vec<_> = (0..count).filter_map(|i| place(i).map(|(point, mark)| (point, mark, i as u32))).collect();
     items.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]).then(a.2.cmp(&b.2)));

@@ -155,12 +155,7 @@ fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Target
     }
     let asked =
         Asked { input: arguments.model.clone(), output: arguments.output.clone(), threads, complexity_wanted: None };
-    // Patches of a surface that is too coarse for its thin parts may go through each other: then the kernel ends with an error.
-    let way_out = |error: String| match arguments.patches().smooth {
-        true => format!("{error} (with --flat-surface its triangles are taken as they are, not as smooth patches)"),
-        false => error,
-    };
-    let refined = refine::run(arguments, pool, meshed, &model, start).map_err(way_out)?;
+    let refined = refine::run(arguments, pool, meshed, &model, start)?;
     interrupt::end_at_once();
     refined.write(arguments, team, (&asked, targets), (model, names), start)
 }

@@ -82,8 +82,12 @@ pub fn run(
         let is_draft = !is_last && sizes.complexity > SMALL;
         let options = Options { max_vertices, is_draft, ..Options::default() };
         let source = sizes.source(team, if is_draft { COARSER } else { 1.0 });
-        let adapted = adapt::adapt(&mesh, &place, model, &source, &options, pool, &progress)
-            .map_err(|error| named(error.to_string()))?;
+        let adapted = adapt::adapt(&mesh, &place, model, &source, &options, pool, &progress).map_err(|error| {
+            named(match without_patches(arguments, model) {
+                Some(remedy) => format!("{error}; {remedy}"),
+                None => error.to_string(),
+            })
+        })?;
         progress.finish();
         progress.has_room()?;
         let interrupted = progress.interrupted();
@@ -131,7 +135,7 @@ impl Refined {
             None
         } else if off > 0 {
             let at = at(self.fidelity.from_entity.map(|farthest| farthest.at));
-            Some(format!("{off} vertices of its surface are off the model, the farthest{at}"))
+            Some(format!("vertices of its surface are off the model ({off}), the farthest{at}"))
         } else if folded {
             Some(format!("its surface is folded{}", at(self.fidelity.worst_normal.map(|worst| worst.at))))
         } else {
@@ -155,15 +159,8 @@ impl Refined {
         start: Instant,
     ) -> Outcome {
         let is_refused = self.flaws().are_refused();
-        let way_out = match &model {
-            Model::Discrete(_) if arguments.patches().smooth => {
-                "smooth patches do not fit this surface everywhere: --flat-surface takes its triangles as they are"
-            }
-            Model::Discrete(_) => "repair the surface in the program that made it",
-            #[cfg(feature = "occt")]
-            Model::Occt(_) => "no mesh to begin with gave a better one",
-        };
-        let flaw = self.flaw().map(|flaw| format!("{}: {flaw}; {way_out}", self.by));
+        let remedy = without_patches(arguments, &model).unwrap_or("no mesh to begin with gave a better one");
+        let flaw = self.flaw().map(|flaw| format!("{}: {flaw}; {remedy}", self.by));
         self.notices.iter().chain(&flaw).for_each(crate::cli::note);
         let place = self.adapted.extracted.classification.clone();
         let input =
@@ -184,6 +181,12 @@ impl Refined {
             ExitCode::SUCCESS
         })
     }
+}
+
+/// What to do where the smooth patches of a surface of triangles may be at fault.
+fn without_patches(arguments: &Arguments, model: &Model) -> Option<&'static str> {
+    (matches!(model, Model::Discrete(_)) && arguments.patches().smooth)
+        .then_some("smooth patches may not fit this surface everywhere: --flat-surface takes its triangles as they are")
 }
 
 /// What is wrong with a mesh; the first is the worst.

@@ -117,12 +117,7 @@ pub fn usual_tolerance(topology: &Topology, entity: Entity) -> f64 {
 impl Fit<'_> {
     /// How far a vertex may be from an entity.
     pub fn allowed(&self, entity: Entity) -> f64 {
-        if self.given { self.tolerance } else { self.usual(entity) }
-    }
-
-    /// How far a vertex is from its entity at most in a mesh that was made on the model.
-    fn usual(&self, entity: Entity) -> f64 {
-        usual_tolerance(self.topology, entity)
+        if self.given { self.tolerance } else { usual_tolerance(self.topology, entity) }
     }
 
     /// How far it may be while the entity is looked for.
@@ -137,7 +132,7 @@ impl Fit<'_> {
             Entity::Face(face) => self.face_borders[face as usize],
             Entity::Vertex(_) | Entity::Interior => 0.0,
         };
-        (SLACK * self.usual(entity)).max(2.0 * border)
+        (SLACK * usual_tolerance(self.topology, entity)).max(2.0 * border)
     }
 
     /// How far a vertex may be from a face if none is within reach: edges may be off their faces by more than the model says.

@@ -130,8 +130,7 @@ impl Search<'_> {
         }
     }
 
-    /// Keeps mesh edges between vertices that follow each other along a model edge: not those that leave one out, as the third side of a
-    /// triangle at a bend does.
+    /// Keeps the mesh edges whose ends follow each other along the model edge. One that leaves out a vertex between is a chord over a bend.
     fn keep_neighbours(&mut self, edge: u32, found: &mut Vec<[u32; 2]>) {
         let mut along: Vec<(f64, u32)> = found.iter().flatten().map(|&v| (self.land(v, edge).t, v)).collect();
         along.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -144,7 +143,7 @@ impl Search<'_> {
         });
     }
 
-    /// Whether a vertex is within reach of a model edge. What is not is not kept: most vertices are far from most edges.
+    /// Whether a vertex is within reach of a model edge. Landings out of reach are not kept: there is one for each vertex and edge.
     fn is_near(&mut self, vertex: u32, edge: u32, reach: f64) -> bool {
         if let Some(on) = self.landings.get(&(vertex, edge)) {
             return on.distance <= reach;
