@@ -58,6 +58,12 @@ fn ways_that_lean_across_a_thin_part_ask_for_no_more_than_the_part() {
     check("coated-pipe.step");
 }
 
+/// On a few hundred vertices it asked for as much twice, and for a tenth less of the third mesh.
+#[test]
+fn a_small_mesh_is_asked_again_after_its_last_cycle() {
+    check("delta-wing-domain.step");
+}
+
 /// On the outer wall of the coat sizes along the pipe are those of its curvature, up to its ends.
 #[test]
 fn a_thin_coat_is_fine_across_alone_up_to_its_ends() {

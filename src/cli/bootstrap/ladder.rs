@@ -157,6 +157,11 @@ impl<'a> Ladder<'a> {
         self.model.write_brep(&self.brep).map_err(|error| error.to_string())
     }
 
+    /// No other program is tried any more.
+    pub fn keep(&mut self, program: &str) {
+        self.queue.keep(program);
+    }
+
     /// Remembers why the mesh of a rung would not do.
     pub fn refuse(&mut self, rung: Rung, why: String) {
         self.failed.push((rung, why));

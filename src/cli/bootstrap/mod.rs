@@ -6,6 +6,7 @@
 mod added;
 mod arguments;
 pub mod domain;
+mod flaws;
 mod gmsh;
 pub mod heal;
 mod ladder;
@@ -34,8 +35,8 @@ use crate::geometry::{Geometry, Model, Names};
 use crate::tasks::{Plan, Pool, Team, stage};
 use arguments::{DOMAIN, HEALED};
 use ladder::{Ladder, Meshed, Stopped};
-use refine::Refined;
-use rung::Choice;
+use refine::{Failed, Refined};
+use rung::{Choice, OWN};
 use solids::{check_solids, small_face};
 use std::error::Error;
 use std::path::PathBuf;
@@ -95,15 +96,20 @@ pub fn run(arguments: &Arguments) -> Outcome {
         };
         stage("meshed");
         let by = meshed.by;
-        let refined = refine::run(arguments, &pool, meshed, &model, start)?;
+        let refined = refine::run(arguments, &pool, meshed, (&model, false), start)
+            .map_err(|failed| failed.of(&arguments.model))?;
         interrupt::end_at_once();
-        let flaw = refined.flaw();
-        if best.as_ref().is_none_or(|best| refined.is_better_than(best)) {
+        let (flaws, is_interrupted) = (refined.flaws(), refined.is_interrupted());
+        if best.as_ref().is_none_or(|best| flaws.are_less_than(&best.flaws())) {
             best = Some(refined);
         }
-        match flaw {
-            Some(why) if rest > 0 => ladder.refuse(by, why),
+        match flaws.worst() {
+            Some(why) if rest > 0 && !is_interrupted => ladder.refuse(by, why),
             _ => break,
+        }
+        if best.as_ref().is_some_and(|best| !best.flaws().are_refused()) {
+            // A fold that the others take is not worth minutes of other programs.
+            ladder.keep(OWN);
         }
     }
     let best = best.ok_or("no rung was tried")?;
@@ -146,18 +152,35 @@ fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Target
     }
     let team = Team::new(pool, Plan::default());
     let limit = Duration::try_from_secs_f64(arguments.time_limit).unwrap_or(Duration::MAX);
-    let line = Waiting::for_what("tetrahedra of its triangles");
-    let (model, meshed, names) = triangles::run(team, &arguments.model, &arguments.patches(), limit)?;
-    drop(line);
-    stage("meshed");
-    if arguments.no_adapt {
-        return write_as_it_is(arguments, team, &meshed, (&model, &names), targets);
-    }
     let asked =
         Asked { input: arguments.model.clone(), output: arguments.output.clone(), threads, complexity_wanted: None };
-    let refined = refine::run(arguments, pool, meshed, &model, start)?;
-    interrupt::end_at_once();
-    refined.write(arguments, team, (&asked, targets), (model, names), start)
+    let mut patches = arguments.patches();
+    loop {
+        let line = Waiting::for_what("tetrahedra of its triangles");
+        let (model, meshed, names) = triangles::run(team, &arguments.model, &patches, limit)?;
+        drop(line);
+        stage("meshed");
+        if arguments.no_adapt {
+            return write_as_it_is(arguments, team, &meshed, (&model, &names), targets);
+        }
+        let refined = refine::run(arguments, pool, meshed, (&model, patches.smooth), start);
+        interrupt::end_at_once();
+        let why = match refined {
+            Ok(refined) => {
+                let flaws = refined.flaws();
+                match flaws.worst() {
+                    Some(why) if patches.smooth && flaws.are_refused() && !refined.is_interrupted() => why,
+                    _ => return refined.write(arguments, team, (&asked, targets), (model, names), start),
+                }
+            }
+            Err(Failed::OnModel(why)) if patches.smooth => why,
+            Err(failed) => return Err(failed.of(&arguments.model).into()),
+        };
+        super::note(format_args!(
+            "smooth patches do not fit this surface ({why}): its triangles are taken as they are; give --flat-surface to other commands too"
+        ));
+        patches.smooth = false;
+    }
 }
 
 /// Meshes of the mesher that are adapted where there is a flaw in what comes of the first; the best is taken.

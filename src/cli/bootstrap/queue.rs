@@ -61,6 +61,11 @@ impl Queue {
         self.waiting.retain(|rung| rung.program() != program);
     }
 
+    /// Only rungs of this program are tried any more.
+    pub fn keep(&mut self, program: &str) {
+        self.waiting.retain(|rung| rung.program() == program);
+    }
+
     /// It was ended.
     pub fn took_too_long(&mut self, rung: Rung) {
         if !self.slow.contains(&rung) {
@@ -102,6 +107,18 @@ mod tests {
         assert!(others.iter().all(|(_, limit)| *limit == WHOLE / FIRST));
         // The last one has all that is left.
         assert_eq!(last.1, WHOLE - WHOLE / 100 * others.len() as u32);
+    }
+
+    #[test]
+    fn only_a_program_that_is_kept_comes_again() {
+        let mut queue = Queue::new(Rung::of(Choice::Auto), WHOLE);
+        let program = queue.next().unwrap().0.program();
+        queue.keep(program);
+        let mut rest = Vec::new();
+        while let Some((rung, _)) = queue.next() {
+            rest.push(rung.program());
+        }
+        assert!(!rest.is_empty() && rest.iter().all(|of| *of == program), "{rest:?}");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The mesher's mesh, adapted to the metric of the geometry.
 use super::arguments::Arguments;
 use super::domain;
+use super::flaws::Flaws;
 use super::ladder::Meshed;
 use super::rung::Rung;
 use crate::adapt::forecast::most_in_memory;
@@ -11,18 +12,18 @@ use crate::cli::adapt::input::Input;
 use crate::cli::adapt::progress::{Progress, finish_on_interrupt};
 use crate::cli::adapt::report::{Asked, Report};
 use crate::cli::waiting::Waiting;
-use crate::cli::{INVALID, interrupt, table};
+use crate::cli::{INVALID, interrupt};
 use crate::geometry::classify::Classification;
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Geometry, Model, Names};
 use crate::memory;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::vector::Vec3;
 use crate::metric::multiscale::{Bounds, Measure, bounded};
 use crate::metric::{Background, Interpolation, Limits, Source, Sym3};
 use crate::sizing::{self, Body};
 use crate::tasks::{GRAIN, Plan, Pool, Team, stage};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -32,6 +33,9 @@ const MOST_CYCLES: usize = 6;
 
 /// A mesh is good enough when the complexity that the geometry asks for on it differs by less than this share. Where it will, it is not asked.
 const SETTLED: f64 = 0.05;
+
+/// Patches that go through each other are nearer to each other the finer the mesh: the complexity grows by such a share from cycle to cycle.
+const RUNAWAY: f64 = 1.0;
 
 /// Edges of a draft are so many times as long as the geometry asks for. On an eighth of the vertices what it asks for is known nearly as well,
 /// and the last cycle halves all edges. (With 1.5 it does so too, and they are too short then.)
@@ -54,14 +58,38 @@ pub struct Refined {
     times: [Duration; 2],
 }
 
-/// Adapts the mesher's mesh to the metric of the geometry.
+/// Why there is no mesh.
+pub enum Failed {
+    /// The kernel made none; or, of smooth patches, one that other commands refuse.
+    OnModel(String),
+    /// Anything else, as a full disk; it names its file.
+    Otherwise(String),
+}
+
+impl From<String> for Failed {
+    fn from(why: String) -> Self {
+        Self::Otherwise(why)
+    }
+}
+
+impl Failed {
+    /// Why, with the file of the model.
+    pub fn of(self, model: &Path) -> String {
+        match self {
+            Self::OnModel(why) => format!("{}: {why}", model.display()),
+            Self::Otherwise(why) => why,
+        }
+    }
+}
+
+/// Adapts the mesher's mesh to the metric of the geometry. Where the surface `is_smooth` triangles, it ends as soon as these do not fit it.
 pub fn run(
     arguments: &Arguments,
     pool: &Pool,
     meshed: Meshed,
-    model: &Model,
+    (model, is_smooth): (&Model, bool),
     start: Instant,
-) -> Result<Refined, String> {
+) -> Result<Refined, Failed> {
     let team = Team::new(pool, Plan::default());
     let named = |error: String| format!("{}: {error}", arguments.model.display());
     let (prepared, stop) = (start.elapsed(), finish_on_interrupt());
@@ -82,31 +110,42 @@ pub fn run(
         let is_draft = !is_last && sizes.complexity > SMALL;
         let options = Options { max_vertices, is_draft, ..Options::default() };
         let source = sizes.source(team, if is_draft { COARSER } else { 1.0 });
-        let adapted = adapt::adapt(&mesh, &place, model, &source, &options, pool, &progress).map_err(|error| {
-            named(match without_patches(arguments, model) {
-                Some(remedy) => format!("{error}; {remedy}"),
-                None => error.to_string(),
-            })
-        })?;
+        let adapted = adapt::adapt(&mesh, &place, model, &source, &options, pool, &progress)
+            .map_err(|error| Failed::OnModel(error.to_string()))?;
         progress.finish();
         progress.has_room()?;
         let interrupted = progress.interrupted();
-        if !is_last && !interrupted {
+        // Nothing is gained where the mesh may have no more vertices.
+        let is_full = adapted.growth_end.is_some();
+        // On a few hundred vertices what is foretold of the next cycle may not come.
+        let asks_again = sizes.complexity <= SMALL && cycle < MOST_CYCLES && !is_full;
+        if !interrupted && (!is_last || asks_again) {
             let result = (Arc::new(adapted.extracted.mesh.clone()), adapted.extracted.classification.clone());
             let next = self::sizes(arguments, team, &result.0, &result.1, model).map_err(named)?;
             let new = next.complexity / sizes.complexity - 1.0;
-            // Nothing is gained where the mesh may have no more vertices.
-            let is_known = new.abs() < SETTLED || adapted.growth_end.is_some();
-            is_last = is_known || cycle + 1 == MOST_CYCLES || next_change(change, new) < SETTLED;
-            ((mesh, place), sizes, change) = (result, next, Some(new));
-            continue;
+            if is_smooth && new > RUNAWAY {
+                let flaws = Flaws::of(&adapted, &on_model(team, &adapted, model));
+                if let Some(why) = flaws.worst().filter(|_| flaws.are_refused()) {
+                    return Err(Failed::OnModel(why));
+                }
+            }
+            let is_known = new.abs() < SETTLED;
+            if !(is_last && is_known) {
+                is_last = is_known || is_full || cycle + 1 >= MOST_CYCLES || next_change(change, new) < SETTLED;
+                ((mesh, place), sizes, change) = (result, next, Some(new));
+                continue;
+            }
         }
         notices.extend(sizes.notice);
         let times = [prepared, start.elapsed()];
-        let fidelity = fidelity::measure(team, &adapted.extracted.mesh, model, &adapted.extracted.classification);
+        let fidelity = on_model(team, &adapted, model);
         return Ok(Refined { by, notices, start: first, source, adapted, fidelity, interrupted, times });
     }
     unreachable!("the last cycle returns")
+}
+
+fn on_model(team: Team<'_>, adapted: &Adapted, model: &Model) -> Fidelity {
+    fidelity::measure(team, &adapted.extracted.mesh, model, &adapted.extracted.classification)
 }
 
 /// By what share the complexity will change on the next mesh, where it changed by these on the last two: while it goes on in one direction,
@@ -119,34 +158,14 @@ fn next_change(before: Option<f64>, last: f64) -> f64 {
 }
 
 impl Refined {
-    fn flaws(&self) -> Flaws {
-        Flaws {
-            off: self.adapted.extracted.off_model.len().max(self.fidelity.off),
-            folded: self.fidelity.worst_normal.is_some_and(|worst| worst.degrees > FOLDED),
-            crossings: self.adapted.extracted.crossings.count,
-        }
+    /// What is wrong with it.
+    pub fn flaws(&self) -> Flaws {
+        Flaws::of(&self.adapted, &self.fidelity)
     }
 
-    /// Why another mesh to begin with may be better.
-    pub fn flaw(&self) -> Option<String> {
-        let Flaws { off, folded, crossings } = self.flaws();
-        let at = |at: Option<Vec3>| at.map_or(String::new(), |at| format!(" at {}", table::place(at)));
-        if self.interrupted || off == 0 && !folded && crossings == 0 {
-            None
-        } else if off > 0 {
-            let at = at(self.fidelity.from_entity.map(|farthest| farthest.at));
-            Some(format!("vertices of its surface are off the model ({off}), the farthest{at}"))
-        } else if folded {
-            Some(format!("its surface is folded{}", at(self.fidelity.worst_normal.map(|worst| worst.at))))
-        } else {
-            let first = self.adapted.extracted.crossings.first.first().map(|crossing| crossing.at);
-            Some(format!("{crossings} pairs of triangles of its surface cross, the first{}", at(first)))
-        }
-    }
-
-    /// Whether there is less wrong with it.
-    pub fn is_better_than(&self, other: &Self) -> bool {
-        self.flaws() < other.flaws()
+    /// Whether the user ended it: it is as far as it came.
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupted
     }
 
     /// Writes it, and prints the table of `adapt`.
@@ -158,9 +177,13 @@ impl Refined {
         (model, names): (Model, Names),
         start: Instant,
     ) -> Outcome {
-        let is_refused = self.flaws().are_refused();
-        let remedy = without_patches(arguments, &model).unwrap_or("no mesh to begin with gave a better one");
-        let flaw = self.flaw().map(|flaw| format!("{}: {flaw}; {remedy}", self.by));
+        let flaws = self.flaws();
+        let flaw = flaws.worst().filter(|_| !self.interrupted).map(|flaw| match &model {
+            // Of its triangles there is one.
+            Model::Discrete(_) => flaw,
+            #[cfg(feature = "occt")]
+            Model::Occt(_) => format!("{}: {flaw}; no mesh to begin with gave a better one", self.by),
+        });
         self.notices.iter().chain(&flaw).for_each(crate::cli::note);
         let place = self.adapted.extracted.classification.clone();
         let input =
@@ -172,7 +195,7 @@ impl Refined {
         arguments.figures.print(&report, || format!("{:<26} {}\n{}", "mesher", self.by, report.text()))?;
         Ok(if self.interrupted {
             interrupt::exit_code()
-        } else if is_refused {
+        } else if flaws.are_refused() {
             ExitCode::from(INVALID)
         } else if let Some(why) = report.why_incomplete() {
             crate::cli::note(format_args!("the mesh stopped growing: {why}"));
@@ -182,34 +205,6 @@ impl Refined {
         })
     }
 }
-
-/// What to do where the smooth patches of a surface of triangles may be at fault.
-fn without_patches(arguments: &Arguments, model: &Model) -> Option<&'static str> {
-    (matches!(model, Model::Discrete(_)) && arguments.patches().smooth)
-        .then_some("smooth patches may not fit this surface everywhere: --flat-surface takes its triangles as they are")
-}
-
-/// What is wrong with a mesh; the first is the worst.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Flaws {
-    /// Vertices off the model.
-    off: usize,
-    /// Whether a triangle of the surface is turned over.
-    folded: bool,
-    /// Pairs of triangles that cross.
-    crossings: usize,
-}
-
-impl Flaws {
-    /// Whether other commands refuse such a mesh.
-    fn are_refused(&self) -> bool {
-        self.off > 0 || self.crossings > 0
-    }
-}
-
-/// Normal deviation of a triangle that is turned over or nearly so, degrees. The kernel's limit is 60°: beyond it are triangles of the first
-/// surface that were never mended, or some that were left where a vertex found no room on the model.
-const FOLDED: f64 = 75.0;
 
 /// What the geometry asks for.
 struct Sizes {
@@ -291,14 +286,5 @@ mod tests {
         // What grows, or goes back, is not foretold.
         assert_eq!(next_change(Some(0.1), 0.2), 0.2);
         assert_eq!(next_change(Some(-0.5), 0.1), 0.1);
-    }
-
-    #[test]
-    fn what_others_refuse_does_not_pass() {
-        let flaws = |off, folded, crossings| Flaws { off, folded, crossings };
-        assert!(!flaws(0, false, 0).are_refused() && !flaws(0, true, 0).are_refused());
-        assert!(flaws(1, false, 0).are_refused() && flaws(0, false, 1).are_refused());
-        // Vertices off the model are the worst.
-        assert!(flaws(0, true, 9) < flaws(1, false, 0) && flaws(0, false, 9) < flaws(0, true, 0));
     }
 }

@@ -105,6 +105,27 @@ fn a_ball_of_triangles_is_filled_and_stays_round() {
     assert!(coarse.tets.len() < mesh.tets.len() && place.path("out.meshb").exists());
 }
 
+/// A ball of few triangles in a box: a flat wall of the box is 0.02 from the triangles, and smooth patches through the ball's vertices bulge
+/// through it by 0.03.
+#[test]
+fn triangles_whose_smooth_patches_go_through_each_other_are_taken_as_they_are() {
+    let place = Place::new();
+    let ball = sphere(5, 1.0, [0.0; 3]);
+    let wall = ball.iter().flatten().map(|p| p[0]).fold(0.0, f64::max) + 0.02;
+    assert!((0.96..0.98).contains(&wall), "{wall}");
+    let surface = place.stl("near.stl", &[ball, cuboid([-2.0; 3], [wall, 2.0, 2.0])].concat());
+    let run = place.run(&surface, &[]);
+    let said = stderr(&run);
+    assert_eq!(run.status.code(), Some(0), "{said}");
+    assert!(said.contains("smooth patches do not fit this surface (") && said.contains("give --flat-surface"), "{said}");
+    let mesh = io::read_mesh(&place.path("out.meshb")).unwrap().content;
+    assert!(validity::check(&mesh).is_valid());
+    // As with that option, byte for byte.
+    let before = std::fs::read(place.path("out.meshb")).unwrap();
+    place.mesh(&surface, &["--flat-surface"]);
+    assert!(before == std::fs::read(place.path("out.meshb")).unwrap());
+}
+
 #[test]
 fn surfaces_within_each_other_bound_solids_and_voids_in_turn() {
     let place = Place::new();
