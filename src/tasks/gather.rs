@@ -33,6 +33,10 @@ impl Pool {
         T: Send,
         F: Fn(usize, Range<usize>) -> T + Sync,
     {
+        self.mapped(plan, items, &f)
+    }
+
+    fn mapped<T: Send>(&self, plan: Plan, items: usize, f: &(dyn Fn(usize, Range<usize>) -> T + Sync)) -> Vec<T> {
         let grain = plan.grain.max(1);
         let mut results: Vec<Option<T>> = Vec::new();
         results.resize_with(items.div_ceil(grain), || None);
@@ -71,6 +75,10 @@ impl Pool {
         T: Send,
         F: Fn(usize, usize, &mut [T]) + Sync,
     {
+        self.each_chunk_mut(plan, slice, &f);
+    }
+
+    fn each_chunk_mut<T: Send>(&self, plan: Plan, slice: &mut [T], f: &(dyn Fn(usize, usize, &mut [T]) + Sync)) {
         let (grain, items) = (plan.grain.max(1), slice.len());
         let chunks: Vec<_> = slice.chunks_mut(grain).map(Mutex::new).collect();
         self.task_for(plan, items, |thread, range| {

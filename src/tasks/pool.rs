@@ -10,7 +10,7 @@ use super::place::{self, Place};
 use super::plan::{Backend, Plan};
 use super::scope::Scope;
 use super::simulation;
-use super::strategy::{Loop, chunk};
+use super::strategy::{Loop, OfChunk, chunk};
 use std::io;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -94,6 +94,10 @@ impl Pool {
     where
         F: Fn(usize, Range<usize>) + Sync,
     {
+        self.run(plan, items, &f);
+    }
+
+    fn run(&self, plan: Plan, items: usize, f: OfChunk<'_>) {
         let grain = plan.grain.max(1);
         if self.is_alone() || items <= grain {
             let chunks = || (0..items.div_ceil(grain)).map(|index| chunk(index, grain, items));
@@ -105,7 +109,7 @@ impl Pool {
                 return;
             }
         }
-        let work = Loop::new(plan, items, &f, self.waiter());
+        let work = Loop::new(plan, items, f, self.waiter());
         // SAFETY: `open` returns when the group is done.
         self.open(plan.backend, &work.group, &mut |queue| queue.push(unsafe { work.root() }));
         work.group.resume();

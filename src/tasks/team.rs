@@ -37,6 +37,8 @@ impl<'p> Team<'p> {
 
     /// Calls `f` with each chunk of so many items, the last one shorter.
     pub fn for_each(self, grain: usize, items: usize, f: impl Fn(Range<usize>) + Sync) {
+        // Through a reference to any function, here and below, `f` is compiled once for one thread and for several.
+        let f: &(dyn Fn(Range<usize>) + Sync) = &f;
         let grain = grain.max(1);
         match self.pool {
             Some(pool) => pool.task_for(Plan { grain, ..self.plan }, items, |_, range| f(range)),
@@ -46,6 +48,10 @@ impl<'p> Team<'p> {
 
     /// Calls `f(start, chunk)` with each chunk of the slice, which begins at `start`.
     pub fn fill<T: Send>(self, grain: usize, slice: &mut [T], f: impl Fn(usize, &mut [T]) + Sync) {
+        self.each_chunk_mut(grain, slice, &f);
+    }
+
+    fn each_chunk_mut<T: Send>(self, grain: usize, slice: &mut [T], f: &(dyn Fn(usize, &mut [T]) + Sync)) {
         let grain = grain.max(1);
         match self.pool {
             Some(pool) => {
@@ -57,6 +63,10 @@ impl<'p> Team<'p> {
 
     /// `f` of each chunk, in the order of the chunks.
     pub fn chunks<T: Send>(self, grain: usize, items: usize, f: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+        self.mapped(grain, items, &f)
+    }
+
+    fn mapped<T: Send>(self, grain: usize, items: usize, f: &(dyn Fn(Range<usize>) -> T + Sync)) -> Vec<T> {
         let grain = grain.max(1);
         match self.pool {
             Some(pool) => pool.map_chunks(Plan { grain, ..self.plan }, items, |_, range| f(range)),

@@ -117,7 +117,10 @@ fn triangles_whose_smooth_patches_go_through_each_other_are_taken_as_they_are() 
     let run = place.run(&surface, &[]);
     let said = stderr(&run);
     assert_eq!(run.status.code(), Some(0), "{said}");
-    assert!(said.contains("smooth patches do not fit this surface (") && said.contains("give --flat-surface"), "{said}");
+    assert!(
+        said.contains("smooth patches do not fit this surface (") && said.contains("give --flat-surface"),
+        "{said}"
+    );
     let mesh = io::read_mesh(&place.path("out.meshb")).unwrap().content;
     assert!(validity::check(&mesh).is_valid());
     // As with that option, byte for byte.
