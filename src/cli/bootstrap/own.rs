@@ -99,12 +99,13 @@ fn parts(surface: Surface) -> Result<Vec<Surface>, String> {
         return Ok(vec![surface]);
     }
     let bodies = bodies::Bodies::of(&surface);
-    if let Some(pair) = surface.crossings.iter().find(|pair| !bodies.are_apart(&surface, **pair)) {
+    if surface.crossings.iter().any(|pair| !bodies.are_apart(&surface, *pair)) {
+        let pair = of_most(&surface);
         let [a, b] = pair.map(|t| surface.faces[t as usize] + 1);
         let at = surface.points[surface.triangles[pair[0] as usize][0] as usize];
         let count = surface.crossings.len();
         let least = if count < ENOUGH { "" } else { "at least " };
-        let solids = match apart(&surface, *pair) {
+        let solids = match apart(&surface, pair) {
             [Some(a), Some(b)] => format!(": solids {} and {} overlap there, or touch along no edge", a + 1, b + 1),
             _ => String::new(),
         };
@@ -119,6 +120,17 @@ fn parts(surface: Surface) -> Result<Vec<Surface>, String> {
         return Err(format!("solids {a} and {b} overlap near {}", place(at)));
     }
     Ok(bodies.divide(&surface))
+}
+
+/// The first pair of triangles that cross of the two faces of which most do: faces near them may cross for that alone, since division ends
+/// where nothing helps.
+fn of_most(surface: &Surface) -> [u32; 2] {
+    let mut found: BTreeMap<[u32; 2], (usize, [u32; 2])> = BTreeMap::new();
+    for &pair in &surface.crossings {
+        let faces = sorted2(pair.map(|t| surface.faces[t as usize]));
+        found.entry(faces).or_insert((0, pair)).0 += 1;
+    }
+    found.into_values().rev().max_by_key(|(count, _)| *count).expect("some triangles cross").1
 }
 
 /// The solids of a triangle's face.
@@ -284,5 +296,16 @@ mod tests {
             let error = parts(crossing(turned)).unwrap_err();
             assert!(error.contains("solids 1 and 2 overlap near (-1.000000, -1.000000, 0.000000)"), "{error}");
         }
+    }
+    #[test]
+    fn the_faces_that_cross_most_are_told() {
+        let (faces, crossings) = (vec![3, 5, 5, 8, 3], vec![[0, 1], [1, 3], [3, 2], [2, 4]]);
+        // Faces 4 and 6 cross twice, 6 and 9 twice: of as many, the first.
+        assert_eq!(
+            of_most(&Surface { faces: faces.clone(), crossings: crossings.clone(), ..Surface::default() }),
+            [0, 1]
+        );
+        let crossings = crossings[1..].to_vec();
+        assert_eq!(of_most(&Surface { faces, crossings, ..Surface::default() }), [1, 3]);
     }
 }
