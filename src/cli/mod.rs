@@ -119,6 +119,7 @@ const INVALID: u8 = 1;
 pub fn main() -> ExitCode {
     memory::end::take_stack();
     memory::end::take_over_panics();
+    memory::end::take_over_aborts();
     geometry::on_memory_end(memory::end::leave_if_ended);
     if let Some(code) = load::child().or_else(bootstrap::domain::child).or_else(bootstrap::heal::child) {
         return code;

@@ -5,7 +5,8 @@
 //! answer that there is no memory. It writes a line from the stack and ends the program, from any thread. Code that can do with less calls
 //! [`try_zeroed_vec`].
 //!
-//! The start of a thread that fails comes here by [`take_over_panics`], C++ by `geometry::on_memory_end`.
+//! The start of a thread that fails comes here by [`take_over_panics`], C++ by `geometry::on_memory_end`, and what the C library itself cannot
+//! have, as the place for a thread's destructors, by [`take_over_aborts`].
 use std::cell::Cell;
 use std::fmt::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -58,6 +59,23 @@ pub fn take_over_panics() {
         }
         usual(panic);
     }));
+}
+
+/// Ends the program at an abort where memory has ended. Other aborts stay what they are.
+pub fn take_over_aborts() {
+    #[cfg(unix)]
+    {
+        extern "C" fn aborted(_: libc::c_int) {
+            // It takes no memory and no lock. When it returns the C library goes on to abort.
+            leave_if_ended();
+        }
+        // SAFETY: the record is all zeroes but for the function, which does what may be done in a handler of signals.
+        unsafe {
+            let mut action: libc::sigaction = std::mem::zeroed();
+            action.sa_sigaction = aborted as extern "C" fn(libc::c_int) as usize;
+            libc::sigaction(libc::SIGABRT, &action, std::ptr::null_mut());
+        }
+    }
 }
 
 /// Takes [`STACK`] of the main thread's stack. It grows as it is used, and where there is no memory for that the system ends the process by a
