@@ -82,7 +82,8 @@ impl Failed {
     }
 }
 
-/// Adapts the mesher's mesh to the metric of the geometry. Where the surface `is_smooth` triangles, it ends as soon as these do not fit it.
+/// Adapts the mesher's mesh to the metric of the geometry. Where the model is smooth patches through triangles (`is_smooth`), it ends as soon
+/// as they are seen not to fit.
 pub fn run(
     arguments: &Arguments,
     pool: &Pool,
