@@ -95,8 +95,9 @@ mod tests {
                 let corner = |i: usize| points[(lane + i) % 4];
                 let wanted = mean_ratio([corner(0), corner(1), corner(2), points[4]], [&log; 4]).max(0.0);
                 // 0: so flat and tilted that the sign of the volume is not sure.
-                let is_same = found == 0.0 || (found - wanted).abs() <= 1e-8 * wanted;
-                prop_assert!(is_same || wanted < 1e-2, "lane {lane}: {found} {wanted}");
+                let is_unsure = found == 0.0 && (spread > 25.0 || wanted < 0.1);
+                let is_same = is_unsure || (found - wanted).abs() <= 1e-8 * wanted;
+                prop_assert!(is_same || wanted < 1e-2, "lane {lane}: {found} {wanted} {spread}");
             }
         }
     }
