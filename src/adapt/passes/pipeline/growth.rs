@@ -225,6 +225,26 @@ mod tests {
     }
 
     #[test]
+    fn a_metric_that_asks_for_far_more_than_may_be_is_not_met() {
+        let sample = sample(Shape::Cube, 5, 0.2);
+        let mut bench = Bench::new(&sample, 1, 3);
+        let pool = Pool::new(1).unwrap();
+        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
+        let execution = Execution { pool: &pool, scheduler, plan, grains };
+        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
+        // It has 216.
+        pipeline.max_vertices = 300;
+        let mut ends = |is_limited, expected| {
+            (pipeline.is_limited, pipeline.expected, pipeline.growth_end) = (is_limited, expected, None);
+            pipeline.note_limit();
+            pipeline.growth_end
+        };
+        assert_eq!(ends(true, 1.2 * 300.0), None);
+        assert_eq!(ends(true, 1.3 * 300.0), Some(GrowthEnd::MaxVertices));
+        assert_eq!(ends(false, 1.3 * 300.0), None);
+    }
+
+    #[test]
     fn without_memory_a_store_stays_as_it_is() {
         let sample = sample(Shape::Cube, 2, 0.5);
         let mut bench = Bench::new(&sample, 1, 3);
