@@ -5,8 +5,8 @@
 //! answer that there is no memory. It writes a line from the stack and ends the program, from any thread. Code that can do with less calls
 //! [`try_zeroed_vec`].
 //!
-//! The start of a thread that fails comes here by [`take_over_panics`], C++ by `geometry::on_memory_end`, and what the C library itself cannot
-//! have, as the place for a thread's destructors, by [`take_over_aborts`].
+//! The start of a thread that fails comes here by [`take_over_panics`], C++ by `geometry::on_memory_end`, and an abort of the C library,
+//! which needs memory itself (for a thread's destructors, say), by [`take_over_aborts`].
 use std::cell::Cell;
 use std::fmt::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};

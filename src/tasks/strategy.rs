@@ -9,8 +9,8 @@ use super::place;
 use super::plan::{Plan, Strategy};
 use std::ops::Range;
 
-/// What a loop calls for each chunk, with the thread. It is a virtual call a chunk: compiled for each closure anew, all that cuts, queues and
-/// waits was a fifth of the program.
+/// What a loop calls for each chunk, with the thread. It is one virtual call a chunk. When loops were compiled anew for each closure, their
+/// copies were a fifth of the program.
 pub type OfChunk<'f> = &'f (dyn Fn(usize, Range<usize>) + Sync);
 
 /// A loop over items in chunks.

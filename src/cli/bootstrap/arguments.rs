@@ -70,7 +70,7 @@ pub struct Arguments {
     /// Of a surface of triangles: angle in degrees between them beyond which their edge is a ridge; or `none` [default: 45]
     #[arg(long, value_name = "DEG", value_parser = ridge_angle, allow_negative_numbers = true)]
     ridge_angle: Option<f64>,
-    /// Of a surface of triangles: these are taken as they are, flat; else smooth patches go through their vertices
+    /// Of a surface of triangles: these are taken as they are, flat; else smooth patches go through their vertices, unless those do not fit
     #[arg(long)]
     flat_surface: bool,
     /// Threads [default: all cores]

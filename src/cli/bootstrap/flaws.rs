@@ -62,7 +62,10 @@ impl Flaws {
         } else {
             return None;
         };
-        Some(at.map_or_else(|| text.clone(), |at| format!("{text} at {}", table::place(at))))
+        Some(match at {
+            Some(at) => format!("{text} at {}", table::place(at)),
+            None => text,
+        })
     }
 }
 

@@ -108,7 +108,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             _ => break,
         }
         if best.as_ref().is_some_and(|best| !best.flaws().are_refused()) {
-            // A fold that the others take is not worth minutes of other programs.
+            // Other commands take a mesh with a fold: it is not worth minutes of another mesher.
             ladder.keep(OWN);
         }
     }

@@ -122,8 +122,8 @@ fn parts(surface: Surface) -> Result<Vec<Surface>, String> {
     Ok(bodies.divide(&surface))
 }
 
-/// The first pair of triangles that cross of the two faces of which most do: faces near them may cross for that alone, since division ends
-/// where nothing helps.
+/// Of the two faces of which most triangles cross, the first pair that does. Other faces may cross only because division ended early for
+/// these.
 fn of_most(surface: &Surface) -> [u32; 2] {
     let mut found: BTreeMap<[u32; 2], (usize, [u32; 2])> = BTreeMap::new();
     for &pair in &surface.crossings {

@@ -34,7 +34,7 @@ const MOST_CYCLES: usize = 6;
 /// A mesh is good enough when the complexity that the geometry asks for on it differs by less than this share. Where it will, it is not asked.
 const SETTLED: f64 = 0.05;
 
-/// Patches that go through each other are nearer to each other the finer the mesh: the complexity grows by such a share from cycle to cycle.
+/// Where smooth patches go through each other, a finer mesh finds a narrower gap, and the complexity grows by more than this share in a cycle.
 const RUNAWAY: f64 = 1.0;
 
 /// Edges of a draft are so many times as long as the geometry asks for. On an eighth of the vertices what it asks for is known nearly as well,
@@ -118,7 +118,7 @@ pub fn run(
         let interrupted = progress.interrupted();
         // Nothing is gained where the mesh may have no more vertices.
         let is_full = adapted.growth_end.is_some();
-        // On a few hundred vertices what is foretold of the next cycle may not come.
+        // On a small mesh the complexity may change again after the cycle that was to be the last.
         let asks_again = sizes.complexity <= SMALL && cycle < MOST_CYCLES && !is_full;
         if !interrupted && (!is_last || asks_again) {
             let result = (Arc::new(adapted.extracted.mesh.clone()), adapted.extracted.classification.clone());
