@@ -3,7 +3,7 @@
 /// Slots at first: they fit into the first cache, and hold what is around most vertices.
 const ROOM: usize = 256;
 
-/// The set, with open addressing. It grows as needed and keeps its memory.
+/// The set, with open addressing. It grows as needed and keeps its memory. An empty one has none: it stands where another is in use.
 pub struct StampedSet {
     /// In each slot the stamp of an emptying in the upper half, the number in the lower half. One comparison tells whether a slot holds a number now.
     slots: Vec<u64>,
@@ -19,7 +19,7 @@ fn spread(number: u32) -> usize {
 
 impl Default for StampedSet {
     fn default() -> Self {
-        Self { slots: vec![0; ROOM], stamp: 1 << 32, len: 0 }
+        Self { slots: Vec::new(), stamp: 1 << 32, len: 0 }
     }
 }
 
@@ -46,13 +46,12 @@ impl StampedSet {
         let mut at = spread(number) & mask;
         loop {
             let slot = self.slots[at];
-            if slot < self.stamp {
+            if slot < self.stamp || slot == wanted {
+                // Whether it was there cannot be foreseen, so there is no branch.
+                let is_new = slot != wanted;
                 self.slots[at] = wanted;
-                self.len += 1;
-                return true;
-            }
-            if slot == wanted {
-                return false;
+                self.len += usize::from(is_new);
+                return is_new;
             }
             at = (at + 1) & mask;
         }
@@ -61,6 +60,9 @@ impl StampedSet {
     /// Whether the number is in the set.
     #[inline]
     pub fn contains(&self, number: u32) -> bool {
+        if self.slots.is_empty() {
+            return false;
+        }
         let wanted = self.stamp | u64::from(number);
         let mask = self.slots.len() - 1;
         let mut at = spread(number) & mask;
@@ -75,7 +77,7 @@ impl StampedSet {
 
     #[cold]
     fn grow(&mut self) {
-        let larger = vec![0; self.slots.len() * 2];
+        let larger = vec![0; ROOM.max(self.slots.len() * 2)];
         let old = std::mem::replace(&mut self.slots, larger);
         self.len = 0;
         let stamp = self.stamp;

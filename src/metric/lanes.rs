@@ -5,6 +5,7 @@
 //! of our own: a call of the library's functions would take one number at a time.
 use super::Sym3;
 use crate::mesh::vector::Vec3;
+use multiversion::multiversion;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Numbers in a batch.
@@ -196,6 +197,12 @@ impl Lanes {
         }
         y
     }
+}
+
+/// e^x of each, for |x| below 700.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+pub fn exponentials(x: &Lanes) -> Lanes {
+    x.exp()
 }
 
 /// a − b.

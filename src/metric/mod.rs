@@ -3,6 +3,7 @@ mod analytic;
 mod background;
 pub mod batch;
 mod conversions;
+pub mod edges;
 mod eigen;
 mod ellipsoid;
 mod error;

@@ -1,8 +1,9 @@
 //! The tetrahedra at a vertex and the vertices joined to it.
 use super::access::Access;
-use super::ids::{FACE, TetId, VertexId};
+use super::ids::{FACE, TetId, VertexId, place_of};
 use super::refusal::Refusal;
 use super::worker::{State, Worker};
+use crate::mesh::stamped_set::StampedSet;
 
 /// The ball of a vertex. Allocated once.
 #[derive(Default)]
@@ -15,6 +16,30 @@ pub struct Ball {
     from: Vec<TetId>,
 }
 
+/// The local vertices other than i, ascending.
+const FACE_ASCENDING: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
+
+/// The local vertices other than i and j, ascending.
+const OTHERS: [[[usize; 2]; 4]; 4] = [
+    [[0, 0], [2, 3], [1, 3], [1, 2]],
+    [[2, 3], [0, 0], [0, 3], [0, 2]],
+    [[1, 3], [0, 3], [0, 0], [0, 1]],
+    [[1, 2], [0, 2], [0, 1], [0, 0]],
+];
+
+/// Lists a neighbour and from where it was reached, unless it is listed already, or there is none.
+#[inline(always)]
+fn add(set: &mut StampedSet, (tets, from): (&mut Vec<TetId>, &mut Vec<TetId>), n: TetId, t: TetId) {
+    if n.is_some() {
+        let is_new = set.insert(n.0);
+        tets.push(n);
+        from.push(t);
+        let len = tets.len() - usize::from(!is_new);
+        tets.truncate(len);
+        from.truncate(len);
+    }
+}
+
 impl<A: Access> Worker<'_, '_, A> {
     /// Collects the ball of a claimed vertex and claims all vertices joined to it.
     pub fn gather_ball(&mut self, v: VertexId, ball: &mut Ball) -> Result<(), Refusal> {
@@ -24,6 +49,21 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// Collects the ball of a claimed vertex, claiming no other.
     pub fn collect_ball(&mut self, v: VertexId, ball: &mut Ball) {
+        self.walk_ball(v, ball, |_| false);
+    }
+
+    /// A tetrahedron with both vertices, the first of which is claimed; none when no edge joins them.
+    pub fn find_tet_with(&mut self, v: VertexId, other: VertexId) -> Option<TetId> {
+        let mut ball = std::mem::take(&mut self.state.unclaimed_ball);
+        let found = self.walk_ball(v, &mut ball, |vertices| vertices.contains(&other));
+        self.state.unclaimed_ball = ball;
+        found
+    }
+
+    /// Collects the ball of a claimed vertex, up to the first tetrahedron that is wanted.
+    ///
+    /// What is met again and what is new comes in no order, so all is listed, and taken back if it was there.
+    fn walk_ball(&mut self, v: VertexId, ball: &mut Ball, wanted: impl Fn([VertexId; 4]) -> bool) -> Option<TetId> {
         let State { set, near, .. } = &mut *self.state;
         let Ball { tets, link, from } = ball;
         tets.clear();
@@ -32,31 +72,45 @@ impl<A: Access> Worker<'_, '_, A> {
         set.clear();
         near.clear();
         let first = self.store.tet_of(v);
+        set.insert(first.0);
         tets.push(first);
         from.push(TetId::NONE);
-        set.insert(first.0);
-        link.extend(self.store.vertices(first).into_iter().filter(|&x| x != v));
-        link.iter().for_each(|x| {
+        for (x, n) in self.store.vertices(first).into_iter().zip(self.store.neighbours(first)).filter(|&(x, _)| x != v)
+        {
             near.insert(x.0);
-        });
+            link.push(x);
+            self.store.fetch_vertex(x);
+            self.store.fetch_tet(n);
+        }
         let mut next = 0;
         while next < tets.len() {
             let (t, before) = (tets[next], from[next]);
             next += 1;
             let (vertices, neighbours) = (self.store.vertices(t), self.store.neighbours(t));
-            for i in 0..4 {
-                let n = neighbours[i];
-                if n == before && n.is_some() {
-                    // Of the four vertices only the one beyond the face that led here can be new.
-                    if near.insert(vertices[i].0) {
-                        link.push(vertices[i]);
-                    }
-                } else if vertices[i] != v && n.is_some() && set.insert(n.0) {
-                    tets.push(n);
-                    from.push(t);
-                }
+            if wanted(vertices) {
+                return Some(t);
+            }
+            let own = place_of(v, vertices);
+            let [one, two] = if t == first {
+                let [one, two, three] = FACE_ASCENDING[own];
+                add(set, (tets, from), neighbours[one], t);
+                [two, three]
+            } else {
+                // Of the four vertices only the one beyond the face that led here can be new.
+                let back = place_of(before, neighbours);
+                let x = vertices[back];
+                self.store.fetch_vertex(x);
+                let is_new = near.insert(x.0);
+                link.push(x);
+                link.truncate(link.len() - usize::from(!is_new));
+                OTHERS[own][back]
+            };
+            for n in [neighbours[one], neighbours[two]] {
+                self.store.fetch_tet(n);
+                add(set, (tets, from), n, t);
             }
         }
+        None
     }
 
     /// Worst kept mean ratio of some tetrahedra.

@@ -3,7 +3,7 @@
 //! Every operation ends here. The faces of the old and the new tetrahedra are matched before anything is written:
 //! a replacement that would leave a hole, a doubled face or a surface triangle without a tag is refused, and the mesh stays as it was.
 use super::access::Access;
-use super::ids::{FACE, TetId, VertexId};
+use super::ids::{FACE, TetId, VertexId, place_of};
 use super::refusal::Refusal;
 use super::voids::Guarded;
 use super::worker::Worker;
@@ -121,8 +121,9 @@ impl<A: Access> Worker<'_, '_, A> {
                 }
                 *slot = FaceSlot { seen: Seen::Boundary, tet: n[i].0, local: 0, tag: tags[i] };
                 if n[i].is_some() {
-                    let back = self.store.neighbours(n[i]).iter().position(|&m| m == t);
-                    slot.local = back.expect("neighbours know each other") as u8;
+                    let back = self.store.neighbours(n[i]);
+                    slot.local = place_of(t, back) as u8;
+                    debug_assert_eq!(back[usize::from(slot.local)], t, "neighbours know each other");
                 }
             }
         }

@@ -38,8 +38,6 @@ pub struct Limits {
     pub improve_below: f64,
     /// Reconnection looks at tetrahedra below this mean ratio.
     pub flip_below: f64,
-    /// Of these it tries edges whose tetrahedra have a mean of 1/Q − 1 of at least this.
-    pub flip_cost: f64,
     /// Tetrahedra below this mean ratio try multi-face removal. With 0.82 a third more would try, and little is gained.
     pub several_below: f64,
     /// Reconnection looks at tetrahedra that changed at or after this time.
@@ -74,7 +72,6 @@ impl Default for Limits {
             collapse_floor: 0.2,
             improve_below: 1.0,
             flip_below: 1.0,
-            flip_cost: 0.0,
             several_below: 0.75,
             since: 0,
             cos_deviation: 0.5,

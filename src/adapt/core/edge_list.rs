@@ -1,7 +1,9 @@
 //! The edges of the mesh that are too long or too short: what is to be split and collapsed.
-use super::ids::{EDGE, TetId, VertexId};
+use super::ids::{TetId, VertexId};
 use super::store::Store;
-use crate::mesh::vector::sub;
+use crate::mesh::adjacency::EDGES;
+use crate::metric::edges::TetLanes;
+use crate::metric::lanes::LANES;
 use crate::tasks::Team;
 use std::ops::Range;
 
@@ -69,6 +71,9 @@ fn sorted_by_rank(edges: &[Classed], rank: impl Fn(&Classed) -> u32) -> (Vec<usi
     (starts, items)
 }
 
+/// So many tetrahedra before its turn the vertices of one are asked for.
+const FETCHED_AHEAD: u32 = 16;
+
 /// Least number of tetrahedra in a part. An edge is met once for each of its tetrahedra, and these are near each other in memory, so
 /// most duplicates are in the same part.
 const PART: usize = 1 << 14;
@@ -93,16 +98,34 @@ pub fn listed(team: Team<'_>, store: &Store, since: u32, wanted: impl Fn(f64, f6
 /// The wanted edges of some tetrahedra, in the order of their vertices.
 fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
     let mut found: Vec<Classed> = Vec::new();
-    for t in store.live_tets_in(tets).filter(|&t| store.stamp(t) >= since) {
-        let v = store.vertices(t);
-        let (p, m) = (v.map(|x| store.position(x)), v.map(|x| store.metric(x)));
-        for [i, j] in EDGE {
-            let e = sub(p[j], p[i]);
-            let (at_i, at_j) = (m[i].quadratic(e), m[j].quadratic(e));
-            if wanted(at_i, at_j) {
-                let item = EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t };
-                found.push(Classed { item, class: class(at_i * at_j) });
+    let mut changed = store.live_tets_in(tets).filter(|&t| store.stamp(t) >= since).fuse();
+    let mut lanes = TetLanes::default();
+    let mut some = [TetId::NONE; LANES];
+    loop {
+        let mut count = 0;
+        for (slot, t) in some.iter_mut().zip(&mut changed) {
+            store.fetch_vertices(TetId(t.0 + FETCHED_AHEAD));
+            for (k, x) in store.vertices(t).into_iter().enumerate() {
+                let (p, m) = (store.position(x), store.metric(x).0);
+                (0..3).for_each(|i| lanes.points[k][i].0[count] = p[i]);
+                (0..6).for_each(|i| lanes.metrics[k][i].0[count] = m[i]);
             }
+            *slot = t;
+            count += 1;
+        }
+        // Lanes beyond the count hold tetrahedra of before.
+        for ([i, j], [at_i, at_j]) in EDGES.into_iter().zip(lanes.squared_lengths()) {
+            for (lane, &t) in some[..count].iter().enumerate() {
+                let (at_i, at_j) = (at_i.0[lane], at_j.0[lane]);
+                if wanted(at_i, at_j) {
+                    let v = store.vertices(t);
+                    let item = EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t };
+                    found.push(Classed { item, class: class(at_i * at_j) });
+                }
+            }
+        }
+        if count < LANES {
+            break;
         }
     }
     found.sort_unstable_by_key(key);
@@ -125,8 +148,8 @@ fn merged(parts: &[Vec<Classed>], vertices: Range<usize>) -> Vec<Classed> {
     found
 }
 
-fn key(edge: &Classed) -> (VertexId, VertexId, TetId) {
-    (edge.item.a, edge.item.b, edge.item.tet)
+fn key(edge: &Classed) -> u128 {
+    u128::from(edge.item.a.0) << 64 | u128::from(edge.item.b.0) << 32 | u128::from(edge.item.tet.0)
 }
 
 fn ends(edge: &mut Classed) -> (VertexId, VertexId) {

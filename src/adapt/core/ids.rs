@@ -58,6 +58,13 @@ pub const ACROSS: [[[usize; 2]; 4]; 4] = [
     [[2, 1], [0, 2], [1, 0], [0, 0]],
 ];
 
+/// Which of a tetrahedron's four vertices or neighbours one is; 0 where it is none of them. There is no branch, since which it is cannot be
+/// foreseen.
+#[inline(always)]
+pub fn place_of<T: Copy + PartialEq>(wanted: T, of: [T; 4]) -> usize {
+    usize::from(of[1] == wanted) | usize::from(of[2] == wanted) << 1 | (usize::from(of[3] == wanted) * 3)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,6 +77,12 @@ mod tests {
         for (i, [a, b, c]) in FACE.into_iter().enumerate() {
             assert!(volume6(CORNERS[a], CORNERS[b], CORNERS[c], CORNERS[i]) > 0.0, "face {i}");
         }
+    }
+
+    #[test]
+    fn each_of_four_has_its_place() {
+        assert_eq!([5, 2, 9, 7].map(|x| place_of(x, [5, 2, 9, 7])), [0, 1, 2, 3]);
+        assert_eq!(place_of(4, [5, 2, 9, 7]), 0);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The tetrahedra about an edge.
 use super::access::Access;
-use super::ids::{ACROSS, TetId, VertexId};
+use super::ids::{ACROSS, TetId, VertexId, place_of};
 use super::refusal::Refusal;
 use super::worker::Worker;
 
@@ -42,9 +42,8 @@ impl<A: Access> Worker<'_, '_, A> {
     #[inline]
     fn turn(&self, t: TetId, a: VertexId, b: VertexId) -> Option<[usize; 2]> {
         let v = self.store.vertices(t);
-        let i = v.iter().position(|&x| x == a)?;
-        let j = v.iter().position(|&x| x == b)?;
-        Some(ACROSS[i][j])
+        let (i, j) = (place_of(a, v), place_of(b, v));
+        (v[i] == a && v[j] == b).then(|| ACROSS[i][j])
     }
 
     /// Collects the shell of the edge a–b, both claimed, from a tetrahedron that holds it; claims the ring.

@@ -60,8 +60,8 @@ impl Context<'_> {
             let least = implied.plus_identity(2.0 * factor.ln() + (-greatest.ln()).max(0.0));
             inverse.intersect_logs(&least.times(-1.0)).times(-1.0)
         });
-        let complexity = measure::complexity(team, store, |v| logs[v.index()].trace());
-        let wanted = measure::complexity(team, store, |v| store.log(v).trace());
+        let complexity = measure::complexity(team, store, 1, |v| logs[v.index()].trace());
+        let wanted = measure::complexity(team, store, 1, |v| store.log(v).trace());
         Some(Stage { mesh, logs, complexity, wanted })
     }
 

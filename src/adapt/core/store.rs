@@ -4,6 +4,7 @@
 //! without `unsafe`. Order comes from the lock words: who holds all four vertices of a tetrahedron owns it, and its record
 //! was published by the release of the last owner's locks ([`super::access`]). Reading a tetrahedron needs one of its vertices.
 //! The arrays are reserved with room (zero pages that cost no memory until touched) and grow only between sweeps.
+mod fetch;
 mod order;
 mod tetrahedra;
 mod vertices;

@@ -127,12 +127,7 @@ impl<'w, 'm, A: Access> Worker<'w, 'm, A> {
         if holds(guess) {
             return Ok(guess);
         }
-        let store = self.store;
-        self.with_passing_ball(a, |ball| {
-            let joined = ball.link.contains(&b);
-            let holder = ball.tets.iter().copied().find(|&t| joined && store.vertices(t).contains(&b));
-            holder.ok_or(Refusal::Stale)
-        })
+        self.find_tet_with(a, b).ok_or(Refusal::Stale)
     }
 
     /// Looks at the ball of a claimed vertex, of which no other is claimed.

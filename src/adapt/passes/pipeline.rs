@@ -69,7 +69,6 @@ fn shape_limits() -> Limits {
     Limits {
         improve_below: 0.9,
         flip_below: 0.82,
-        flip_cost: 0.15,
         short: 0.75,
         insert_floor: 0.2,
         insert_loss: 1.0,

@@ -5,7 +5,7 @@
 //! round, which is cut elsewhere. A tetrahedron with vertices in two parts stands still, and so does everything that a part can see of
 //! another. So it makes no difference which part is done first. No lock is taken: a claim reads a byte that does not change.
 use super::parts::Parts;
-use super::{Advance, Item, Operation, STRIDE, ThreadContext, sequential};
+use super::{Advance, Item, Operation, STRIDE, ThreadContext, fetch_ahead, sequential};
 use crate::adapt::core::access::Owned;
 use crate::adapt::core::context::Context;
 use crate::adapt::core::id_pool::IdPool;
@@ -240,9 +240,11 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         let own = std::mem::take(&mut state.unprojected);
         std::mem::swap(&mut state.id_pool, &mut part.id_pool);
         let mut worker = Worker::new(self.context, state, Owned::new(index));
-        for some in numbers.chunks(STRIDE) {
+        for start in (0..numbers.len()).step_by(STRIDE) {
+            let some = &numbers[start..numbers.len().min(start + STRIDE)];
             let waiting = part.again.len();
-            for &number in some {
+            for (at, &number) in (start..).zip(some) {
+                fetch_ahead(&self.context.store, |n| numbers.get(at + n).map(|&number| self.item(number)));
                 let result = self.operation.attempt(&mut worker, scratch, self.item(number));
                 part.counts.record(result);
                 if result == Err(Refusal::Conflict) {

@@ -63,11 +63,36 @@ pub struct Execution<'c> {
 pub trait Item: Copy + Send + Sync {
     /// The vertices that it is known by; some may be repeated. For an item that is gone they may be any. Between sweeps only.
     fn vertices(self, store: &Store) -> [VertexId; 4];
+
+    /// Asks the memory for what its operation will read, one step after the other: each needs what the one before has asked for.
+    fn fetch(self, store: &Store, step: usize);
+}
+
+/// So many items before an item's turn its steps of [`Item::fetch`] are taken.
+const FETCHED_AHEAD: [usize; 3] = [8, 4, 2];
+
+/// Before an item's turn: takes a step of [`Item::fetch`] for some that come later, `ahead(n)` being the n-th after it.
+#[inline(always)]
+fn fetch_ahead<I: Item>(store: &Store, ahead: impl Fn(usize) -> Option<I>) {
+    for (step, distance) in FETCHED_AHEAD.into_iter().enumerate() {
+        if let Some(item) = ahead(distance) {
+            item.fetch(store, step);
+        }
+    }
 }
 
 impl Item for VertexId {
     fn vertices(self, _store: &Store) -> [VertexId; 4] {
         [self; 4]
+    }
+
+    #[inline(always)]
+    fn fetch(self, store: &Store, step: usize) {
+        match step {
+            0 => store.fetch_vertex(self),
+            1 => store.fetch_tet(store.unlocked_tet_of(self)),
+            _ => store.fetch_about(store.unlocked_tet_of(self)),
+        }
     }
 }
 
@@ -75,11 +100,33 @@ impl Item for EdgeItem {
     fn vertices(self, _store: &Store) -> [VertexId; 4] {
         [self.a, self.b, self.a, self.b]
     }
+
+    #[inline(always)]
+    fn fetch(self, store: &Store, step: usize) {
+        match step {
+            0 => {
+                store.fetch_vertex(self.a);
+                store.fetch_vertex(self.b);
+                store.fetch_tet(self.tet);
+            }
+            1 => store.fetch_about(self.tet),
+            _ => {}
+        }
+    }
 }
 
 impl Item for TetId {
     fn vertices(self, store: &Store) -> [VertexId; 4] {
         store.unlocked_vertices(self)
+    }
+
+    #[inline(always)]
+    fn fetch(self, store: &Store, step: usize) {
+        match step {
+            0 => store.fetch_tet(self),
+            1 => store.fetch_about(self),
+            _ => store.fetch_beyond(self),
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 //! One thread does the items in their order: the reference for all other schedulers.
-use super::{Advance, Operation, STRIDE, ThreadContext};
+use super::{Advance, Operation, STRIDE, ThreadContext, fetch_ahead};
 use crate::adapt::core::access::{Access, Exclusive};
 use crate::adapt::core::context::Context;
 use crate::adapt::core::refusal::Counts;
@@ -15,8 +15,10 @@ pub fn run<'m, O: Operation>(
 ) -> Counts {
     let mut counts = Counts::default();
     let mut worker = Worker::new(context, state, Exclusive);
-    for some in items.chunks(STRIDE) {
-        for &item in some {
+    for start in (0..items.len()).step_by(STRIDE) {
+        let some = &items[start..items.len().min(start + STRIDE)];
+        for (at, &item) in (start..).zip(some) {
+            fetch_ahead(worker.store, |n| items.get(at + n).copied());
             counts.record(operation.attempt(&mut worker, scratch, item));
             worker.access.release(worker.store);
         }

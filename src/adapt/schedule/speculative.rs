@@ -2,7 +2,7 @@
 //! thread has most likely moved on, and then in the next round (Tsolakis 2021, 3.4). One thread does the last round, so no item is lost.
 //!
 //! One thread alone has no conflicts and claims nothing: that is the sequential scheduler.
-use super::{Advance, Operation, ThreadContext, sequential};
+use super::{Advance, Operation, ThreadContext, fetch_ahead, sequential};
 use crate::adapt::core::access::{Access, Speculative};
 use crate::adapt::core::context::Context;
 use crate::adapt::core::refusal::{Counts, Refusal};
@@ -91,7 +91,12 @@ impl<'m, O: Operation> RoundOf<'_, '_, 'm, O> {
             self.counts.record(result);
             result == Err(Refusal::Conflict)
         };
-        self.again.extend(items.iter().copied().filter(|&item| attempt(item)));
+        for (at, &item) in items.iter().enumerate() {
+            fetch_ahead(&context.store, |n| items.get(at + n).copied());
+            if attempt(item) {
+                self.again.push(item);
+            }
+        }
         let mut kept = first;
         for index in first..self.again.len() {
             let item = self.again[index];

@@ -5,10 +5,14 @@ use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::star::{Bounds, Seed};
 use crate::adapt::core::vertex_moves::Placed;
 use crate::adapt::core::worker::Worker;
+use crate::mesh::vector::{Vec3, sub};
 
 /// Where an edge too long by a factor x is split, the least length of new edges is multiplied by x to the power of minus this. With a
 /// greater power the short edges are collapsed again at great cost; with a lesser one, very long edges stay beside coarse boundaries.
 const SHORT_FOR_LONG: f64 = 0.7;
+
+/// An edge too long by less than one over this has sizes at its ends that are nearly met.
+const NEARLY_MET: f64 = 0.5;
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Inserts a vertex into the star over `seeds`; returns it.
@@ -17,21 +21,45 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Besides those of the star: `Length` when an edge would be too short, `Shape` when a tetrahedron would
     /// be worse than the floor and than what stood there, `Normal` on the surface.
     pub fn insert(&mut self, seed: Seed, seeds: &[TetId], placed: Placed, near: VertexId) -> Result<VertexId, Refusal> {
-        let state = self.state_at(placed, self.store.hint(near));
-        self.with_new_vertex(&state, |worker, v| {
-            worker.try_insert(seed, seeds, v)?;
-            worker.commit()
-        })
-    }
-
-    fn try_insert(&mut self, seed: Seed, seeds: &[TetId], v: VertexId) -> Result<(), Refusal> {
-        let limits = self.context.limits;
+        let limits = &self.context.limits;
         // A much too long edge may be split at the price of a bad tetrahedron or a short edge, which later operations repair.
         let excess = match seed {
             Seed::Edge(a, b) if limits.long_first => (limits.long / self.length(a, b)).min(1.0),
             _ => 1.0,
         };
         let shortest_new = limits.shortest_new * excess.powf(SHORT_FOR_LONG);
+        if let Seed::Edge(a, b) = seed
+            && excess > NEARLY_MET
+            && self.is_near_ring([a, b], placed.point, shortest_new)
+        {
+            return Err(Refusal::Length);
+        }
+        let state = self.state_at(placed, self.store.hint(near));
+        self.with_new_vertex(&state, |worker, v| {
+            worker.try_insert(seed, seeds, v, (excess, shortest_new))?;
+            worker.commit()
+        })
+    }
+
+    /// Whether a point on the edge a–b is nearer than the limit to a vertex of the edge's ring in the metrics of that vertex and of both ends: then it
+    /// is so in its own metric, which lies between theirs where sizes are nearly met.
+    fn is_near_ring(&self, ends: [VertexId; 2], point: Vec3, limit: f64) -> bool {
+        let square = limit * limit;
+        let ends = ends.map(|v| self.store.metric(v));
+        self.state.shell.ring.iter().any(|&x| {
+            let way = sub(self.store.position(x), point);
+            self.store.metric(x).quadratic(way) < square && ends.iter().all(|m| m.quadratic(way) < square)
+        })
+    }
+
+    fn try_insert(
+        &mut self,
+        seed: Seed,
+        seeds: &[TetId],
+        v: VertexId,
+        (excess, shortest_new): (f64, f64),
+    ) -> Result<(), Refusal> {
+        let limits = self.context.limits;
         if let Seed::Edge(..) = seed
             && self.state.shell.ring.iter().any(|&x| self.is_shorter(v, x, shortest_new))
         {

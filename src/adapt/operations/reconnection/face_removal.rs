@@ -9,6 +9,10 @@ use crate::adapt::core::worker::Worker;
 use crate::mesh::vector::volume6;
 use crate::metric::lanes::LANES;
 
+/// Where two tetrahedra have a lesser sum of 1/Q − 1, the face between them is not removed alone. In one metric the three that come have 0.806 at the
+/// least; up to twice that one face in ten thousand gains.
+const LEAST_COST: f64 = 1.6;
+
 impl<A: Access> Worker<'_, '_, A> {
     /// Removes the face opposite to local vertex i of a claimed tetrahedron, alone or with faces beside it, when the criterion gains by it.
     pub fn remove_face(&mut self, t: TetId, i: usize, criterion: Criterion) -> Result<(), Refusal> {
@@ -20,16 +24,22 @@ impl<A: Access> Worker<'_, '_, A> {
         if !self.goes_first(t, other) {
             return Err(Refusal::Stale);
         }
+        let cost: f64 = [t, other].iter().map(|&t| -mean_ratio_score(self.store.quality(t))).sum();
+        let (alone, several) = (cost >= LEAST_COST, self.store.quality(t) < self.context.limits.several_below);
+        if !alone && !several {
+            return Err(Refusal::Shape);
+        }
         let w = self.claim_tet(other)?;
         let below = w.into_iter().find(|x| !v.contains(x)).ok_or(Refusal::Topology)?;
         let face = FACE[i].map(|k| v[k]);
         let above = v[i];
-        match self.flip_face([t, other], face, [above, below], criterion) {
-            Err(Refusal::Shape) if self.store.quality(t) < self.context.limits.several_below => {
-                self.remove_faces(face, [t, other], [above, below], criterion)
+        if alone {
+            match self.flip_face([t, other], face, [above, below], criterion) {
+                Err(Refusal::Shape) if several => {}
+                result => return result,
             }
-            result => result,
         }
+        self.remove_faces(face, [t, other], [above, below], criterion)
     }
 
     /// Removes the face between two claimed tetrahedra, the upper one first, when the criterion gains by it.

@@ -23,6 +23,9 @@ const MOST_FACES: usize = 4;
 /// Least faces in a tree: edge removal does all that two can do.
 const LEAST_FACES: usize = 3;
 
+/// The mean of 1/Q − 1 of the tetrahedra of a tree below which it is left as it is.
+const LEAST_COST: f64 = 0.15;
+
 /// Stands for a score of −∞, so that sums stay numbers.
 const FLAT: f64 = -1e9;
 
@@ -127,7 +130,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let tets = || tree.faces[..tree.count].iter().flat_map(|face| face.tets);
         let cost: f64 = tets().map(|t| -mean_ratio_score(self.store.quality(t))).sum();
-        if cost < self.context.limits.flip_cost * (2 * tree.count) as f64 {
+        if cost < LEAST_COST * (2 * tree.count) as f64 {
             return Err(Refusal::Shape);
         }
         self.measure_tree(&mut tree);

@@ -32,6 +32,8 @@ pub struct Ring {
     fillable: Table<bool>,
     /// The score of a triangle's two tetrahedra, by (i, j) and k.
     value: Table<[f64; LONGEST_RING]>,
+    /// Mean ratios of a triangle's two tetrahedra, that at the second end of the edge first; by (i, j) and k.
+    ratios: Table<[[f64; 2]; LONGEST_RING]>,
     /// Best score of the polygon i..j, and its triangle's third vertex.
     score: Table<f64>,
     third: Table<usize>,
@@ -141,7 +143,9 @@ impl Ring {
             self.batch.prepare();
             let q = self.batch.shapes_of(&apex, &log).mean_ratios();
             for (which, &[i, k, j]) in two.iter().enumerate() {
-                self.value[i][j][k] = mean_ratio_score(q[2 * which]) + mean_ratio_score(q[2 * which + 1]);
+                let ratios = [q[2 * which], q[2 * which + 1]];
+                self.ratios[i][j][k] = ratios;
+                self.value[i][j][k] = mean_ratio_score(ratios[0]) + mean_ratio_score(ratios[1]);
             }
         }
     }
@@ -179,8 +183,9 @@ impl Ring {
         found.fold(criterion.nothing(), |x, y| criterion.join(x, y)) > wanted
     }
 
-    /// The triangles of the triangulation found, in the order of the ring, each with the side of the interface that it is on.
-    pub fn each_triangle(&self, mut take: impl FnMut([VertexId; 3], usize)) {
+    /// The triangles of the triangulation found, in the order of the ring, each with the side of the interface that it is on and the mean ratios
+    /// of its tetrahedra, that at the second end of the edge first, as [`Ring::score_mean_ratios`] found them.
+    pub fn each_triangle(&self, mut take: impl FnMut([VertexId; 3], usize, [f64; 2])) {
         for (side, &polygon) in self.polygons().iter().enumerate() {
             let mut open = [(0, 0); LONGEST_RING];
             let mut depth = 1;
@@ -192,7 +197,7 @@ impl Ring {
                     continue;
                 }
                 let k = self.third[i][j];
-                take([i, k, j].map(|l| self.cavity[l + 2]), side);
+                take([i, k, j].map(|l| self.cavity[l + 2]), side, self.ratios[i][j][k]);
                 open[depth] = (i, k);
                 open[depth + 1] = (k, j);
                 depth += 2;

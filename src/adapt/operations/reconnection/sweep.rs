@@ -2,7 +2,7 @@
 use super::criteria::Criterion;
 use super::ring::Ring;
 use crate::adapt::core::access::Access;
-use crate::adapt::core::ids::{EDGE, TetId};
+use crate::adapt::core::ids::{ACROSS, EDGE, TetId};
 use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::worker::Worker;
 use crate::adapt::schedule::Operation;
@@ -47,15 +47,21 @@ impl<A: Access> Worker<'_, '_, A> {
                 self.claim_tet(n)?;
             }
         }
+        // Most edges and faces are another tetrahedron's: that is seen at the neighbours, before a ring is walked.
+        let is_first = self.store.neighbours(t).map(|n| !n.is_some() || self.goes_first(t, n));
         let mut refusal = Refusal::Shape;
         for [i, j] in EDGE {
+            let [k, l] = ACROSS[i][j];
+            if !(is_first[k] && is_first[l]) {
+                continue;
+            }
             match self.remove_edge(ring, [v[i], v[j]], t, criterion) {
                 Ok(()) => return Ok(()),
                 Err(Refusal::Conflict) => return Err(Refusal::Conflict),
                 Err(other) => refusal = other,
             }
         }
-        for i in 0..4 {
+        for i in (0..4).filter(|&i| is_first[i]) {
             match self.remove_face(t, i, criterion) {
                 Ok(()) => return Ok(()),
                 Err(Refusal::Conflict) => return Err(Refusal::Conflict),

@@ -2,7 +2,7 @@
 //!
 //! E = Σ 1/Q³ over the tetrahedra + Σ ((L − 1/L)/2)² over the edges at the vertex. The second is sinh² ln L: 0 at unit length, the same for
 //! twice and for half of it.
-use crate::adapt::core::ids::{FACE, TetId, VertexId};
+use crate::adapt::core::ids::{FACE, TetId, VertexId, place_of};
 use crate::adapt::core::store::Store;
 use crate::mesh::vector::{Vec3, add, lerp, scale, sub};
 use crate::metric::Sym3;
@@ -35,18 +35,22 @@ impl SmoothingPatch {
     /// Lays out the ball of v: its tetrahedra, and the vertices joined to it.
     pub fn fill(&mut self, store: &Store, v: VertexId, ball: &[TetId], link: &[VertexId]) {
         (self.tets, self.ends) = (ball.len(), link.len());
-        self.batches.resize_with(ball.len().div_ceil(LANES), Batch::default);
+        // They are not made again where the next ball is larger.
+        while self.batches.len() * LANES < ball.len() {
+            self.batches.push(Batch::default());
+        }
         for (some, batch) in ball.chunks(LANES).zip(&mut self.batches) {
             for lane in 0..LANES {
                 let w = store.vertices(some[lane.min(some.len() - 1)]);
-                let i = w.iter().position(|&x| x == v).expect("the ball holds its vertex");
-                let face = FACE[i].map(|k| w[k]);
+                let face = FACE[place_of(v, w)].map(|k| w[k]);
                 let logs = face.map(|x| store.log(x));
                 batch.set(lane, face.map(|x| store.position(x)), [&logs[0], &logs[1], &logs[2]]);
             }
             batch.prepare();
         }
-        self.incident.resize_with(link.len().div_ceil(LANES), IncidentEdges::default);
+        while self.incident.len() * LANES < link.len() {
+            self.incident.push(IncidentEdges::default());
+        }
         for (some, incident) in link.chunks(LANES).zip(&mut self.incident) {
             for lane in 0..LANES {
                 let x = some[lane.min(some.len() - 1)];

@@ -16,6 +16,9 @@ const SHAPES: f64 = 0.5;
 /// So many places of the boundary are asked, at the least.
 const SAMPLES: f64 = 10_000.0;
 
+/// For the complexity about so many tetrahedra are asked at most.
+const MOST_ASKED: usize = 100_000;
+
 /// Chords of a coarse mesh cut through layers along a curved face. There the area is at most so many times that in the two greatest sizes.
 const CURVED: f64 = 2.4;
 
@@ -42,17 +45,21 @@ impl Pipeline<'_, '_> {
 
     /// How many vertices are expected: the mesh as it is shows more and more of the metric.
     fn expect(&mut self) {
-        self.expected = vertices(self.complexity_given.max(self.complexity()), self.area_in_metric());
+        let step = (self.context.store.tet_bound() / MOST_ASKED).max(1) as u32;
+        self.expected = vertices(self.complexity_given.max(self.complexity(step)), self.area_in_metric());
     }
 
     /// Area of the boundary and of interfaces in the metric. On a coarse mesh the source is asked between its vertices.
     fn area_in_metric(&self) -> f64 {
         let store = &self.context.store;
-        let tagged = |range: Range<usize>| {
+        let tagged = |range: Range<usize>, step: u32| {
             let faces = |t: TetId| (0..4).filter(move |&i| store.tags(t)[i] != 0).map(move |i| (t, i));
-            store.live_tets_in(range).flat_map(faces)
+            store.live_tets_in(range).filter(move |t| t.0 % step == 0).flat_map(faces)
         };
-        let count = self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range).count() as f64);
+        let all = self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, 1).count() as f64);
+        // Of a fine mesh only each so many-th tetrahedron is asked.
+        let step = (all / SAMPLES).max(1.0) as u32;
+        let count = self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, step).count() as f64);
         let cuts = (SAMPLES / count.max(1.0)).sqrt().clamp(1.0, MOST_CUTS) as usize;
         let of = |(t, i): (TetId, usize)| {
             let corners = FACE[i].map(|k| store.vertices(t)[k]);
@@ -81,7 +88,8 @@ impl Pipeline<'_, '_> {
             let sum: f64 = centres.map(|x| area(&self.context.source.log_at(x, &mut hint))).sum();
             sides * sum / (cuts * cuts) as f64
         };
-        self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range).map(of).sum())
+        let asked = self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, step).map(of).sum());
+        asked * all / count.max(1.0)
     }
 
     /// Says how much is done after a pass for the sizes: as much as there is of the way from the vertices that were given to those expected.

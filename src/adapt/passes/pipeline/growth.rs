@@ -49,10 +49,10 @@ pub enum GrowthEnd {
 }
 
 impl Pipeline<'_, '_> {
-    /// Complexity of the metric on the mesh as it is.
-    pub(super) fn complexity(&self) -> f64 {
+    /// Complexity of the metric on the mesh as it is, by each so many-th tetrahedron.
+    pub(super) fn complexity(&self, step: u32) -> f64 {
         let store = &self.context.store;
-        measure::complexity(self.team(), store, |v| store.log(v).trace())
+        measure::complexity(self.team(), store, step, |v| store.log(v).trace())
     }
 
     /// Complexity of the source within the mesh, between its vertices too: those of a coarse mesh may miss a layer.
@@ -154,7 +154,7 @@ impl Pipeline<'_, '_> {
         let most = |asked: f64| always + MOST_A_COMPLEXITY * asked;
         let vertices = vertices as f64;
         if vertices > most(self.asked) {
-            self.asked = self.asked.max(self.complexity());
+            self.asked = self.asked.max(self.complexity(1));
         }
         if vertices > most(self.asked) {
             self.asked = self.asked.max(self.full_complexity());
