@@ -3,7 +3,7 @@ use super::field::complexity_of_logs;
 use super::{Analytic, Background, Error, Sym3, held};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{EDGES, MatchedFaces};
-use crate::mesh::vector::{Vec3, add, distance, lerp, scale, volume6};
+use crate::mesh::vector::{Vec3, add, dot, lerp, scale, sub, volume6};
 use crate::tasks::{GRAIN, Team};
 
 /// About how many samples of an analytic field are taken for its complexity.
@@ -102,9 +102,15 @@ impl Source {
             let density = (0.5 * self.log_at(centroid, &mut 0).trace()).exp();
             return density * volume6(x[0], x[1], x[2], x[3]).abs() / 6.0;
         }
-        let length = |[i, j]: [usize; 2]| distance(x[i], x[j]);
-        let longest = EDGES.into_iter().max_by(|&a, &b| length(a).total_cmp(&length(b)));
-        let [i, j] = longest.unwrap_or([0, 1]);
+        let mut longest = (0.0, [0, 1]);
+        for [i, j] in EDGES {
+            let edge = sub(x[j], x[i]);
+            let square = dot(edge, edge);
+            if square >= longest.0 {
+                longest = (square, [i, j]);
+            }
+        }
+        let [i, j] = longest.1;
         let middle = lerp(x[i], x[j], 0.5);
         let (mut left, mut right) = (x, x);
         left[i] = middle;

@@ -82,7 +82,9 @@ impl<'b> Accumulator<'b> {
         found.max = found.max.max(value);
         found.count += 1;
         self.sum += value;
-        let above = self.bounds.partition_point(|&b| if self.closed_above { b < value } else { b <= value });
+        // All bounds are compared: there is no branch to foresee.
+        let is_below = |&b: &f64| (b < value) | (!self.closed_above & (b == value));
+        let above = self.bounds.iter().map(|b| usize::from(is_below(b))).sum::<usize>();
         if !found.classes.is_empty() {
             let class = above.clamp(1, found.classes.len()) - 1;
             found.classes[class].count += 1;

@@ -51,6 +51,9 @@ const LARGE_CAVITY: usize = 4096;
 /// The store is renumbered when it has grown by this factor.
 const OUT_OF_ORDER: usize = 2;
 
+/// Before the shapes it is renumbered when it has grown by this factor.
+const OUT_OF_PLACE: f64 = 1.2;
+
 /// Limits of the size passes: only what is bad is flipped and smoothed.
 fn size_limits() -> Limits {
     Limits {
@@ -191,7 +194,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             return;
         }
         self.looked = [0; KINDS];
-        self.reorder();
+        if self.context.store.tet_bound() as f64 > OUT_OF_PLACE * self.ordered as f64 {
+            self.reorder();
+        }
         self.limit(shape_limits());
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth();

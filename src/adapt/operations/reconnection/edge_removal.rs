@@ -78,8 +78,13 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let across = surface.as_ref().map(|flip| flip.across).filter(|_| shell.closed);
         ring.fill(self.store, [a, b], &shell.ring, across);
-        let old = shell.tets.iter().map(|&t| self.present_score(criterion, t, ring.cavity()));
-        let old = old.fold(criterion.nothing(), |x, y| criterion.join(x, y));
+        let old = match criterion {
+            Criterion::MeanRatio => -cost,
+            _ => {
+                let old = shell.tets.iter().map(|&t| self.present_score(criterion, t, ring.cavity()));
+                old.fold(criterion.nothing(), |x, y| criterion.join(x, y))
+            }
+        };
         let wanted = wanted_score(old);
         let gains = ring.is_feasible() && {
             match criterion {
