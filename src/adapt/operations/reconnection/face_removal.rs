@@ -13,6 +13,9 @@ use crate::metric::lanes::LANES;
 /// least; up to twice that one face in ten thousand gains.
 const LEAST_COST: f64 = 1.6;
 
+/// Where two tetrahedra have a lesser sum of 1/Q − 1, faces beside theirs are not looked at: that hardly ever gains.
+const LEAST_COST_OF_SEVERAL: f64 = 0.5;
+
 impl<A: Access> Worker<'_, '_, A> {
     /// Removes the face opposite to local vertex i of a claimed tetrahedron, alone or with faces beside it, when the criterion gains by it.
     pub fn remove_face(&mut self, t: TetId, i: usize, criterion: Criterion) -> Result<(), Refusal> {
@@ -25,7 +28,8 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Stale);
         }
         let cost: f64 = [t, other].iter().map(|&t| -mean_ratio_score(self.store.quality(t))).sum();
-        let (alone, several) = (cost >= LEAST_COST, self.store.quality(t) < self.context.limits.several_below);
+        let several = cost > LEAST_COST_OF_SEVERAL && self.store.quality(t) < self.context.limits.several_below;
+        let alone = cost >= LEAST_COST;
         if !alone && !several {
             return Err(Refusal::Shape);
         }
