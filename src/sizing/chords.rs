@@ -9,7 +9,7 @@ use crate::geometry::classify::Classification;
 use crate::mesh::vector::dot;
 use crate::metric::multiscale::{Cut, SizeBound};
 use crate::metric::{Eigen, Sym3};
-use crate::tasks::{GRAIN, Team};
+use crate::tasks::{GRAIN, Team, stage};
 use std::sync::OnceLock;
 
 /// The share of √(8 h R) by default: at it an edge of length 1 along the wall measures 1.4 in the metrics of its ends.
@@ -43,7 +43,11 @@ impl std::fmt::Debug for Chords<'_> {
 impl SizeBound for Chords<'_> {
     /// Cuts ln M at each vertex of the mesh, shape (n,).
     fn apply(&self, team: Team<'_>, logs: &mut [Sym3]) -> Cut {
-        let walls = self.walls.get_or_init(|| Walls::near(team, self.place, self.model, logs));
+        let walls = self.walls.get_or_init(|| {
+            let walls = Walls::near(team, self.place, self.model, logs);
+            stage("walls found");
+            walls
+        });
         let cut = team.map(GRAIN / 4, logs.len(), |v| cut(&logs[v], walls.at(v), self.share));
         let parts = team.chunks(GRAIN, cut.len(), |range| {
             let changed = cut[range.clone()].iter().zip(&logs[range]).filter(|(cut, log)| cut.0 != **log);

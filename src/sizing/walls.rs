@@ -2,7 +2,7 @@
 use super::tree::Box3;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, SurfaceFrame, SurfaceKind, Topology};
-use crate::mesh::vector::{Vec3, dot, norm, sub};
+use crate::mesh::vector::{Vec3, dot, norm, scale, sub};
 use crate::metric::frame::Frame;
 use crate::metric::{Eigen, Sym3};
 use crate::tasks::Team;
@@ -14,14 +14,14 @@ const VERTICES: usize = 1 << 9;
 const REACH: f64 = 100.0;
 /// Walls are looked for so many times as far, since the metric may be scaled afterwards.
 const SLACK: f64 = 4.0;
-/// The way to the closest point of a face makes at most 26° with the normal there: elsewhere it lies beside the face.
-const UPRIGHT: f64 = 0.9;
+/// The closest point of a face is a foot if this share of the way there at most is across the normal (30°): else the point lies beside the face.
+const BESIDE: f64 = 0.5;
 /// A wall is hidden by another that is no farther than this share of the way, and whose normal makes
 const NEARER: f64 = 0.5;
 /// at most 45° with that of the wall, one way or the other.
 const ALIKE: f64 = 0.7;
-/// What is nearer than this share of the model's diagonal is on it.
-const ON: f64 = 1e-14;
+/// A share of the model's diagonal: as exact are closest points.
+const EXACT: f64 = 1e-9;
 
 /// A wall near a point.
 #[derive(Clone, Copy, Debug)]
@@ -38,22 +38,25 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// By the frame of the face at the closest point; `on` is nearer than what counts as zero. None where the closest point is no foot, on
-    /// what is flat, and where there are no curvatures.
-    fn of(frame: &SurfaceFrame, point: Vec3, on: f64) -> Option<Self> {
+    /// By the frame of the face at the closest point, which is as exact as this. None where that is no foot, on what is flat, and where there
+    /// are no curvatures.
+    fn of(frame: &SurfaceFrame, point: Vec3, exact: f64) -> Option<Self> {
         let way = sub(point, frame.point);
-        let distance = norm(way);
-        let along = if distance > on { dot(way, frame.normal) } else { 0.0 };
+        let (distance, along) = (norm(way), dot(way, frame.normal));
         // Past the focal point on a trimmed face 1 − s κ is negative: there the surfaces have no curvature that layers could follow.
         let radii = frame.curvatures.map(|curvature| {
             if curvature == 0.0 { f64::INFINITY } else { (1.0 - along * curvature).max(0.0) / curvature.abs() }
         });
         let is_unit = |v: Vec3| (norm(v) - 1.0).abs() < 1e-6;
         let is_defined = is_unit(frame.normal) && frame.directions.into_iter().all(is_unit);
-        let is_foot = distance <= on || along.abs() >= UPRIGHT * distance;
         let is_curved = radii.iter().all(|radius| !radius.is_nan()) && radii.iter().any(|radius| radius.is_finite());
         let SurfaceFrame { normal, directions, .. } = *frame;
-        (is_defined && is_foot && is_curved).then_some(Self { normal, distance, directions, radii })
+        (is_defined && is_foot(way, frame.normal, exact) && is_curved).then_some(Self {
+            normal,
+            distance,
+            directions,
+            radii,
+        })
     }
 
     /// Whether it counts for sizes `across` along its normal.
@@ -66,6 +69,11 @@ impl Wall {
     pub fn through(normal: Vec3, directions: [Vec3; 2], radii: [f64; 2]) -> Self {
         Self { normal, distance: 0.0, directions, radii }
     }
+}
+
+/// Whether the way from the closest point of a face is along its normal.
+fn is_foot(way: Vec3, normal: Vec3, exact: f64) -> bool {
+    norm(sub(way, scale(normal, dot(way, normal)))) <= BESIDE * norm(way) + exact
 }
 
 /// The walls at each vertex of a mesh.
@@ -108,8 +116,8 @@ struct Search<'a> {
     topology: &'a Topology,
     /// The faces that are no planes.
     curved: Vec<u32>,
-    /// What counts as no distance.
-    on: f64,
+    /// How exact closest points are.
+    exact: f64,
 }
 
 impl<'a> Search<'a> {
@@ -117,7 +125,7 @@ impl<'a> Search<'a> {
         let topology = model.topology();
         let faces = 0..topology.faces.len() as u32;
         let curved = faces.filter(|&face| topology.faces[face as usize].kind != SurfaceKind::Plane).collect();
-        Self { place, topology, curved, on: ON * topology.diagonal() }
+        Self { place, topology, curved, exact: EXACT * topology.diagonal() }
     }
 
     /// Adds the walls of a vertex.
@@ -144,7 +152,7 @@ impl<'a> Search<'a> {
             if own.iter().any(|own| own.0 == face) {
                 frame.point = point;
             }
-            let wall = Wall::of(&frame, point, self.on);
+            let wall = Wall::of(&frame, point, self.exact);
             found.extend(wall.filter(|wall| wall.distance <= reach.along(wall.normal)));
         }
         let mut at = begin;
@@ -184,7 +192,7 @@ impl<'a> Search<'a> {
     /// Whether a wall is behind another one, whose layers lie here.
     fn is_hidden(&self, evaluator: &mut Evaluator, own: &[(u32, [f64; 2])], point: Vec3, wall: &Wall) -> bool {
         let limit = NEARER * wall.distance;
-        if limit <= self.on {
+        if limit <= self.exact {
             return false;
         }
         let is_alike = |normal: Vec3| dot(normal, wall.normal).abs() >= ALIKE;
@@ -197,7 +205,7 @@ impl<'a> Search<'a> {
             }
             let Some(on) = evaluator.closest_on_face_within(face, point, limit) else { return false };
             let (way, normal) = (sub(point, on.point), evaluator.face_normal(face, on.uv));
-            is_alike(normal) && (on.distance <= self.on || dot(way, normal).abs() >= UPRIGHT * on.distance)
+            is_alike(normal) && is_foot(way, normal, self.exact)
         })
     }
 }
