@@ -144,10 +144,7 @@ mod tests {
             assert!(is_near(size(&found, normal), size(&log, normal)), "{lean}");
             let across = size(&log, normal);
             for (direction, radius) in [(around, 0.5), (along, 0.02)] {
-                assert!(
-                    size(&found, direction) <= 0.5 * (8.0 * across * radius as f64).sqrt() * (1.0 + 1e-9),
-                    "{lean}"
-                );
+                assert!(size(&found, direction) <= 0.5 * (8.0 * across * radius).sqrt() * (1.0 + 1e-9), "{lean}");
             }
             for i in 0..50 {
                 let [a, b] = [1.7, 2.3].map(|k| k * f64::from(i));
