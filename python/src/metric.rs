@@ -218,7 +218,7 @@ pub fn multiscale<'py>(
         let fixed = fixed.map(|fixed| logs(team, fixed, mesh.vertices.len())).transpose()?;
         let measure = if how.between { Measure::Between(Interpolation::default()) } else { Measure::AtVertices };
         let (complexity, gradation) = (how.complexity, how.gradation);
-        let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref() };
+        let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref(), by_others: None };
         let options = of_field::Options { recovery, norm, bounds };
         let (logs, _) = of_field::multiscale(team, &mesh, &values, &options).map_err(errors::metric)?;
         exp(team, &logs)

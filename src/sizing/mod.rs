@@ -4,9 +4,11 @@
 //! entities that come near without touching (`touch`), by boxes over samples of the model (`pieces`, `tree`), where nothing stands between
 //! (`sight`), of the same body (`bodies`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together;
 //! `resolve` adds vertices to a coarse mesh until it resolves the metric. `around` has the sizes that a user asks for in some places.
+//! `chords` cuts the sizes of any metric along the curved faces near a vertex (`walls`), so that straight edges can have them.
 pub mod around;
 mod bodies;
 mod bound;
+pub mod chords;
 mod coarse;
 mod curvature;
 mod estimate;
@@ -21,6 +23,7 @@ mod summary;
 mod touch;
 mod tree;
 mod twins;
+mod walls;
 
 pub use curvature::{Curvature, Local};
 pub use feature::Gap;

@@ -5,6 +5,7 @@ mod book;
 mod bootstrap;
 mod bootstrap_heal;
 mod bootstrap_own;
+mod chords;
 mod classify;
 mod closest_points;
 #[path = "../common/mod.rs"]

@@ -5,9 +5,9 @@ use super::super::load;
 use super::field::FieldArguments;
 use super::local::Locals;
 use super::meet::Meeting;
-use super::source::{On, Raw};
+use super::source::{How, On, Raw};
 use crate::cli::metric::common::Amount;
-use crate::cli::metric::fields::{Made, MultiscaleArguments};
+use crate::cli::metric::fields::MultiscaleArguments;
 use crate::cli::metric::geometry::GeometryArguments;
 use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::place;
@@ -50,6 +50,10 @@ pub struct InputArguments {
     /// the distance d the size is h + 0.2 d
     #[arg(long, value_name = "PLACE:h=H[,growth=G],…", allow_negative_numbers = true)]
     pub(super) local: Vec<Locals>,
+    /// Cuts sizes along curved walls of the model to this share of √(8 h R), h the size across the wall and R its radius [without a value: 0.5]. The
+    /// chord of that length has the sagitta h: longer edges dive through the layers, and no mesh meets such sizes
+    #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", value_parser = share, allow_negative_numbers = true)]
+    pub(super) limit_chords: Option<f64>,
     #[command(
         flatten,
         next_help_heading = "The metric of --field (gradation and bounds of sizes: of --metric and --size too)"
@@ -86,14 +90,22 @@ pub struct Input {
     pub model: Model,
     /// The metric, of the complexity that is asked for.
     pub source: Source,
-    /// How it was made, from a field.
-    pub made: Option<Made>,
+    /// How it was made.
+    pub how: How,
     /// What the mesh's references are called, by the file beside it or else by the model.
     pub names: Names,
     /// What the metric was made of, where another may be wanted: with --vertices.
     pub raw: Option<Raw>,
     /// How the number of vertices was met that --vertices asks for.
     pub meeting: Option<Meeting>,
+}
+
+/// A share of √(8 h R).
+fn share(text: &str) -> Result<f64, String> {
+    match crate::cli::positive(text) {
+        Ok(share) if share <= 1.0 => Ok(share),
+        _ => Err("give a share above 0, and no more than 1: the chord whose sagitta is the size across".into()),
+    }
 }
 
 pub(super) type Error = Box<dyn std::error::Error>;
@@ -165,8 +177,8 @@ impl InputArguments {
         let raw = Raw { logs, copies, fields };
         let kept = self.amount.vertices.is_some().then(|| raw.clone());
         let on = On { place: &place, model: &model, names: &names };
-        let (source, made) = self.source(team, (&mesh, faces), raw, on, (self.amount.complexity(), notices))?;
-        Ok(Input { mesh, place, model, source, made, names, raw: kept, meeting: None })
+        let (source, how) = self.source(team, (&mesh, faces), raw, on, (self.amount.complexity(), notices))?;
+        Ok(Input { mesh, place, model, source, how, names, raw: kept, meeting: None })
     }
 
     /// Tells where the boundary of the mesh passes through itself.
@@ -185,7 +197,7 @@ impl InputArguments {
     }
 
     /// The metric made again, of another complexity.
-    pub fn source_of(&self, team: Team<'_>, input: &Input, complexity: f64) -> Result<(Source, Option<Made>), Error> {
+    pub fn source_of(&self, team: Team<'_>, input: &Input, complexity: f64) -> Result<(Source, How), Error> {
         let Input { mesh, place, model, names, raw, .. } = input;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let on = On { place, model, names };

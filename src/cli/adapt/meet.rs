@@ -48,16 +48,16 @@ pub fn adapted<E>(
     let mut before = None;
     let make = |next: f64, count: usize| {
         // Bounds of the sizes may leave no such metric.
-        let Ok((source, made)) = arguments.source_of(team, input, next) else { return Ok(None) };
+        let Ok((source, how)) = arguments.source_of(team, input, next) else { return Ok(None) };
         note(format_args!("{count} vertices, not {wanted}: again, with a complexity of {next:.0}"));
-        before = Some((replace(&mut input.source, source), replace(&mut input.made, made)));
+        before = Some((replace(&mut input.source, source), replace(&mut input.how, how)));
         adapt(input).map(Some)
     };
     let count = |adapted: &Adapted| adapted.extracted.mesh.vertices.len();
     let Met { best, complexity, meshes, is_met, is_last } =
         meet(wanted, (first, complexity), count, make, is_interrupted)?;
     if let Some(before) = before.filter(|_| !is_last) {
-        (input.source, input.made) = before;
+        (input.source, input.how) = before;
     }
     input.meeting = Some(Meeting { wanted, complexity, meshes, is_met });
     Ok(best)

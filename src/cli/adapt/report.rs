@@ -1,6 +1,7 @@
 //! What was done: the table on the terminal and the JSON.
 use super::input::Input;
 use super::meet::Meeting;
+use super::source::Chords;
 use crate::adapt::forecast::Forecast;
 use crate::adapt::{Adapted, GrowthEnd, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
@@ -70,7 +71,7 @@ fn why_growth_ended(end: GrowthEnd) -> &'static str {
         GrowthEnd::NotAccountedFor => {
             "there are far more vertices than the metric's complexity accounts for: then no mesh meets it. On a curved wall it asks for cells much \
              flatter than the wall bends within an edge, or its sizes differ by orders of magnitude within a cell, or are many times the domain \
-             in some directions; bound it by --aspect-ratio, --hmax or --gradation, or with --field leave the geometry in (no --no-geometry)"
+             in some directions; bound it by --limit-chords, --aspect-ratio, --hmax or --gradation, or with --field leave the geometry in (no --no-geometry)"
         }
         GrowthEnd::MaxVertices => {
             "it has as many vertices as it may have, and the metric is not met; ask for fewer (`adapt`: a smaller --complexity; `bootstrap`: fewer \
@@ -96,6 +97,9 @@ pub struct Report {
     /// How the metric was made, with --field.
     #[serde(skip_serializing_if = "Option::is_none")]
     multiscale: Option<Made>,
+    /// What was cut along curved walls, with --limit-chords.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chords: Option<Chords>,
     /// How a number of vertices was met, with --vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     vertices_wanted: Option<Meeting>,
@@ -153,7 +157,8 @@ impl Report {
         Self {
             version: env!("CARGO_PKG_VERSION"),
             asked: asked.clone(),
-            multiscale: input.made.clone(),
+            multiscale: input.how.made.clone(),
+            chords: input.how.chords,
             vertices_wanted: input.meeting,
             input_vertices: input.mesh.vertices.len(),
             input_tets: input.mesh.tets.len(),
@@ -195,6 +200,9 @@ impl Report {
         table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
         if let Some(made) = &self.multiscale {
             made.rows(&mut table);
+        }
+        if let Some(chords) = &self.chords {
+            chords.row(&mut table);
         }
         if let Some(meeting) = &self.vertices_wanted {
             meeting.row(&mut table);

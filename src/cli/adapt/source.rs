@@ -4,16 +4,18 @@ use super::local::{self, Places};
 use crate::adapt;
 use crate::cli::files::reading::Carrier;
 use crate::cli::metric::fields::Made;
+use crate::cli::table::{Table, figure};
 use crate::formats::NamedField;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::metric::held::GREATEST_RATIO;
-use crate::metric::multiscale::{Bounds, Measure, bounded, diameter};
+use crate::metric::multiscale::{Bounds, Cut, Measure, SizeBound, bounded, diameter};
 use crate::metric::{self, Background, Interpolation, Limits, Source, Sym3, field, grade, restrict};
-use crate::sizing;
+use crate::sizing::{self, chords};
 use crate::tasks::{Team, stage};
+use serde::Serialize;
 use std::sync::Arc;
 
 /// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
@@ -33,6 +35,34 @@ pub struct Raw {
     pub fields: Vec<NamedField>,
 }
 
+/// How a metric was made.
+#[derive(Clone, Default)]
+pub struct How {
+    /// From a field.
+    pub made: Option<Made>,
+    /// What was cut along curved walls, with --limit-chords.
+    pub chords: Option<Chords>,
+}
+
+/// What --limit-chords has cut.
+#[derive(Clone, Copy, Serialize)]
+pub struct Chords {
+    /// The share of √(8 h R).
+    share: f64,
+    #[serde(flatten)]
+    cut: Cut,
+}
+
+impl Chords {
+    /// What the table says of it.
+    pub fn row(&self, table: &mut Table) {
+        let Self { share, cut: Cut { vertices, greatest } } = self;
+        let most =
+            if *vertices > 0 { format!(", by a factor of {} at most", figure(*greatest)) } else { String::new() };
+        table.row("cut along curved walls", format_args!("{vertices} vertices{most} ({share} √(8 h R))"));
+    }
+}
+
 /// Where the mesh lies.
 #[derive(Clone, Copy)]
 pub(super) struct On<'a> {
@@ -49,7 +79,7 @@ impl On<'_> {
 }
 
 impl InputArguments {
-    /// The metric of the complexity that is wanted, and how it was made from a field. Notices are added.
+    /// The metric of the complexity that is wanted, and how it was made. Notices are added.
     pub(super) fn source(
         &self,
         team: Team<'_>,
@@ -57,8 +87,8 @@ impl InputArguments {
         raw: Raw,
         on: On<'_>,
         (complexity, notices): (Option<f64>, &mut Vec<String>),
-    ) -> Result<(Source, Option<Made>), Error> {
-        let (mut source, made) = self.unscaled(team, (mesh, faces), raw, on, (complexity, notices))?;
+    ) -> Result<(Source, How), Error> {
+        let (mut source, how) = self.unscaled(team, (mesh, faces), raw, on, (complexity, notices))?;
         stage("metric ready");
         if source.cut() > 0 {
             notices.push(format!(
@@ -67,13 +97,13 @@ impl InputArguments {
                 source.cut()
             ));
         }
-        self.scale(team, mesh, &mut source, complexity, made.is_some())?;
+        self.scale(team, mesh, &mut source, complexity, how.made.is_some())?;
         stage("complexity");
-        Ok((source, made))
+        Ok((source, how))
     }
 
-    /// The analytic field, or the mesh as background with sizes that are given, or with the metric made from a field; and what was done to
-    /// make it. Of its complexity already, where it is bounded or made.
+    /// The analytic field, or the mesh as background with sizes that are given, or with the metric made from a field; and how it was made. Of its
+    /// complexity already, where it is bounded or made.
     fn unscaled(
         &self,
         team: Team<'_>,
@@ -81,18 +111,23 @@ impl InputArguments {
         raw: Raw,
         on: On<'_>,
         (complexity, notices): (Option<f64>, &mut Vec<String>),
-    ) -> Result<(Source, Option<Made>), Error> {
+    ) -> Result<(Source, How), Error> {
         if let Some(field) = self.field.analytic {
-            return Ok((Source::Analytic { field, log_scale: 0.0 }, None));
+            return Ok((Source::Analytic { field, log_scale: 0.0 }, How::default()));
         }
         let named = |error: String| format!("{}: {error}", self.mesh.display());
         if mesh.tets.is_empty() {
             return Err(named(adapt::Error::Empty.to_string()).into());
         }
         let uniform = self.field.size.map(|h| vec![of_size(h); mesh.vertices.len()]);
-        let (logs, made) = match raw.logs.or(uniform) {
-            Some(logs) if !self.is_bounded() => (logs, None),
-            Some(logs) => (self.bounded(team, mesh, on, logs, complexity).map_err(named)?, None),
+        let by_others = self.limit_chords.map(|share| chords::Chords::new(on.place, on.model, share));
+        let by_others = by_others.as_ref().map(|chords| chords as &dyn SizeBound);
+        let (logs, cut, made) = match raw.logs.or(uniform) {
+            Some(logs) if !self.is_bounded() => (logs, None, None),
+            Some(logs) => {
+                let (logs, cut) = self.bounded(team, mesh, on, (logs, by_others), complexity).map_err(named)?;
+                (logs, cut, None)
+            }
             None => {
                 let complexity = complexity.ok_or("--field needs a --complexity or --vertices")?;
                 let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
@@ -100,40 +135,50 @@ impl InputArguments {
                 let vertices = &mesh.vertices[..mesh.vertices.len() - raw.copies.len()];
                 let carrier = Carrier { path: &self.mesh, vertices, fields: &raw.fields };
                 let (mesh, asked) = ((&**mesh, &raw.copies[..]), (&self.field.field[..], carrier));
-                let (logs, made) = self.multiscale.make(team, mesh, asked, wanted, fixed.as_deref(), notices)?;
-                (logs, Some(made))
+                let (logs, made) =
+                    self.multiscale.make(team, mesh, asked, wanted, (fixed.as_deref(), by_others), notices)?;
+                (logs, made.cut(), Some(made))
             }
         };
-        Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), made))
+        let chords = self.limit_chords.zip(cut).map(|(share, cut)| Chords { share, cut });
+        Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), How { made, chords }))
     }
 
     /// Whether sizes that are given are to be changed by more than a scale.
     fn is_bounded(&self) -> bool {
+        self.is_graded() || self.limit_chords.is_some()
+    }
+
+    /// Whether sizes that are given are to be graded.
+    fn is_graded(&self) -> bool {
         !self.local.is_empty() || self.multiscale.bounds_are_given()
     }
 
-    /// ln of the metric that is given within the bounds that are given, graded, and of the complexity that is asked for.
+    /// ln of the metric that is given within the bounds that are given, graded, and of the complexity that is asked for; and what the bound of
+    /// sizes by each other has cut.
     fn bounded(
         &self,
         team: Team<'_>,
         mesh: &TetMesh,
         on: On<'_>,
-        mut logs: Vec<Sym3>,
+        (mut logs, by_others): (Vec<Sym3>, Option<&dyn SizeBound>),
         wanted: Option<f64>,
-    ) -> Result<Vec<Sym3>, String> {
-        let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth());
+    ) -> Result<(Vec<Sym3>, Option<Cut>), String> {
+        let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth().filter(|_| self.is_graded()));
         let fixed = self.local_sizes(team, mesh, on)?;
         let measure = Measure::Between(Interpolation::default());
         let complexity = wanted.unwrap_or(1.0);
-        let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref() };
+        let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref(), by_others };
         if wanted.is_some() {
-            return bounded(team, mesh, &logs, &bounds).map(|found| found.0).map_err(|error| error.to_string());
+            let found = bounded(team, mesh, &logs, &bounds).map_err(|error| error.to_string())?;
+            return Ok((found.0, found.1.cut));
         }
-        bounds.apply(team, &mut logs);
+        let (_, cut) = bounds.apply(team, &mut logs);
         if let Some(ratio) = gradation {
             grade(team, mesh, &mut logs, ratio);
+            by_others.map(|bound| bound.apply(team, &mut logs));
         }
-        Ok(logs)
+        Ok((logs, cut))
     }
 
     /// ln of the metric that the local sizes ask for, with very large sizes elsewhere; none without local sizes.
@@ -170,7 +215,7 @@ impl InputArguments {
         let most = GEOMETRY_SHARE * complexity;
         if own > most {
             let (limits, measure) = (Limits::default(), Measure::Between(Interpolation::default()));
-            let bounds = Bounds { complexity: most, measure, gradation, limits, fixed: None };
+            let bounds = Bounds { complexity: most, measure, gradation, limits, fixed: None, by_others: None };
             logs = bounded(team, mesh, &raw, &bounds).map_err(|error| format!("the geometry's metric: {error}"))?.0;
             let asked = self.amount.name();
             notices.push(format!(

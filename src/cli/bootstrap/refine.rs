@@ -187,8 +187,16 @@ impl Refined {
         });
         self.notices.iter().chain(&flaw).for_each(crate::cli::note);
         let place = self.adapted.extracted.classification.clone();
-        let input =
-            Input { mesh: self.start, place, model, source: self.source, made: None, names, raw: None, meeting: None };
+        let input = Input {
+            mesh: self.start,
+            place,
+            model,
+            source: self.source,
+            how: Default::default(),
+            names,
+            raw: None,
+            meeting: None,
+        };
         let report = Report::new(team, asked, &input, self.adapted, None);
         let [prepared, finished] = self.times;
         let (report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
@@ -250,8 +258,14 @@ fn sizes(
         return Ok(Sizes { on, logs, complexity, notice: None });
     }
     let (gradation, limits) = (Some(GRADATION), Limits::default());
-    let bounds =
-        Bounds { complexity: most, measure: Measure::Between(Interpolation::Sizes), gradation, limits, fixed: None };
+    let bounds = Bounds {
+        complexity: most,
+        measure: Measure::Between(Interpolation::Sizes),
+        gradation,
+        limits,
+        fixed: None,
+        by_others: None,
+    };
     let enlarged = bounded(team, &on, &resolved.logs, &bounds);
     let (logs, _) = enlarged.map_err(|error| format!("the geometry's metric: {error}"))?;
     let notice = format!(

@@ -4,7 +4,7 @@ use crate::cli::files::reading::{self, Carrier};
 use crate::mesh::TetMesh;
 use crate::mesh::io::{FieldKind, Read, Solution, SolutionField};
 use crate::mesh::split_nonmanifold::copy_values;
-use crate::metric::multiscale::{self, Bounds, Measure, Norm, Options, Summary, multiscale};
+use crate::metric::multiscale::{self, Bounds, Cut, Measure, Norm, Options, SizeBound, Summary, multiscale};
 use crate::metric::recovery::Recovery;
 use crate::metric::{Limits, Sym3};
 use crate::tasks::Team;
@@ -87,14 +87,14 @@ impl MultiscaleArguments {
     }
 
     /// ln M at the vertices of the mesh, shape (n,), made from the fields that these arguments name, and what was done; `fixed`, ln of
-    /// another metric, is intersected at any scale. The last vertices are `copies`, on which the files have nothing. Notices are added.
+    /// another metric, is intersected at any scale, and sizes are bounded `by_others`. The last vertices are `copies`, on which the files have nothing. Notices are added.
     pub fn make(
         &self,
         team: Team<'_>,
         (mesh, copies): (&TetMesh, &[u32]),
         (paths, of): (&[PathBuf], Carrier<'_>),
         (complexity, measure): (f64, Measure),
-        fixed: Option<&[Sym3]>,
+        (fixed, by_others): (Option<&[Sym3]>, Option<&dyn SizeBound>),
         notices: &mut Vec<String>,
     ) -> Result<(Vec<Sym3>, Made), Failure> {
         let limits = self.limits.limits()?;
@@ -108,7 +108,7 @@ impl MultiscaleArguments {
         }
         let (sensors, names) = self.sensors(paths, &files)?;
         let (norm, recovery, gradation) = (self.norm, self.hessian, self.gradation.ratio());
-        let bounds = Bounds { complexity, measure, gradation, limits, fixed };
+        let bounds = Bounds { complexity, measure, gradation, limits, fixed, by_others };
         let options = Options { recovery, norm, bounds };
         let (logs, summary) = multiscale(team, mesh, &sensors, &options).map_err(|error| match error {
             multiscale::Error::Flat { sensor } | multiscale::Error::NotFinite { sensor, .. } => {
@@ -192,10 +192,15 @@ impl MultiscaleArguments {
 }
 
 impl Made {
+    /// What the bound of sizes by each other has cut.
+    pub fn cut(&self) -> Option<Cut> {
+        self.summary.cut
+    }
+
     /// Rows of a table that tell what was done.
     pub fn rows(&self, table: &mut crate::cli::table::Table) {
         use crate::cli::table::figure;
-        let Summary { complexity_before_gradation, complexity, limited, unfitted, rounds } = self.summary;
+        let Summary { complexity_before_gradation, complexity, limited, unfitted, rounds, .. } = self.summary;
         let fields = match (self.sensors, self.steps) {
             (1, 1) => String::new(),
             (sensors, 1) => format!(" ({sensors} scalars, metrics intersected)"),

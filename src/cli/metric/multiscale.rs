@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     stage("mesh read");
     let (mut notices, wanted) = (Vec::new(), (arguments.amount.needed()?, Measure::AtVertices));
     let (given, mesh) = ((&arguments.fields[..], Carrier::of(&arguments.mesh, &data)), &data.mesh);
-    let (logs, made) = arguments.multiscale.make(team, (mesh, &[]), given, wanted, None, &mut notices)?;
+    let (logs, made) = arguments.multiscale.make(team, (mesh, &[]), given, wanted, (None, None), &mut notices)?;
     arguments.run.note(&notices);
     let mut outputs = Outputs::new();
     arguments.run.note(&outputs.logs(team, &target, &logs, common::on(&data))?);

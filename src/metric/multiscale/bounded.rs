@@ -5,9 +5,40 @@ use crate::mesh::TetMesh;
 use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::{Limits, Sym3, gradation, intersect_all};
 use crate::tasks::{GRAIN, Team, stage};
+use serde::Serialize;
 
 /// First guess of the logarithm of the scale at which a metric has the complexity wanted after gradation.
 const USUAL_SCALE: f64 = -0.2;
+
+/// A bound of sizes that depends on the others at the same vertex, so that it is applied at each scale. It makes no size larger, and what it has
+/// cut it leaves as it is.
+pub trait SizeBound: std::fmt::Debug + Sync {
+    /// Cuts ln M at the vertices of the mesh, shape (n,).
+    fn apply(&self, team: Team<'_>, logs: &mut [Sym3]) -> Cut;
+}
+
+/// What a bound has cut.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Cut {
+    /// Vertices whose sizes were cut.
+    pub vertices: usize,
+    /// The greatest ratio of a size to what it was cut to.
+    pub greatest: f64,
+}
+
+impl Default for Cut {
+    fn default() -> Self {
+        Self { vertices: 0, greatest: 1.0 }
+    }
+}
+
+impl Cut {
+    /// That of other vertices too.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self { vertices: self.vertices + other.vertices, greatest: self.greatest.max(other.greatest) }
+    }
+}
 
 /// The complexity of a metric, and what bounds its sizes.
 #[derive(Clone, Copy, Debug)]
@@ -22,16 +53,19 @@ pub struct Bounds<'f> {
     pub limits: Limits,
     /// ln of a metric that is intersected whatever the scale, shape (n,): what the geometry asks for, or sizes in some places.
     pub fixed: Option<&'f [Sym3]>,
+    /// A bound of sizes by each other, after all others and after gradation.
+    pub by_others: Option<&'f dyn SizeBound>,
 }
 
 impl Bounds<'_> {
-    /// Limits ln M at the vertices and intersects it with what is fixed. Returns at how many vertices the limits changed it.
-    pub fn apply(&self, team: Team<'_>, logs: &mut [Sym3]) -> usize {
+    /// Limits ln M at the vertices, intersects it with what is fixed, and bounds sizes by each other. Returns at how many vertices the limits
+    /// changed it, and what the last has cut.
+    pub fn apply(&self, team: Team<'_>, logs: &mut [Sym3]) -> (usize, Option<Cut>) {
         let limited = self.limits.apply(team, logs);
         if let Some(fixed) = self.fixed {
             intersect_all(team, logs, fixed);
         }
-        limited
+        (limited, self.by_others.map(|bound| bound.apply(team, logs)))
     }
 }
 
@@ -77,11 +111,12 @@ pub(super) fn bounded_with(
     })
     .map_err(unreachable)?;
     let mut before = Vec::new();
-    let limited = scaled(raw, scale + more, &mut before);
+    let (limited, cut) = scaled(raw, scale + more, &mut before);
     let summary = Summary {
         complexity_before_gradation: complexity(&before),
         complexity: reached,
         limited,
+        cut,
         unfitted: 0,
         rounds: if bounds.gradation.is_some() { rounds } else { again },
     };

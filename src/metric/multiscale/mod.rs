@@ -16,7 +16,7 @@ mod sensor;
 mod tests;
 
 use bounded::bounded_with;
-pub use bounded::{Bounds, bounded};
+pub use bounded::{Bounds, Cut, SizeBound, bounded};
 pub use norm::Norm;
 
 use super::recovery::{Recovery, Rings};
@@ -68,6 +68,9 @@ pub struct Summary {
     pub complexity: f64,
     /// Vertices whose sizes the limits changed, before gradation.
     pub limited: usize,
+    /// What the bound of sizes by each other cut, before gradation.
+    #[serde(skip)]
+    pub cut: Option<Cut>,
     /// Vertices that have the Hessian of their neighbours, since the points around them do not determine one.
     pub unfitted: usize,
     /// How often the metric was scaled, limited and graded.

@@ -9,7 +9,14 @@ fn options(complexity: f64) -> Options<'static> {
 }
 
 fn bounds(complexity: f64) -> Bounds<'static> {
-    Bounds { complexity, measure: Measure::AtVertices, gradation: None, limits: Limits::default(), fixed: None }
+    Bounds {
+        complexity,
+        measure: Measure::AtVertices,
+        gradation: None,
+        limits: Limits::default(),
+        fixed: None,
+        by_others: None,
+    }
 }
 
 fn values(mesh: &TetMesh, u: impl Fn(Vec3) -> f64) -> Vec<f64> {
