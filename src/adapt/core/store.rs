@@ -117,6 +117,11 @@ fn rehouse<T: Zeroable + Send>(team: Team<'_>, records: &mut Vec<T>, used: usize
     true
 }
 
+/// Bytes of a page, at the least, and pages that are touched in a task: a huge page.
+const PAGE: usize = 1 << 12;
+/// See [`PAGE`].
+const PAGES: usize = 1 << 9;
+
 /// How much to ask memory for, in turn: what is wished; what is needed with half of the rest, a quarter, and so on; at last what is needed
 /// alone. Where memory is not lent beyond what there is, room for later counts as used.
 fn capacities(needed: usize, wished: usize) -> impl Iterator<Item = usize> {
@@ -198,6 +203,23 @@ impl Store {
         let needed = used + tets;
         needed <= self.tets.len()
             || capacities(needed, used + 3 * needed).any(|room| rehouse(team, &mut self.tets, used, room))
+    }
+
+    /// Touches the memory of so many records beyond those that are used, on all threads: to give a page for the first time takes the system as long
+    /// as to fill it takes a sweep, and else the first part of the mesh that gets ids waits for all pages. Between sweeps only.
+    pub fn map_pages(&self, team: Team<'_>, vertices: usize, tets: usize) {
+        let pages = |used: usize, count: usize, len: usize, size: usize| {
+            let records = used.min(len)..(used + count).min(len);
+            (records.start, PAGE / size, records.len().div_ceil(PAGE / size))
+        };
+        let (first, step, count) = pages(self.tet_bound(), tets, self.tets.len(), size_of::<TetRecord>());
+        team.for_each(PAGES, count, |range| {
+            range.for_each(|page| self.tets[first + step * page].moved.store(0, Relaxed));
+        });
+        let (first, step, count) = pages(self.vertex_bound(), vertices, self.vertices.len(), size_of::<VertexRecord>());
+        team.for_each(PAGES, count, |range| {
+            range.for_each(|page| self.vertices[first + step * page].lock.store(0, Relaxed));
+        });
     }
 
     /// An array of owners for so many vertices, which means nothing between sweeps.

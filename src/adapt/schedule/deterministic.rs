@@ -13,20 +13,20 @@ use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::refusal::{Counts, Refusal};
 use crate::adapt::core::store::Store;
 use crate::adapt::core::worker::Worker;
-use crate::tasks::{Plan, Pool};
+use crate::tasks::{Plan, Pool, Team};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Most parts: enough for many threads, but no more, since what lies between parts waits.
 /// Their numbers fit in a byte.
-pub const MOST_PARTS: usize = 64;
+pub const MOST_PARTS: usize = 128;
 
 /// Least items a part in the first round, where that leaves more than [`FEW`] parts. In larger parts fewer items meet another part.
 /// Few in the unit tests, whose meshes are small.
 const ITEMS: usize = if cfg!(test) { 12 } else { 4096 };
 
 /// Short lists have so many parts, if each gets [`FEWEST_ITEMS`].
-const FEW: usize = 4;
+const FEW: usize = 32;
 
 /// Least items a part.
 const FEWEST_ITEMS: usize = if cfg!(test) { 6 } else { 1024 };
@@ -36,6 +36,9 @@ const LITTLE: f64 = 0.008;
 
 /// Vertices or tetrahedra that are looked at in one task.
 const GRAIN: usize = 1 << 13;
+
+/// Items that a task sorts by their parts.
+const SHARE: usize = 1 << 14;
 
 /// The parts of so many vertices are found together.
 const AT_ONCE: usize = 8;
@@ -74,14 +77,16 @@ pub fn run<'m, O: Operation>(
             }
             return counts;
         }
+        let before = left.len();
         let mut round = Round { operation, items, context, pool, plan, left, parts };
         left = round.run(threads, &mut counts, advance);
         if !advance(0) {
             clear_owners(&context.store, (pool, plan));
             return counts;
         }
-        // What is left lies between the parts of this round. Fewer and larger parts have less between them.
-        parts = (parts / 2).min(power(left.len() / FEWEST_ITEMS));
+        // What is left lies between the parts of this round, and is cut elsewhere in the next. Fewer and larger parts have less between them.
+        let most = if 2 * left.len() > before { parts / 2 } else { parts };
+        parts = most.min(power(left.len() / FEWEST_ITEMS));
         shared = true;
     }
 }
@@ -128,7 +133,8 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     /// Does what can be done; returns what is left.
     fn run(&mut self, threads: &mut [ThreadContext<'_, 'm, O>], counts: &mut Counts, advance: Advance<'_>) -> Vec<u32> {
         let store = &self.context.store;
-        self.assign_owners(&Parts::of(store, self.left.iter().map(|&i| self.item(i)), self.parts));
+        let team = Team::new(self.pool, self.plan);
+        self.assign_owners(&Parts::of(team, store, self.left.len(), |at| self.item(self.left[at]), self.parts));
         let parts_of = self.parts_of_items();
         let (sorted, starts, mut again) = self.sorted(&parts_of, counts);
         let id_pools = threads[0].state.id_pool.split(store, self.parts);
@@ -151,7 +157,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
             id_pools.push(part.id_pool);
         }
         threads[0].state.id_pool.merge(store, id_pools);
-        again.sort_unstable();
+        team.sort(&mut again);
         again
     }
 
@@ -207,24 +213,32 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
 
     /// The items' numbers sorted by part, where each part begins, and the items that wait. Items that are gone are counted as `Stale`.
     fn sorted(&self, parts_of: &[u32], counts: &mut Counts) -> (Vec<u32>, Vec<usize>, Vec<u32>) {
-        let mut starts = vec![0usize; self.parts + 1];
-        let is_done = |part: u32| (part as usize) < self.parts;
-        parts_of.iter().filter(|&&part| is_done(part)).for_each(|&part| starts[part as usize + 1] += 1);
-        for part in 0..self.parts {
-            starts[part + 1] += starts[part];
-        }
-        let (mut sorted, mut waits, mut places) = (vec![0; starts[self.parts]], Vec::new(), starts.clone());
-        for (&number, &part) in self.left.iter().zip(parts_of) {
-            if is_done(part) {
-                sorted[places[part as usize]] = number;
-                places[part as usize] += 1;
-            } else if part == WAITS {
-                waits.push(number);
-            } else {
-                counts.record(Err(Refusal::Stale));
+        // Each task deals a share out, by places: the parts', then that of those that wait, then that of those that are gone.
+        let place = |part: u32| (part as usize).min(self.parts) + usize::from(part == GONE);
+        let places = self.parts + 2;
+        let team = Team::new(self.pool, self.plan);
+        let shares = team.chunks(SHARE, self.left.len(), |range| {
+            let mut starts = vec![0u32; places + 2];
+            // Counted two places on: while the items are dealt out, each start moves to the next one's place.
+            parts_of[range.clone()].iter().for_each(|&part| starts[place(part) + 2] += 1);
+            (1..starts.len()).for_each(|at| starts[at] += starts[at - 1]);
+            let mut dealt = vec![0; range.len()];
+            for (&number, &part) in self.left[range.clone()].iter().zip(&parts_of[range]) {
+                let at = &mut starts[place(part) + 1];
+                dealt[*at as usize] = number;
+                *at += 1;
             }
-        }
-        (sorted, starts, waits)
+            (starts, dealt)
+        });
+        let slices = |place: usize| {
+            shares.iter().map(move |(starts, dealt)| &dealt[starts[place] as usize..starts[place + 1] as usize])
+        };
+        let count = |place: usize| slices(place).map(<[u32]>::len).sum::<usize>();
+        let mut starts = vec![0; self.parts + 1];
+        (0..self.parts).for_each(|part| starts[part + 1] = starts[part] + count(part));
+        (0..count(self.parts + 1)).for_each(|_| counts.record(Err(Refusal::Stale)));
+        let sorted = team.join_slices((0..self.parts).flat_map(slices));
+        (sorted, starts, team.join_slices(slices(self.parts)))
     }
 
     /// Does the items of one part.

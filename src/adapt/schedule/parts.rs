@@ -6,6 +6,7 @@ use super::Item;
 use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::store::Store;
 use crate::mesh::vector::{Vec3, dot};
+use crate::tasks::Team;
 
 /// The normals that are tried for a cut.
 const DIRECTIONS: [Vec3; 9] = [
@@ -23,6 +24,9 @@ const DIRECTIONS: [Vec3; 9] = [
 /// How many items a part are sampled to find the cuts.
 const SAMPLED: usize = 32;
 
+/// Samples that are taken in a task.
+const FEW: usize = 64;
+
 /// A cut. A point is on the second side when its coordinate along the direction is above `offset`.
 #[derive(Clone, Copy, Default)]
 struct Cut {
@@ -37,6 +41,7 @@ pub struct Parts {
 }
 
 /// A sampled item: along each direction the coordinate of its vertex, and the extent of a tetrahedron there.
+#[derive(Clone, Copy)]
 struct Sample {
     at: [f64; DIRECTIONS.len()],
     extent: [[f64; 2]; DIRECTIONS.len()],
@@ -53,15 +58,44 @@ impl Sample {
 }
 
 impl Parts {
-    /// Cuts the items into `count` parts, a power of two.
-    pub fn of<I: Item>(store: &Store, items: impl ExactSizeIterator<Item = I>, count: usize) -> Self {
-        let stride = items.len().div_ceil(SAMPLED * count).max(1);
-        let vertices = items.step_by(stride).map(|item| item.vertices(store)[0]);
-        let samples: Vec<_> =
-            vertices.filter(|&v| v.is_some() && store.is_vertex(v)).map(|v| Sample::of(store, v)).collect();
-        let mut cuts = vec![Cut::default(); count - 1];
+    /// Cuts so many items into `count` parts, a power of two.
+    pub fn of<I: Item>(
+        team: Team<'_>,
+        store: &Store,
+        items: usize,
+        item: impl Fn(usize) -> I + Sync,
+        count: usize,
+    ) -> Self {
+        let stride = items.div_ceil(SAMPLED * count).max(1);
+        let samples: Vec<_> = team.collect(FEW, items.div_ceil(stride), |range, found| {
+            let vertices = range.map(|at| item(at * stride).vertices(store)[0]);
+            let live = vertices.filter(|&v| v.is_some() && store.is_vertex(v));
+            found.extend(live.map(|v| Sample::of(store, v)));
+        });
+        let mut cuts = Vec::with_capacity(count - 1);
         let mut order: Vec<u32> = (0..samples.len() as u32).collect();
-        cut(&samples, &mut order, &mut cuts, 0);
+        let mut nodes = vec![&mut order[..]];
+        // Level by level, all directions of all nodes side by side.
+        while cuts.len() + 1 < count {
+            let trials = team.map(1, nodes.len() * DIRECTIONS.len(), |trial| {
+                let (node, direction) = (trial / DIRECTIONS.len(), trial % DIRECTIONS.len());
+                Trial::of(&samples, &*nodes[node], direction)
+            });
+            let best = trials.chunks(DIRECTIONS.len()).map(|trials| {
+                let least = trials.iter().min_by_key(|trial| trial.crossings);
+                least.map_or(Cut::default(), |trial| trial.cut)
+            });
+            let first = cuts.len();
+            cuts.extend(best);
+            let mut halves: Vec<_> = nodes.into_iter().zip(&cuts[first..]).collect();
+            team.fill(1, &mut halves, |_, halves| {
+                for (node, cut) in halves {
+                    halve(&samples, node, cut.direction);
+                }
+            });
+            nodes =
+                halves.into_iter().flat_map(|(node, _)| <[_; 2]>::from(node.split_at_mut(node.len() / 2))).collect();
+        }
         Self { cuts }
     }
 
@@ -79,35 +113,35 @@ impl Parts {
     }
 }
 
-/// Finds the cut of one node and of those below it.
-fn cut(samples: &[Sample], order: &mut [u32], cuts: &mut [Cut], node: usize) {
-    if node >= cuts.len() || order.is_empty() {
-        return;
-    }
-    let middle = order.len() / 2;
-    let mut best = (usize::MAX, Cut::default());
-    for direction in 0..DIRECTIONS.len() {
-        let offset = halve(samples, order, direction);
-        let crossed = |s: &&u32| {
+/// A cut that is tried at one node.
+#[derive(Clone, Copy)]
+struct Trial {
+    /// Sampled tetrahedra that it crosses.
+    crossings: usize,
+    cut: Cut,
+}
+
+impl Trial {
+    /// The cut of some samples in halves along a direction.
+    fn of(samples: &[Sample], node: &[u32], direction: usize) -> Self {
+        let Some(offset) = halve(samples, &mut node.to_vec(), direction) else {
+            return Self { crossings: 0, cut: Cut::default() };
+        };
+        let is_crossed = |s: &&u32| {
             let [low, high] = samples[**s as usize].extent[direction];
             low <= offset && offset < high
         };
-        let crossings = order.iter().filter(crossed).count();
-        if crossings < best.0 {
-            best = (crossings, Cut { direction, offset });
-        }
+        Self { crossings: node.iter().filter(is_crossed).count(), cut: Cut { direction, offset } }
     }
-    cuts[node] = best.1;
-    halve(samples, order, best.1.direction);
-    let (below, above) = order.split_at_mut(middle);
-    cut(samples, below, cuts, 2 * node + 1);
-    cut(samples, above, cuts, 2 * node + 2);
 }
 
-/// Brings the half with lesser coordinates along a direction to the front. Returns where the other half begins.
-fn halve(samples: &[Sample], order: &mut [u32], direction: usize) -> f64 {
+/// Brings the half with lesser coordinates along a direction to the front. Returns where the other half begins; none without samples.
+fn halve(samples: &[Sample], node: &mut [u32], direction: usize) -> Option<f64> {
     let at = |s: &u32| samples[*s as usize].at[direction];
-    let middle = order.len() / 2;
-    let (_, middle, _) = order.select_nth_unstable_by(middle, |x, y| at(x).total_cmp(&at(y)).then(x.cmp(y)));
-    at(middle)
+    let middle = node.len() / 2;
+    if node.is_empty() {
+        return None;
+    }
+    let (_, middle, _) = node.select_nth_unstable_by(middle, |x, y| at(x).total_cmp(&at(y)).then(x.cmp(y)));
+    Some(at(middle))
 }

@@ -30,6 +30,11 @@ const FOR_THE_SURFACE: f64 = 20_000.0;
 /// Room for so many tetrahedra a new vertex. Six are usual.
 const TETS_A_VERTEX: usize = 12;
 
+/// Of the insertions that are tried at first so many are done, and a mesh has so many tetrahedra a vertex.
+const DONE: f64 = 0.8;
+/// See [`DONE`].
+const USUAL_TETS: f64 = 5.6;
+
 /// With this share of the vertices that it may have, a mesh has them all: of the last edges most are refused.
 const FULL: f64 = 0.995;
 
@@ -146,6 +151,9 @@ impl Pipeline<'_, '_> {
             // Without memory the mesh stays as large as it is.
             self.growth_end.get_or_insert(GrowthEnd::Memory);
         }
+        let live = self.live() as f64;
+        let more = (self.expected - live).clamp(0.0, DONE * new as f64);
+        self.context.store.map_pages(self.team(), more as usize, (USUAL_TETS * more) as usize);
     }
 
     /// Whether input and metric account for so many vertices: what is quickly known is asked first.
