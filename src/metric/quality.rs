@@ -155,9 +155,13 @@ mod tests {
         // L_a = 2, L_b = 4: (4 − 2)/ln 2.
         assert!((edge_length(v, &a, &b) - 2.0 / 2f64.ln()).abs() < 1e-14);
         assert_eq!(edge_length(v, &a, &b), edge_length(scale(v, -1.0), &b, &a));
-        // Within 1e-3 the mean.
-        let c = Sym3::diagonal(1.0, 1.0, 1.0004f64.powi(2));
-        assert!((edge_length(v, &a, &c) - 0.5 * (2.0 + c.quadratic(v).sqrt())).abs() < 1e-7);
+        // Where the series takes over from the logarithm, and nearer.
+        for ratio in [1.5, 1.23, 1.222, 1.22, 1.1, 1.01, 1.0 + 1e-5] {
+            let expected = (ratio - 1.0) / f64::ln_1p(ratio - 1.0);
+            assert!((mean_length(ratio, 1.0) / expected - 1.0).abs() < 1e-11, "{ratio}");
+            assert_eq!(mean_length(ratio, 1.0), mean_length(1.0, ratio));
+        }
+        assert_eq!((mean_length(0.7, 0.7), mean_length(0.0, 0.0)), (0.7, 0.0));
     }
 
     #[test]

@@ -134,3 +134,46 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::core::access::Exclusive;
+    use crate::adapt::core::worker::Worker;
+    use crate::adapt::tests::bench::{Bench, Shape, sample};
+    use std::collections::BTreeSet;
+
+    /// Of each vertex all tetrahedra and neighbours once, and for each other vertex whether an edge joins them.
+    #[test]
+    fn a_ball_has_all_at_its_vertex_once() {
+        let sample = sample(Shape::Cube, 3, 0.4);
+        let mut bench = Bench::new(&sample, 1, 5);
+        let (context, states) = (&bench.context, &mut bench.states);
+        let mut worker = Worker::new(context, &mut states[0], Exclusive);
+        let (store, mut ball) = (worker.store, Ball::default());
+        for v in store.live_vertices() {
+            let tets: BTreeSet<_> = store.live_tets().filter(|&t| store.vertices(t).contains(&v)).collect();
+            let link: BTreeSet<_> =
+                tets.iter().flat_map(|&t| store.vertices(t)).filter(|&x| x != v).map(|x| x.0).collect();
+            worker.collect_ball(v, &mut ball);
+            assert_eq!((ball.tets.len(), ball.link.len()), (tets.len(), link.len()));
+            assert_eq!(ball.tets.iter().copied().collect::<BTreeSet<_>>(), tets);
+            assert_eq!(ball.link.iter().map(|x| x.0).collect::<BTreeSet<_>>(), link);
+            for x in store.live_vertices().filter(|&x| x != v) {
+                let found = worker.find_tet_with(v, x);
+                assert_eq!(found.is_some(), link.contains(&x.0));
+                assert!(found.is_none_or(|t| tets.contains(&t) && store.vertices(t).contains(&x)));
+            }
+        }
+    }
+
+    #[test]
+    fn the_other_local_vertices_ascend() {
+        for i in 0..4 {
+            assert!(FACE_ASCENDING[i].iter().copied().eq((0..4).filter(|&k| k != i)));
+            for j in (0..4).filter(|&j| j != i) {
+                assert!(OTHERS[i][j].iter().copied().eq((0..4).filter(|&k| k != i && k != j)));
+            }
+        }
+    }
+}

@@ -145,3 +145,33 @@ fn halve(samples: &[Sample], node: &mut [u32], direction: usize) -> Option<f64> 
     let (_, middle, _) = node.select_nth_unstable_by(middle, |x, y| at(x).total_cmp(&at(y)).then(x.cmp(y)));
     Some(at(middle))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::tests::bench::{Bench, Shape, sample};
+    use crate::tasks::{Plan, Pool};
+
+    /// The parts of all vertices, as they are found by so many threads.
+    fn parts(threads: usize, count: usize) -> Vec<usize> {
+        let sample = sample(Shape::Round, 6, 0.4);
+        let bench = Bench::new(&sample, 1, 5);
+        let (pool, store) = (Pool::new(threads).unwrap(), &bench.context.store);
+        let vertices: Vec<_> = store.live_vertices().collect();
+        let parts = Parts::of(Team::new(&pool, Plan::default()), store, vertices.len(), |at| vertices[at], count);
+        vertices.iter().map(|&v| parts.hold([store.position(v)])[0]).collect()
+    }
+
+    #[test]
+    fn parts_are_as_large_and_the_same_for_all_threads() {
+        for count in [2, 8, 32] {
+            let of_one = parts(1, count);
+            for threads in [2, 3] {
+                assert_eq!(parts(threads, count), of_one);
+            }
+            let mean = of_one.len() / count;
+            let sizes: Vec<_> = (0..count).map(|part| of_one.iter().filter(|&&of| of == part).count()).collect();
+            assert!(sizes.iter().all(|&size| size > mean / 3 && size < 3 * mean), "{count}: {sizes:?}");
+        }
+    }
+}
