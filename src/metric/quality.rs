@@ -159,7 +159,7 @@ mod tests {
         for ratio in [1.5, 1.23, 1.222, 1.22, 1.1, 1.01, 1.0 + 1e-5] {
             let expected = (ratio - 1.0) / f64::ln_1p(ratio - 1.0);
             assert!((mean_length(ratio, 1.0) / expected - 1.0).abs() < 1e-11, "{ratio}");
-            assert_eq!(mean_length(ratio, 1.0), mean_length(1.0, ratio));
+            assert!((mean_length(1.0, ratio) / expected - 1.0).abs() < 1e-11, "{ratio}");
         }
         assert_eq!((mean_length(0.7, 0.7), mean_length(0.0, 0.0)), (0.7, 0.0));
     }

@@ -16,9 +16,9 @@ const REACH: f64 = 100.0;
 const SLACK: f64 = 4.0;
 /// The closest point of a face is a foot if this share of the way there at most is across the normal (30°): else the point lies beside the face.
 const BESIDE: f64 = 0.5;
-/// A wall is hidden by another that is no farther than this share of the way, and whose normal makes
+/// A wall is hidden by another that is no farther than this share of the way, if both look alike ([`ALIKE`]).
 const NEARER: f64 = 0.5;
-/// at most 45° with that of the wall, one way or the other.
+/// Walls look alike whose normals make 45° at most, one way or the other.
 const ALIKE: f64 = 0.7;
 /// A share of the model's diagonal: as exact are closest points.
 const EXACT: f64 = 1e-9;
@@ -30,9 +30,9 @@ pub struct Wall {
     pub normal: Vec3,
     /// How far the foot is.
     distance: f64,
-    /// Principal directions, unit vectors across the normal,
+    /// Principal directions, unit vectors across the normal.
     pub directions: [Vec3; 2],
-    /// and the radii of curvature along them of the surface through the point that is parallel to the wall; infinite where that is flat. A surface
+    /// The radii of curvature along them of the surface through the point that is parallel to the wall; infinite where that is flat. A surface
     /// at the distance s along the normal of one with the curvature κ has the radius |1 − s κ|/|κ|.
     pub radii: [f64; 2],
 }
