@@ -81,7 +81,7 @@ pub fn extract(
     let mut classification = Classification {
         entities: at(team, &vertices, |v| store.entity(v)),
         parameters: at(team, &vertices, |v| store.parameters(v)),
-        projected: mesh.vertices.clone(),
+        projected: at(team, &vertices, |v| store.position(v)),
         ridges: ridges(team, store, renumber),
         faces: triangles.iter().map(|triangle| triangle.face).collect(),
     };

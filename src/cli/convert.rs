@@ -52,10 +52,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut files = Files::new().reads_any([input]).reads(fields).reads(names);
     let target = files.writes_any(output, "the output")?;
     let pool = super::pool()?;
-    let read = formats::read(input)?;
+    let team = Team::new(&pool, Plan::default());
+    let read = formats::read_on(team, input)?;
     let (mut data, mut notices) = (read.content, read.notices);
     if let Some(path) = fields {
-        notices.extend(formats::read_fields(path, &mut data)?);
+        notices.extend(formats::read_fields_on(team, path, &mut data)?);
     }
     if let Some(path) = names {
         data.names = names::read_file(path)?;
@@ -68,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         data.mesh.association = Default::default();
     }
     let mut outputs = Outputs::new();
-    let lost = outputs.dataset(Team::new(&pool, Plan::default()), &target, &data, Options { text: *text })?;
+    let lost = outputs.dataset(team, &target, &data, Options { text: *text })?;
     outputs.commit()?;
     notices.iter().for_each(crate::cli::note);
     lost.iter().for_each(|notice| crate::cli::note(format_args!("{}: {notice}", output.display())));

@@ -1,5 +1,6 @@
 //! Short forms for the errors of files.
-use crate::mesh::io::{Error, read_file};
+use crate::mesh::io::{Error, read_file_on};
+use crate::tasks::Team;
 use std::path::Path;
 
 /// Wrong content at a place of a file.
@@ -14,7 +15,12 @@ pub(super) fn short(name: &str) -> String {
 
 /// The bytes of a file. An empty file is an error here: what the reader of a format would say of it does not help.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    let bytes = read_file(path)?;
+    read_on(Team::alone(), path)
+}
+
+/// As [`read`], on the threads of a team.
+pub(super) fn read_on(team: Team<'_>, path: &Path) -> Result<Vec<u8>, Error> {
+    let bytes = read_file_on(team, path)?;
     if bytes.is_empty() {
         return Err(at(path, "byte 0", "the file is empty; write it again"));
     }

@@ -6,28 +6,28 @@ use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 
 /// Reads a mesh.
-pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
-    let Read { content: mesh, notices } = io::mesh_of_bytes(path, bytes)?;
+pub(super) fn read(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
+    let Read { content: mesh, notices } = io::mesh_of_bytes(team, path, bytes)?;
     Ok(Read { content: Dataset { mesh, ..Dataset::default() }, notices })
 }
 
 /// Reads the names and the fields that lie beside a mesh.
-pub(super) fn read_beside(path: &Path, read: &mut Read<Dataset>) -> Result<(), Error> {
+pub(super) fn read_beside(team: Team<'_>, path: &Path, read: &mut Read<Dataset>) -> Result<(), Error> {
     read.content.names = names::read(path)?;
-    let Read { content, notices } = fields_beside(path, read.content.mesh.vertices.len())?;
+    let Read { content, notices } = fields_beside(team, path, read.content.mesh.vertices.len())?;
     read.content.fields = content;
     read.notices.extend(notices);
     Ok(())
 }
 
 /// Reads the fields that lie beside a mesh of so many vertices; a solution of another number of vertices is not its own.
-pub(super) fn fields_beside(path: &Path, vertices: usize) -> Result<Read<Vec<NamedField>>, Error> {
+pub(super) fn fields_beside(team: Team<'_>, path: &Path, vertices: usize) -> Result<Read<Vec<NamedField>>, Error> {
     let Some(beside) = ["solb", "sol"].map(|end| path.with_extension(end)).into_iter().find(|path| path.exists())
     else {
         return Ok(Read { content: Vec::new(), notices: Vec::new() });
     };
-    let bytes = error::read(&beside)?;
-    let solution = io::solution_of_bytes(&beside, &bytes)?;
+    let bytes = error::read_on(team, &beside)?;
+    let solution = io::solution_of_bytes(team, &beside, &bytes)?;
     let found = solution.content.vertices;
     if found != vertices {
         let (beside, mesh) = (beside.display(), path.display());
@@ -38,8 +38,13 @@ pub(super) fn fields_beside(path: &Path, vertices: usize) -> Result<Read<Vec<Nam
 }
 
 /// Reads a solution for so many vertices, with the names that lie beside.
-pub(super) fn read_solution(path: &Path, bytes: &[u8], vertices: usize) -> Result<Read<Vec<NamedField>>, Error> {
-    let Read { content, notices } = io::solution_of_bytes(path, bytes)?;
+pub(super) fn read_solution(
+    team: Team<'_>,
+    path: &Path,
+    bytes: &[u8],
+    vertices: usize,
+) -> Result<Read<Vec<NamedField>>, Error> {
+    let Read { content, notices } = io::solution_of_bytes(team, path, bytes)?;
     if content.vertices != vertices {
         let message =
             format!("values at {} vertices, and the mesh has {vertices}; give the file of this mesh", content.vertices);
@@ -63,7 +68,7 @@ fn named(path: &Path, solution: Solution) -> Result<Vec<NamedField>, Error> {
 
 /// Writes a mesh; its fields and names beside it.
 pub(super) fn write(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
-    io::add_mesh(batch, path, &data.mesh)?;
+    io::add_mesh(batch, team, path, &data.mesh)?;
     let mut notices = Vec::new();
     let beside = solution_path(path);
     if !data.fields.is_empty() {

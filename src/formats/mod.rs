@@ -59,16 +59,24 @@ pub struct Options {
 /// # Errors
 /// [`Error::System`] when a file cannot be read, [`Error::Content`] when what it says cannot be true, or is not for us.
 pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
+    read_on(Team::alone(), path)
+}
+
+/// As [`read`], on the threads of a team, as far as the format allows: the same mesh.
+///
+/// # Errors
+/// As there.
+pub fn read_on(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, Error> {
     if matches!(Format::of(path), Ok(Format::Foam)) {
         let read = foam::read(path)?;
-        check::check(path, &read.content)?;
+        check::check(team, path, &read.content)?;
         return Ok(read);
     }
-    let bytes = error::read(path)?;
+    let bytes = error::read_on(team, path)?;
     let format = Format::of_input(path, &bytes)?;
-    let mut read = read_bytes(format, path, &bytes)?;
+    let mut read = read_bytes_on(team, format, path, &bytes)?;
     match format {
-        Format::Libmeshb => libmeshb::read_beside(path, &mut read)?,
+        Format::Libmeshb => libmeshb::read_beside(team, path, &mut read)?,
         Format::Ugrid(_) => ugrid::read_beside(path, &mut read.content.names)?,
         _ => {}
     }
@@ -80,8 +88,12 @@ pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
 /// # Errors
 /// [`Error::Content`], as there.
 pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
+    read_bytes_on(Team::alone(), format, path, bytes)
+}
+
+fn read_bytes_on(team: Team<'_>, format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     let mut read = match format {
-        Format::Libmeshb => libmeshb::read(path, bytes)?,
+        Format::Libmeshb => libmeshb::read(team, path, bytes)?,
         Format::Su2 => su2::read(path, bytes)?,
         Format::Vtu => vtu::read(path, bytes)?,
         Format::Xdmf { .. } => xdmf::read(path, bytes)?,
@@ -99,9 +111,9 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
         }
     };
     check::drop_endless(path, &mut read.content.fields, &mut read.notices);
-    check::check(path, &read.content)?;
+    check::check(team, path, &read.content)?;
     read.notices
-        .extend(orientation::unify(&mut read.content.mesh).map(|notice| format!("{}: {notice}", path.display())));
+        .extend(orientation::unify(team, &mut read.content.mesh).map(|notice| format!("{}: {notice}", path.display())));
     Ok(read)
 }
 
@@ -110,7 +122,7 @@ pub fn read_bytes(format: Format, path: &Path, bytes: &[u8]) -> Result<Read<Data
 /// # Errors
 /// As [`read`].
 pub fn fields_beside(path: &Path, vertices: usize) -> Result<Read<Vec<NamedField>>, Error> {
-    libmeshb::fields_beside(path, vertices)
+    libmeshb::fields_beside(Team::alone(), path, vertices)
 }
 
 /// The files that [`read`] reads: the mesh and what belongs to it, whether it is there or not.
@@ -146,15 +158,23 @@ pub fn written_files(path: &Path) -> Result<Vec<PathBuf>, Error> {
 /// # Errors
 /// As [`read`]; and where the file is of a mesh with other vertices.
 pub fn read_fields(path: &Path, data: &mut Dataset) -> Result<Vec<String>, Error> {
-    let bytes = error::read(path)?;
+    read_fields_on(Team::alone(), path, data)
+}
+
+/// As [`read_fields`], on the threads of a team, as far as the format allows: the same fields.
+///
+/// # Errors
+/// As there.
+pub fn read_fields_on(team: Team<'_>, path: &Path, data: &mut Dataset) -> Result<Vec<String>, Error> {
+    let bytes = error::read_on(team, path)?;
     let mut read = match Format::of(path)? {
-        Format::Solution => libmeshb::read_solution(path, &bytes, data.mesh.vertices.len())?,
+        Format::Solution => libmeshb::read_solution(team, path, &bytes, data.mesh.vertices.len())?,
         Format::Table | Format::Restart => columns::read(path, &bytes, &data.mesh.vertices)?,
         _ => return Err(error::at(path, "extension", "no file of fields; give .sol, .solb, .csv or .dat")),
     };
     check::drop_endless(path, &mut read.content, &mut read.notices);
     data.fields = read.content;
-    check::check(path, data)?;
+    check::check(team, path, data)?;
     Ok(read.notices)
 }
 
@@ -190,7 +210,7 @@ pub fn add(
     options: Options,
 ) -> Result<Vec<String>, Error> {
     let format = Format::of(path)?;
-    check::check(path, data)?;
+    check::check(team, path, data)?;
     let mut notices = unsupported::notices(format, data);
     notices.extend(match format {
         Format::Libmeshb => libmeshb::write(batch, team, path, data)?,

@@ -1,5 +1,5 @@
 //! A tree of boxes for nearest-item searches.
-use super::vector::Vec3;
+use super::vector::{Vec3, add};
 use crate::tasks::{GRAIN, Team};
 use std::ops::Range;
 
@@ -24,17 +24,31 @@ pub struct BoxTree {
 
 impl BoxTree {
     /// Over `count` > 0 items with boxes `bounds_of(item)`.
-    pub fn new(count: usize, bounds_of: impl Fn(u32) -> Bounds) -> Self {
-        let boxes: Vec<Bounds> = (0..count as u32).map(bounds_of).collect();
-        let mut items: Vec<u32> = (0..count as u32).collect();
+    pub fn new(count: usize, bounds_of: impl Fn(u32) -> Bounds + Sync) -> Self {
+        Self::on(Team::alone(), count, bounds_of)
+    }
+
+    /// As [`BoxTree::new`], on the threads of a team: the same tree.
+    pub fn on(team: Team<'_>, count: usize, bounds_of: impl Fn(u32) -> Bounds + Sync) -> Self {
+        let boxes = team.map(GRAIN, count, |item| bounds_of(item as u32));
         let mut levels = 0;
         while count.div_ceil(1 << levels) > LEAF {
             levels += 1;
         }
-        let mut bounds = vec![[[0.0; 3]; 2]; (2 << levels) - 1];
-        let middles: Vec<Vec3> = boxes.iter().map(|[low, high]| [0, 1, 2].map(|i| low[i] + high[i])).collect();
-        build(0, &mut items, &boxes, &middles, &mut bounds);
-        Self { items, bounds }
+        let mut items: Vec<u32> = (0..count as u32).collect();
+        let middles = team.map(GRAIN, count, |item| add(boxes[item][0], boxes[item][1]));
+        order(team, &mut items, &middles, levels);
+        let mut tree = Self { items, bounds: vec![NOTHING; (2 << levels) - 1] };
+        let (ranges, inner) = (tree.ranges(), tree.bounds.len() / 2);
+        team.fill(GRAIN, &mut tree.bounds[inner..], |start, leaves| {
+            for (bounds, range) in leaves.iter_mut().zip(&ranges[inner + start..]) {
+                *bounds = tree.items[range.clone()].iter().fold(NOTHING, |all, &item| join(all, boxes[item as usize]));
+            }
+        });
+        for node in (0..inner).rev() {
+            tree.bounds[node] = join(tree.bounds[2 * node + 1], tree.bounds[2 * node + 2]);
+        }
+        tree
     }
 
     /// Visits the items whose boxes lie nearer to p than a bound (squared distance), near ones first; `visit` returns the new bound.
@@ -150,8 +164,14 @@ impl BoxTree {
 /// The places of a node's two children.
 #[inline(always)]
 fn halves(range: &Range<usize>) -> (Range<usize>, Range<usize>) {
-    let middle = range.start + range.len().div_ceil(2);
+    let middle = range.start + half(range.len());
     (range.start..middle, middle..range.end)
+}
+
+/// Items of the first child of a node of so many.
+#[inline(always)]
+fn half(count: usize) -> usize {
+    count.div_ceil(2)
 }
 
 /// Whether two boxes touch.
@@ -160,24 +180,40 @@ pub fn overlap(a: &Bounds, b: &Bounds) -> bool {
     (0..3).all(|i| a[0][i] <= b[1][i] && b[0][i] <= a[1][i])
 }
 
-/// Fills the bounds of a node and orders its items, halved along the longest side of the box of their middles (twice them: `middles`).
-fn build(node: usize, items: &mut [u32], boxes: &[Bounds], middles: &[Vec3], bounds: &mut [Bounds]) {
-    if 2 * node + 2 >= bounds.len() {
-        let all = items.iter().map(|&item| boxes[item as usize]);
-        bounds[node] = all.fold(NOTHING, join);
-        return;
+/// Orders the items of a tree of so many levels below its root: level by level as long as they are many, which all threads share, then
+/// a branch a task. `middles` are twice the middles of the boxes.
+fn order(team: Team<'_>, items: &mut [u32], middles: &[Vec3], mut levels: usize) {
+    let mut branches = vec![items];
+    while levels > 0 && branches[0].len() > GRAIN {
+        team.fill(1, &mut branches, |_, branches| branches.iter_mut().for_each(|items| halve(items, middles)));
+        branches =
+            branches.into_iter().flat_map(|items| <[_; 2]>::from(items.split_at_mut(half(items.len())))).collect();
+        levels -= 1;
     }
+    team.fill(1, &mut branches, |_, branches| {
+        branches.iter_mut().for_each(|items| order_branch(items, middles, levels));
+    });
+}
+
+/// Orders the items of a branch of so many levels.
+fn order_branch(items: &mut [u32], middles: &[Vec3], levels: usize) {
+    if levels > 0 {
+        halve(items, middles);
+        let (left, right) = items.split_at_mut(half(items.len()));
+        order_branch(left, middles, levels - 1);
+        order_branch(right, middles, levels - 1);
+    }
+}
+
+/// Orders the items of a node so that each child has one half of them, along the longest side of the box of their middles.
+fn halve(items: &mut [u32], middles: &[Vec3]) {
     let [low, high] = items.iter().fold(NOTHING, |all, &item| join(all, [middles[item as usize]; 2]));
     let axis = (0..3).max_by(|&i, &j| (high[i] - low[i]).total_cmp(&(high[j] - low[j]))).unwrap_or(0);
     let key = |item: u32| middles[item as usize][axis];
-    let middle = items.len().div_ceil(2);
+    let middle = half(items.len());
     if middle < items.len() {
         items.select_nth_unstable_by(middle, |&a, &b| key(a).total_cmp(&key(b)));
     }
-    let (left, right) = items.split_at_mut(middle);
-    build(2 * node + 1, left, boxes, middles, bounds);
-    build(2 * node + 2, right, boxes, middles, bounds);
-    bounds[node] = join(bounds[2 * node + 1], bounds[2 * node + 2]);
 }
 
 /// The box of no item.
@@ -198,6 +234,20 @@ fn square_distance(p: Vec3, [low, high]: &Bounds) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tasks::{Plan, Pool};
+
+    #[test]
+    fn threads_make_the_same_tree() {
+        let pool = Pool::new(3).unwrap();
+        // Many middles are equal.
+        let low = |item: u32| [0, 1, 2].map(|i| f64::from(item.wrapping_mul([7919, 104_729, 1_299_709][i]) % 50));
+        let bounds = |item: u32| [low(item), low(item).map(|x| x + 3.0)];
+        for count in [1, 5, GRAIN, 5 * GRAIN + 3] {
+            let (alone, team) = (BoxTree::new(count, bounds), Team::new(&pool, Plan::default()));
+            let tree = BoxTree::on(team, count, bounds);
+            assert!(tree.items == alone.items && tree.bounds == alone.bounds, "{count}");
+        }
+    }
 
     #[test]
     fn each_pair_is_found_once() {

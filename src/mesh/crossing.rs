@@ -68,7 +68,7 @@ pub fn crossings_of(
     let is_safe = |v: u32, other: &[u32; 3]| unfolded[v as usize] && other.contains(&v);
     let bounds = |i: u32| bounds(&corners(i as usize));
     let asked: Vec<bool> = (0..count).map(is_asked).collect();
-    let tree = BoxTree::new(count, bounds);
+    let tree = BoxTree::on(team, count, bounds);
     let parts = tree.overlapping_pairs(
         team,
         bounds,

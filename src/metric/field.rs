@@ -68,9 +68,9 @@ impl Field {
     ///
     /// # Errors
     /// [`Error::NotHeld`] when a tensor is not positive definite in doubles.
-    pub fn solution(&self, path: &Path) -> Result<Solution, Error> {
+    pub fn solution(&self, team: Team<'_>, path: &Path) -> Result<Solution, Error> {
         let held = |m: Sym3| if m.is_held() { Ok(m) } else { Err(m.sizes()) };
-        tensors(Team::alone(), path, self.metrics.len(), |v| held(self.metrics[v]))
+        tensors(team, path, self.metrics.len(), |v| held(self.metrics[v]))
     }
 
     /// M = exp of these logarithms as a file holds it; `path` is what errors say.
@@ -87,7 +87,7 @@ impl Field {
     /// When the file cannot be written, and [`Error::NotHeld`] when a tensor is not positive definite in doubles.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         let mut batch = Batch::new();
-        self.add(&mut batch, path)?;
+        self.add(&mut batch, Team::alone(), path)?;
         Ok(batch.commit()?)
     }
 
@@ -113,8 +113,8 @@ impl Field {
     ///
     /// # Errors
     /// As there.
-    pub fn add(&self, batch: &mut Batch, path: &Path) -> Result<(), Error> {
-        Ok(io::add_solution(batch, Team::alone(), path, &self.solution(path)?)?)
+    pub fn add(&self, batch: &mut Batch, team: Team<'_>, path: &Path) -> Result<(), Error> {
+        Ok(io::add_solution(batch, team, path, &self.solution(team, path)?)?)
     }
 }
 

@@ -74,6 +74,12 @@ impl<'p> Team<'p> {
         }
     }
 
+    /// The first item that is asked for.
+    pub fn first(self, grain: usize, items: usize, is_asked: impl Fn(usize) -> bool + Sync) -> Option<usize> {
+        let found = self.chunks(grain, items, |mut range| range.find(|&item| is_asked(item)));
+        found.into_iter().flatten().next()
+    }
+
     /// Sum of `f` over the chunks, in their order.
     pub fn sum(self, grain: usize, items: usize, f: impl Fn(Range<usize>) -> f64 + Sync) -> f64 {
         self.chunks(grain, items, f).into_iter().sum()

@@ -35,14 +35,15 @@ pub fn by_first(team: Team<'_>, tets: usize, vertices: usize, first: impl Fn(usi
 }
 
 /// For each old number below `bound` its place in an order, as an id; `NONE` for numbers that are not in the order.
-pub fn inverse<I>(team: Team<'_>, order: &[u32], bound: usize, id: impl Fn(u32) -> I) -> Vec<I> {
-    let places: Vec<_> = (0..bound).map(|_| AtomicU32::new(u32::MAX)).collect();
+pub fn inverse<I: Copy + Send>(team: Team<'_>, order: &[u32], bound: usize, id: impl Fn(u32) -> I + Sync) -> Vec<I> {
+    // From 1, and 0 where there is none: zeroed memory costs nothing until it is used.
+    let places: Vec<AtomicU32> = bytemuck::allocation::zeroed_vec(bound);
     team.for_each(GRAIN, order.len(), |range| {
         for new in range {
-            places[order[new] as usize].store(new as u32, Relaxed);
+            places[order[new] as usize].store(new as u32 + 1, Relaxed);
         }
     });
-    places.into_iter().map(|place| id(place.into_inner())).collect()
+    team.map(GRAIN, bound, |old| id(places[old].load(Relaxed).wrapping_sub(1)))
 }
 
 #[cfg(test)]

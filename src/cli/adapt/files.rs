@@ -66,9 +66,9 @@ impl Targets {
         let field = Field { metrics: std::mem::take(&mut report.metrics) };
         let mut data = Dataset { mesh: std::mem::take(&mut report.mesh), names: report.names.clone(), fields: vec![] };
         match &self.metric {
-            Some(target) => outputs.metric(target, &field)?,
+            Some(target) => outputs.metric(team, target, &field)?,
             None => {
-                let values = field.solution(self.mesh.path())?.fields.into_iter().flat_map(|field| field.values);
+                let values = field.solution(team, self.mesh.path())?.fields.into_iter().flat_map(|field| field.values);
                 let (name, kind) = (METRIC.into(), FieldKind::SymmetricTensor);
                 data.fields.push(NamedField { name, kind, values: values.collect() });
             }

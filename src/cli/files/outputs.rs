@@ -42,7 +42,7 @@ impl Outputs {
             let lost = self.dataset(team, to, data, Options::default())?;
             return Ok(named(to, lost));
         }
-        io::add_mesh(&mut self.batch, &to.path, &data.mesh)?;
+        io::add_mesh(&mut self.batch, team, &to.path, &data.mesh)?;
         names::add(&mut self.batch, &to.path, &data.names, &[])?;
         Ok(Vec::new())
     }
@@ -95,8 +95,8 @@ impl Outputs {
     }
 
     /// A metric beside a mesh: .sol or .solb.
-    pub fn metric(&mut self, to: &Target, field: &Field) -> Done {
-        Ok(field.add(&mut self.batch, &to.path)?)
+    pub fn metric(&mut self, team: Team<'_>, to: &Target, field: &Field) -> Done {
+        Ok(field.add(&mut self.batch, team, &to.path)?)
     }
 
     /// A file that is there already, say in a folder that goes with the run.

@@ -14,7 +14,7 @@ type Failure = Box<dyn std::error::Error>;
 /// is asked for by its name.
 pub fn mesh(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, io::Error> {
     if Format::of_file(path)? != Format::Libmeshb {
-        return formats::read(path);
+        return formats::read_on(team, path);
     }
     let Read { content: mesh, notices } = io::read_mesh_on(team, path)?;
     Ok(Read { content: Dataset { mesh, names: names::read(path)?, fields: Vec::new() }, notices })
@@ -106,11 +106,11 @@ pub fn fields(team: Team<'_>, asked: &Path, carrier: Carrier<'_>) -> Result<Read
         Format::Table | Format::Restart => {
             let mut data = Dataset::default();
             data.mesh.vertices = carrier.vertices.to_vec();
-            let notices = formats::read_fields(asked, &mut data)?;
+            let notices = formats::read_fields_on(team, asked, &mut data)?;
             Ok(Read { content: Fields::named(data.fields, carrier.vertices.len()), notices })
         }
         _ => {
-            let Read { content: Dataset { mesh, names, fields }, notices } = formats::read(asked)?;
+            let Read { content: Dataset { mesh, names, fields }, notices } = formats::read_on(team, asked)?;
             if fields.is_empty() {
                 let message = "no field at the vertices; give a file of fields, or a mesh with fields in its file";
                 return Err(format!("{}: {message}", asked.display()).into());

@@ -17,6 +17,7 @@ use super::{Dataset, error};
 use crate::geometry::{Label, Names};
 use crate::mesh::io::{Error, Read};
 use crate::mesh::{Elements, TetMesh};
+use crate::tasks::Team;
 use source::{Encoding, Source};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -79,7 +80,7 @@ pub fn read_msh(path: &Path) -> Result<TetMesh, Error> {
         return Err(error::at(path, "Elements", "no tetrahedra in it"));
     }
     compact(&mut mesh, |mesh, keep| mesh.tets.nodes.as_flattened().iter().for_each(|&v| keep(v)));
-    orientation::unify(&mut mesh);
+    orientation::unify(Team::alone(), &mut mesh);
     Ok(mesh)
 }
 

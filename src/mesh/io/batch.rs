@@ -1,9 +1,12 @@
 //! Writing files so that each is either the old one or the whole new one, and those that belong together change together.
 use super::Error;
+use super::layout::To;
 use super::place::{Place, Temporary, create_file, folder_of, new_beside, refusal};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// How long to wait for another run that renames files in the same folder, which takes it microseconds.
@@ -28,10 +31,17 @@ pub struct Batch {
 struct Staged {
     from: Temporary,
     to: PathBuf,
+    sync: Option<Syncing>,
 }
 
-/// What writes the bytes of a file.
-type Content<'a> = &'a mut dyn FnMut(&mut dyn Write) -> io::Result<()>;
+/// Brings a file to the disk while others are written: what it comes to.
+type Syncing = JoinHandle<io::Result<()>>;
+
+/// What writes the bytes of a file, called once.
+type Content<'a> = &'a mut dyn FnMut(To<'_>) -> io::Result<()>;
+
+/// Bytes that are gathered for a file before they are written.
+const BUFFER: usize = 1 << 18;
 
 impl Batch {
     /// An empty batch.
@@ -44,9 +54,7 @@ impl Batch {
     /// # Errors
     /// [`Error::System`] when the folder does not exist, the file is read-only, or writing fails.
     pub fn add(&mut self, path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
-        let staged = self.stage(path, write).map_err(|error| Error::system(path, error))?;
-        self.files.extend(staged);
-        Ok(())
+        self.add_laid_out(path, false, |to| in_order(to, write))
     }
 
     /// As [`Batch::add`], of the file that the others belong to: it is renamed last.
@@ -54,8 +62,20 @@ impl Batch {
     /// # Errors
     /// As there.
     pub fn add_main(&mut self, path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
-        let staged = self.stage(path, write).map_err(|error| Error::system(path, error))?;
-        self.main.extend(staged);
+        self.add_laid_out(path, true, |to| in_order(to, write))
+    }
+
+    /// As [`Batch::add`] or [`Batch::add_main`], by what may write the file at any place.
+    pub(super) fn add_laid_out(
+        &mut self,
+        path: &Path,
+        is_main: bool,
+        write: impl FnOnce(To<'_>) -> io::Result<()>,
+    ) -> Result<(), Error> {
+        let mut write = Some(write);
+        let mut content = |to: To<'_>| write.take().map_or(Ok(()), |write| write(to));
+        let staged = self.stage(path, &mut content).map_err(|error| Error::system(path, error))?;
+        if is_main { &mut self.main } else { &mut self.files }.extend(staged);
         Ok(())
     }
 
@@ -76,8 +96,13 @@ impl Batch {
     /// Gives the files their names.
     ///
     /// # Errors
-    /// [`Error::System`] when one cannot be removed or renamed.
+    /// [`Error::System`] when one cannot be brought to the disk, removed or renamed.
     pub fn commit(mut self) -> Result<(), Error> {
+        for Staged { to, sync, .. } in self.files.iter_mut().chain(&mut self.main) {
+            let Some(sync) = sync.take() else { continue };
+            let synced = sync.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            synced.map_err(|error| Error::system(to, error))?;
+        }
         let (files, main) = (std::mem::take(&mut self.files), std::mem::take(&mut self.main));
         let folders = std::mem::take(&mut self.folders);
         let all = files.len() + main.len() + folders.len() + self.old.len();
@@ -90,38 +115,38 @@ impl Batch {
                 _ => {}
             }
         }
-        for Staged { from, to } in files.into_iter().chain(main).chain(folders) {
+        for Staged { from, to, .. } in files.into_iter().chain(main).chain(folders) {
             from.rename(&to).map_err(|error| Error::system(&to, error))?;
         }
         Ok(())
     }
 
     /// Writes the bytes. Returns what is to be renamed, if anything.
-    fn stage(&self, path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Option<Staged>> {
-        let mut write = Some(write);
-        let mut content = |to: &mut dyn Write| write.take().map_or(Ok(()), |write| write(to));
+    fn stage(&self, path: &Path, content: Content<'_>) -> io::Result<Option<Staged>> {
         if let Some(inside) = self.inside(path) {
             // Its folder is renamed.
-            return fill(File::create(inside)?, &mut content).map(|_| None);
+            let file = File::create(inside)?;
+            content(To::File(&file))?;
+            return file.sync_all().map(|()| None);
         }
         match Place::of(path)? {
             Place::Device => {
                 let mut file = BufWriter::new(OpenOptions::new().write(true).open(path)?);
-                content(&mut file)?;
+                content(To::Stream(&mut file))?;
                 file.flush().map(|()| None)
             }
             Place::Stdout => {
                 let mut out = io::stdout().lock();
-                content(&mut out)?;
+                content(To::Stream(&mut out))?;
                 out.flush().map(|()| None)
             }
             Place::File { path, before } => {
                 let (file, from) = new_beside(&path, create_file)?;
-                let file = fill(file, &mut content)?;
+                content(To::File(&file))?;
                 if let Some(before) = before {
                     file.set_permissions(before.permissions())?;
                 }
-                Ok(Some(Staged { from, to: path }))
+                Ok(Some(Staged { from, to: path, sync: synced(file)? }))
             }
         }
     }
@@ -149,18 +174,34 @@ impl Batch {
         }
         let ((), from) = new_beside(top, |path| fs::create_dir(path))?;
         fs::create_dir_all(from.path.join(below))?;
-        self.folders.push(Staged { from, to: top.to_owned() });
+        self.folders.push(Staged { from, to: top.to_owned(), sync: None });
         Ok(())
     }
 }
 
-/// Writes the bytes and syncs them: a full disk may refuse them only then.
-fn fill(file: File, write: Content<'_>) -> io::Result<File> {
-    let mut buffered = BufWriter::with_capacity(1 << 18, file);
-    write(&mut buffered)?;
-    let file = buffered.into_inner().map_err(io::IntoInnerError::into_error)?;
-    file.sync_all()?;
-    Ok(file)
+/// Stack of a thread that waits for the disk, bytes.
+const STACK: usize = 1 << 16;
+
+/// Syncs a file: a full disk may refuse its bytes only then. A thread waits for that, where one can be had.
+fn synced(file: File) -> io::Result<Option<Syncing>> {
+    let file = Arc::new(file);
+    let own = Arc::clone(&file);
+    match Builder::new().stack_size(STACK).spawn(move || own.sync_all()) {
+        Ok(sync) => Ok(Some(sync)),
+        Err(_) => file.sync_all().map(|()| None),
+    }
+}
+
+/// Calls what writes from front to back.
+fn in_order(to: To<'_>, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    match to {
+        To::File(file) => {
+            let mut buffered = BufWriter::with_capacity(BUFFER, file);
+            write(&mut buffered)?;
+            buffered.into_inner().map(drop).map_err(io::IntoInnerError::into_error)
+        }
+        To::Stream(stream) => write(stream),
+    }
 }
 
 /// The right to rename files in a folder. Where the system has no such lock, or another process holds it all the time, we do without.

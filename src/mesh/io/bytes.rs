@@ -39,8 +39,11 @@ pub fn read_head(path: &Path, most: usize) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
-/// All bytes of a file; of a large one every thread of the team reads parts.
-pub(super) fn of_file(team: Team<'_>, path: &Path) -> Result<Vec<u8>, Error> {
+/// As [`read_file`]; of a large one every thread of the team reads parts.
+///
+/// # Errors
+/// As there.
+pub fn read_file_on(team: Team<'_>, path: &Path) -> Result<Vec<u8>, Error> {
     check_regular(path)?;
     match in_parts(team, path) {
         Some(bytes) => Ok(bytes),
@@ -95,8 +98,10 @@ mod tests {
         for size in [0, 5, (9 << 20) + 7] {
             let bytes: Vec<u8> = (0..size).map(|i: usize| (i * 31 % 251) as u8).collect();
             std::fs::write(&path, &bytes).unwrap();
-            assert!(of_file(team, &path).unwrap() == bytes && of_file(Team::alone(), &path).unwrap() == bytes);
+            assert!(
+                read_file_on(team, &path).unwrap() == bytes && read_file_on(Team::alone(), &path).unwrap() == bytes
+            );
         }
-        assert!(of_file(team, &folder.path().join("none")).unwrap_err().to_string().contains("none: "));
+        assert!(read_file_on(team, &folder.path().join("none")).unwrap_err().to_string().contains("none: "));
     }
 }

@@ -1,7 +1,7 @@
 //! Mesh and solution files: libMeshb's .mesh/.meshb and .sol/.solb.
 //!
 //! Reading goes bytes → `source` (sections; found by `ascii` or `binary`) → `read` (arrays, through a `cursor`);
-//! writing goes arrays → `write` (checked) → `sink` → `batch`.
+//! writing goes arrays → `write` (checked) → `layout` (what stands where; `rows` by a `sink`) → `batch`.
 mod ascii;
 mod batch;
 mod binary;
@@ -9,18 +9,20 @@ mod bytes;
 mod cursor;
 mod error;
 mod keyword;
+mod layout;
 mod missing;
 pub mod number;
 mod place;
 mod points;
 mod read;
+mod rows;
 mod sink;
 mod solution;
 mod source;
 mod write;
 
 pub use batch::{Batch, write_beside};
-pub use bytes::{check_regular, read_file, read_head};
+pub use bytes::{check_regular, read_file, read_file_on, read_head};
 pub use error::Error;
 pub use missing::meant;
 pub use place::{check_writable, follow};
@@ -53,23 +55,23 @@ pub fn read_mesh(path: &Path) -> Result<Read<TetMesh>, Error> {
 /// # Errors
 /// As there.
 pub fn read_mesh_on(team: Team<'_>, path: &Path) -> Result<Read<TetMesh>, Error> {
-    read::mesh_from(team, path, &bytes::of_file(team, path)?)
+    read::mesh_from(team, path, &read_file_on(team, path)?)
 }
 
-/// As [`read_mesh`], from the bytes of such a file; `path` is what errors say.
+/// As [`read_mesh_on`], from the bytes of such a file; `path` is what errors say.
 ///
 /// # Errors
 /// As there.
-pub fn mesh_of_bytes(path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
-    read::mesh_from(Team::alone(), path, bytes)
+pub fn mesh_of_bytes(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
+    read::mesh_from(team, path, bytes)
 }
 
-/// As [`read_solution`], from the bytes of such a file; `path` is what errors say.
+/// As [`read_solution_on`], from the bytes of such a file; `path` is what errors say.
 ///
 /// # Errors
 /// As there.
-pub fn solution_of_bytes(path: &Path, bytes: &[u8]) -> Result<Read<Solution>, Error> {
-    read::solution_from(Team::alone(), path, bytes)
+pub fn solution_of_bytes(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<Solution>, Error> {
+    read::solution_from(team, path, bytes)
 }
 
 /// Writes .mesh or .meshb by the extension: beside the target first, then renamed.
@@ -79,16 +81,17 @@ pub fn solution_of_bytes(path: &Path, bytes: &[u8]) -> Result<Read<Solution>, Er
 /// [`Error::System`] when the file cannot be written.
 pub fn write_mesh(path: &Path, mesh: &TetMesh) -> Result<(), Error> {
     let mut batch = Batch::new();
-    add_mesh(&mut batch, path, mesh)?;
+    add_mesh(&mut batch, Team::alone(), path, mesh)?;
     batch.commit()
 }
 
-/// Adds .mesh or .meshb, as [`write_mesh`] writes it, to files that belong together: as the main one.
+/// Adds .mesh or .meshb, as [`write_mesh`] writes it, to files that belong together: as the main one. The team's threads write the same file
+/// to the last byte.
 ///
 /// # Errors
 /// As there.
-pub fn add_mesh(batch: &mut Batch, path: &Path, mesh: &TetMesh) -> Result<(), Error> {
-    write::mesh_to(batch, path, mesh)
+pub fn add_mesh(batch: &mut Batch, team: Team<'_>, path: &Path, mesh: &TetMesh) -> Result<(), Error> {
+    write::mesh_to(batch, team, path, mesh)
 }
 
 /// Reads .sol or .solb (fields at vertices), told apart by the content; every value finite.
@@ -104,7 +107,7 @@ pub fn read_solution(path: &Path) -> Result<Read<Solution>, Error> {
 /// # Errors
 /// As there.
 pub fn read_solution_on(team: Team<'_>, path: &Path) -> Result<Read<Solution>, Error> {
-    read::solution_from(team, path, &bytes::of_file(team, path)?)
+    read::solution_from(team, path, &read_file_on(team, path)?)
 }
 
 /// Writes .sol or .solb by the extension: beside the target first, then renamed.
