@@ -12,10 +12,10 @@ const VERTICES_PER_COMPLEXITY: f64 = 1.7;
 const VERTICES_PER_AREA: f64 = 0.5;
 
 /// A vertex that is made takes as long as so many mean ratios.
-const RATIOS_A_VERTEX: f64 = 5_000.0;
+const RATIOS_A_VERTEX: f64 = 3_000.0;
 
 /// A vertex that is given takes as long as this share of one that is made.
-const SHARE_OF_GIVEN: f64 = 0.08;
+const SHARE_OF_GIVEN: f64 = 0.13;
 
 /// Share of a thread that each further thread is worth.
 const WORTH_OF_THREAD: f64 = 0.9;
