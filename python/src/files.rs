@@ -71,7 +71,7 @@ fn write(team: Team<'_>, path: &Path, data: &Dataset) -> Result<Vec<String>, io:
         return formats::write_on(team, path, data, formats::Options::default());
     }
     let mut batch = Batch::new();
-    io::add_mesh(&mut batch, path, &data.mesh)?;
+    io::add_mesh(&mut batch, team, path, &data.mesh)?;
     names::add(&mut batch, path, &data.names, &[])?;
     batch.commit()?;
     Ok(Vec::new())
