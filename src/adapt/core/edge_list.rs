@@ -104,7 +104,7 @@ fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: impl Fn(f64,
     loop {
         let mut count = 0;
         for (slot, t) in some.iter_mut().zip(&mut changed) {
-            store.fetch_vertices(TetId(t.0 + FETCHED_AHEAD));
+            store.fetch_vertices(TetId(t.0.wrapping_add(FETCHED_AHEAD)));
             for (k, x) in store.vertices(t).into_iter().enumerate() {
                 let (p, m) = (store.position(x), store.metric(x).0);
                 (0..3).for_each(|i| lanes.points[k][i].0[count] = p[i]);

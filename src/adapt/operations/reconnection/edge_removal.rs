@@ -18,8 +18,8 @@ const LONG_RINGS_BELOW: f64 = 0.5;
 /// Tetrahedra below this mean ratio try rings of five. Of 30 that are measured one gains.
 const RINGS_OF_FIVE_BELOW: f64 = 0.75;
 
-/// By the length of a ring the mean of 1/Q − 1 of its tetrahedra below which it is left as it is: of those that are, one in a hundred would gain
-/// at most, and little. In one metric the tetrahedra that come cost 0.04, 0.10, 0.16 and 0.21 for each of a ring of 4 to 7 at the least.
+/// By the length of a ring the mean of 1/Q − 1 of its tetrahedra below which it is left as it is: few of these would gain, and little
+/// (docs/decisions/kernel-speed.md). In one metric the tetrahedra that come cost 0.04, 0.10, 0.16 and 0.21 for each of a ring of 4 to 7 at the least.
 const LEAST_COST: [f64; LONGEST_RING + 1] = [0.0, 0.0, 0.0, 0.15, 0.17, 0.26, 0.44, 0.56];
 
 /// A 2-2 flip of surface triangles, with their tags.
@@ -68,7 +68,7 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Topology);
         }
         let cost: f64 = shell.tets.iter().map(|&t| -mean_ratio_score(self.store.quality(t))).sum();
-        if cost < LEAST_COST[n] * n as f64 {
+        if criterion == Criterion::MeanRatio && cost < LEAST_COST[n] * n as f64 {
             return Err(Refusal::Shape);
         }
         let surface = self.surface_flip(a, b, shell)?;

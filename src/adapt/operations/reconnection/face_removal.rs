@@ -27,7 +27,11 @@ impl<A: Access> Worker<'_, '_, A> {
         if !self.goes_first(t, other) {
             return Err(Refusal::Stale);
         }
-        let cost: f64 = [t, other].iter().map(|&t| -mean_ratio_score(self.store.quality(t))).sum();
+        let cost = match criterion {
+            Criterion::MeanRatio => [t, other].iter().map(|&t| -mean_ratio_score(self.store.quality(t))).sum(),
+            // The others know no cost.
+            _ => f64::INFINITY,
+        };
         let several = cost > LEAST_COST_OF_SEVERAL && self.store.quality(t) < self.context.limits.several_below;
         let alone = cost >= LEAST_COST;
         if !alone && !several {
