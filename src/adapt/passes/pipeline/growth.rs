@@ -151,6 +151,9 @@ impl Pipeline<'_, '_> {
             // Without memory the mesh stays as large as it is.
             self.growth_end.get_or_insert(GrowthEnd::Memory);
         }
+        if new == 0 {
+            return;
+        }
         let live = self.live() as f64;
         let more = (self.expected - live).clamp(0.0, DONE * new as f64);
         self.context.store.map_pages(self.team(), more as usize, (USUAL_TETS * more) as usize);
