@@ -71,7 +71,7 @@ fn sorted_by_rank(edges: &[Classed], rank: impl Fn(&Classed) -> u32) -> (Vec<usi
     (starts, items)
 }
 
-/// So many tetrahedra before its turn the vertices of one are asked for.
+/// The vertices of a tetrahedron are asked for when it is so many places ahead.
 const FETCHED_AHEAD: u32 = 16;
 
 /// Least number of tetrahedra in a part. An edge is met once for each of its tetrahedra, and these are near each other in memory, so

@@ -205,8 +205,8 @@ impl Store {
             || capacities(needed, used + 3 * needed).any(|room| rehouse(team, &mut self.tets, used, room))
     }
 
-    /// Touches the memory of so many records beyond those that are used, on all threads: to give a page for the first time takes the system as long
-    /// as to fill it takes a sweep, and else the first part of the mesh that gets ids waits for all pages. Between sweeps only.
+    /// Writes to each page of so many records beyond those that are used, on all threads. The system gives memory when it is first written, which
+    /// takes long; without this the first part of the mesh that needs new ids would wait for all pages. Between sweeps only.
     pub fn map_pages(&self, team: Team<'_>, vertices: usize, tets: usize) {
         let pages = |used: usize, count: usize, len: usize, size: usize| {
             let records = used.min(len)..(used + count).min(len);

@@ -48,10 +48,10 @@ const PATIENCE: usize = 1;
 /// Most tetrahedra of a cavity from then on: inner vertices that are in the way to the model go.
 const LARGE_CAVITY: usize = 4096;
 
-/// The store is renumbered when it has grown by this factor.
-const OUT_OF_ORDER: usize = 2;
+/// The store is renumbered before insertions and stages when it has grown by this factor.
+const OUT_OF_ORDER: f64 = 2.0;
 
-/// Before the shapes it is renumbered when it has grown by this factor.
+/// The store is renumbered before the passes for the shapes when it has grown by this factor.
 const OUT_OF_PLACE: f64 = 1.2;
 
 /// Limits of the size passes: only what is bad is flipped and smoothed.
@@ -194,9 +194,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             return;
         }
         self.looked = [0; KINDS];
-        if self.context.store.tet_bound() as f64 > OUT_OF_PLACE * self.ordered as f64 {
-            self.reorder();
-        }
+        self.keep_order(OUT_OF_PLACE);
         self.limit(shape_limits());
         self.reconnect(Criterion::MeanRatio, 1);
         self.smooth();
@@ -257,9 +255,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         sum / count
     }
 
-    /// Renumbers the store, if it has grown much since it was last renumbered.
-    fn keep_order(&mut self) {
-        if self.context.store.tet_bound() > OUT_OF_ORDER * self.ordered {
+    /// Renumbers the store, if it has grown by more than this factor since it was last renumbered.
+    fn keep_order(&mut self, factor: f64) {
+        if self.context.store.tet_bound() as f64 > factor * self.ordered as f64 {
             self.reorder();
         }
     }

@@ -68,10 +68,10 @@ pub trait Item: Copy + Send + Sync {
     fn fetch(self, store: &Store, step: usize);
 }
 
-/// So many items before an item's turn its steps of [`Item::fetch`] are taken.
+/// How many places ahead an item is when each step of its [`Item::fetch`] is taken.
 const FETCHED_AHEAD: [usize; 3] = [8, 4, 2];
 
-/// Before an item's turn: takes a step of [`Item::fetch`] for some that come later, `ahead(n)` being the n-th after it.
+/// Takes a step of [`Item::fetch`] for some of the items that come next; `ahead(n)` is the n-th after the present one.
 #[inline(always)]
 fn fetch_ahead<I: Item>(store: &Store, ahead: impl Fn(usize) -> Option<I>) {
     for (step, distance) in FETCHED_AHEAD.into_iter().enumerate() {

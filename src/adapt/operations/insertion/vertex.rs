@@ -11,7 +11,7 @@ use crate::mesh::vector::{Vec3, sub};
 /// greater power the short edges are collapsed again at great cost; with a lesser one, very long edges stay beside coarse boundaries.
 const SHORT_FOR_LONG: f64 = 0.7;
 
-/// An edge too long by less than one over this has sizes at its ends that are nearly met.
+/// Where the greatest length allowed is at least this share of an edge's, the sizes at its ends are nearly met.
 const NEARLY_MET: f64 = 0.5;
 
 impl<A: Access> Worker<'_, '_, A> {
@@ -41,8 +41,8 @@ impl<A: Access> Worker<'_, '_, A> {
         })
     }
 
-    /// Whether a point on the edge a–b is nearer than the limit to a vertex of the edge's ring in the metrics of that vertex and of both ends: then it
-    /// is so in its own metric, which lies between theirs where sizes are nearly met.
+    /// Whether a point on an edge is too near to a vertex of the edge's ring, in the metrics of that vertex and of both ends. Where sizes are nearly
+    /// met, the metric at the point lies between these, and need not be asked.
     fn is_near_ring(&self, ends: [VertexId; 2], point: Vec3, limit: f64) -> bool {
         let square = limit * limit;
         let ends = ends.map(|v| self.store.metric(v));

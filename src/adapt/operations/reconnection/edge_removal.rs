@@ -18,8 +18,8 @@ const LONG_RINGS_BELOW: f64 = 0.5;
 /// Tetrahedra below this mean ratio try rings of five. Of 30 that are measured one gains.
 const RINGS_OF_FIVE_BELOW: f64 = 0.75;
 
-/// By the length of a ring the mean of 1/Q − 1 of its tetrahedra below which it is left as it is: few of these would gain, and little
-/// (docs/decisions/kernel-speed.md). In one metric the tetrahedra that come cost 0.04, 0.10, 0.16 and 0.21 for each of a ring of 4 to 7 at the least.
+/// A ring of n tetrahedra is tried only where the mean of their 1/Q − 1 is at least the n-th of these: below, few would gain, and little
+/// (docs/decisions/kernel-speed.md).
 const LEAST_COST: [f64; LONGEST_RING + 1] = [0.0, 0.0, 0.0, 0.15, 0.17, 0.26, 0.44, 0.56];
 
 /// A 2-2 flip of surface triangles, with their tags.

@@ -9,8 +9,8 @@ use crate::adapt::core::worker::Worker;
 use crate::mesh::vector::volume6;
 use crate::metric::lanes::LANES;
 
-/// Where two tetrahedra have a lesser sum of 1/Q − 1, the face between them is not removed alone. In one metric the three that come have 0.806 at the
-/// least; up to twice that one face in ten thousand gains.
+/// The face between two tetrahedra is removed alone only where their sum of 1/Q − 1 is at least this. That of the three that come is 0.806 at the
+/// least, if the metric is constant; up to twice that one face in ten thousand gains (docs/decisions/kernel-speed.md).
 const LEAST_COST: f64 = 1.6;
 
 /// Where two tetrahedra have a lesser sum of 1/Q − 1, faces beside theirs are not looked at: that hardly ever gains.

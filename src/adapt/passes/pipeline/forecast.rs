@@ -57,10 +57,9 @@ impl Pipeline<'_, '_> {
             store.live_tets_in(range).filter(move |t| t.0 % step == 0).flat_map(faces)
         };
         let all = self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, 1).count() as f64);
-        // Of a fine mesh only each so many-th tetrahedron is asked.
+        // Of a fine mesh only one tetrahedron in `step` is asked, for all.
         let step = (all / SAMPLES).max(1.0) as u32;
-        let count = self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, step).count() as f64);
-        let cuts = (SAMPLES / count.max(1.0)).sqrt().clamp(1.0, MOST_CUTS) as usize;
+        let cuts = (SAMPLES / all.max(1.0)).sqrt().clamp(1.0, MOST_CUTS) as usize;
         let of = |(t, i): (TetId, usize)| {
             let corners = FACE[i].map(|k| store.vertices(t)[k]);
             let [a, b, c] = corners.map(|v| store.position(v));
@@ -88,8 +87,7 @@ impl Pipeline<'_, '_> {
             let sum: f64 = centres.map(|x| area(&self.context.source.log_at(x, &mut hint))).sum();
             sides * sum / (cuts * cuts) as f64
         };
-        let asked = self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, step).map(of).sum());
-        asked * all / count.max(1.0)
+        f64::from(step) * self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, step).map(of).sum())
     }
 
     /// Says how much is done after a pass for the sizes: as much as there is of the way from the vertices that were given to those expected.

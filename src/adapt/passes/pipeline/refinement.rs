@@ -1,5 +1,5 @@
 //! Refinement: long edges are split, or points are created in another way, as long as the mesh may grow.
-use super::Pipeline;
+use super::{OUT_OF_ORDER, Pipeline};
 use crate::adapt::core::edge_list;
 use crate::adapt::core::edge_list::EdgeItem;
 use crate::adapt::core::measure::is_longer;
@@ -34,7 +34,7 @@ impl Pipeline<'_, '_> {
         if !self.may_grow() {
             return;
         }
-        self.keep_order();
+        self.keep_order(OUT_OF_ORDER);
         let mut items = self.long_edges();
         self.no_more_than_allowed(&mut items);
         if !self.observer.stop() && self.sweep(Kind::Split, &Split, &items).done > 0 {

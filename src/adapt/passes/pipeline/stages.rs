@@ -1,7 +1,7 @@
 //! Stages: where a metric asks for cells many times flatter than those of the mesh, the mesh comes to it step by step.
 //!
 //! What that saves, and how the limits were chosen: docs/decisions/stages.md.
-use super::{Pipeline, size_limits};
+use super::{OUT_OF_ORDER, Pipeline, size_limits};
 use crate::adapt::core::context::Limits;
 
 /// A stage makes cells flatter by no more than this factor.
@@ -59,7 +59,7 @@ impl Pipeline<'_, '_> {
                 }
             }
             self.context.end_stage(self.team());
-            self.keep_order();
+            self.keep_order(OUT_OF_ORDER);
             if self.growth_end.is_some() || self.observer.stop() {
                 break;
             }
