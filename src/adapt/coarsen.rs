@@ -15,6 +15,7 @@ mod surface;
 mod tests;
 mod vertex_map;
 
+use crate::adapt::core::fill::Known;
 use crate::adapt::core::required::Required;
 use crate::geometry::classify::Classification;
 use crate::mesh::predicate::is_positive;
@@ -45,15 +46,23 @@ pub struct Coarse {
     pub origin: Vec<u32>,
 }
 
-/// The mesh made coarse; none where it is not much too fine, or not valid.
+impl Coarse {
+    /// What filling a store may know of it.
+    pub fn known(&self) -> Known<'_> {
+        Known { logs: Some(&self.logs), hints: Some(&self.hints), is_part: false }
+    }
+}
+
+/// The mesh made coarse, by the metric of `source`; ln M at the vertices may be known. None where it is not much too fine, or not valid.
 pub fn coarsened(
     team: Team<'_>,
     mesh: &TetMesh,
     place: &Classification,
     source: &Source,
     required: &Required,
+    logs: Option<&[Sym3]>,
 ) -> Option<Coarse> {
-    let logs = match source.logs_on(mesh) {
+    let logs = match logs.or_else(|| source.logs_on(mesh)) {
         Some(logs) => Cow::Borrowed(logs),
         None => Cow::Owned(team.map(GRAIN, mesh.vertices.len(), |v| source.log_at(mesh.vertices[v], &mut 0))),
     };

@@ -4,6 +4,7 @@ use crate::adapt::core::ids::{FACE, TetId, VertexId};
 use crate::adapt::core::numbering::inverse;
 use crate::adapt::core::required::Required;
 use crate::adapt::core::store::Store;
+use crate::adapt::references::References;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Geometry, Model};
 use crate::mesh::crossing::{self, Crossings};
@@ -12,16 +13,6 @@ use crate::mesh::{Elements, TetMesh};
 use crate::metric::Sym3;
 use crate::tasks::{GRAIN, Team};
 use std::collections::HashMap;
-
-/// The mesh's references of the model's faces and edges, and which way it turns a face's triangles.
-pub struct References {
-    /// By face.
-    pub faces: Vec<i32>,
-    /// Whether the triangles of a face look into the domain (between regions: into the lesser one).
-    pub inward: Vec<bool>,
-    /// By edge.
-    pub edges: Vec<i32>,
-}
 
 /// The store as a plain mesh with its classification, and the metric at its vertices.
 pub struct Extracted {
@@ -37,6 +28,30 @@ pub struct Extracted {
     pub held: Vec<u32>,
     /// Where its boundary passes through itself.
     pub crossings: Crossings,
+    /// Of a part of a larger mesh, what joins it to the others.
+    pub part: Option<Joint>,
+}
+
+/// What joins an adapted part to the parts beside it.
+pub struct Joint {
+    /// ln M at the vertices.
+    pub logs: Vec<Sym3>,
+    /// The vertices that were held, in the order in which they were given, by their numbers now.
+    pub held: Vec<u32>,
+}
+
+/// What joins a part to the others, whose vertices `held` were to stay.
+pub fn part(team: Team<'_>, context: &Context, held: &[u32]) -> Joint {
+    let store = &context.store;
+    let vertices = live_vertices(team, store);
+    let number = inverse(team, &vertices, store.vertex_bound(), |place| place);
+    let logs = at(team, &vertices, |v| store.log(v));
+    Joint { logs, held: held.iter().map(|&v| number[context.ids[v as usize].index()]).collect() }
+}
+
+/// The vertices in the order of their ids.
+fn live_vertices(team: Team<'_>, store: &Store) -> Vec<u32> {
+    team.collect(GRAIN, store.vertex_bound(), |range, live| live.extend(store.live_vertices_in(range).map(|v| v.0)))
 }
 
 /// How many pairs of crossing triangles are told.
@@ -61,9 +76,7 @@ pub fn extract(
     unprojected: &[VertexId],
 ) -> Extracted {
     let store = &context.store;
-    let vertices = team.collect(GRAIN, store.vertex_bound(), |range, live| {
-        live.extend(store.live_vertices_in(range).map(|v| v.0));
-    });
+    let vertices = live_vertices(team, store);
     let number = inverse(team, &vertices, store.vertex_bound(), |place| place);
     let renumber = |v: VertexId| number[v.index()];
     let mut mesh = TetMesh {
@@ -98,7 +111,7 @@ pub fn extract(
     let mut held: Vec<u32> = held.collect();
     held.sort_unstable();
     let metrics = at(team, &vertices, |v| store.metric(v));
-    Extracted { mesh, classification, metrics, off_model, held, crossings }
+    Extracted { mesh, classification, metrics, off_model, held, crossings, part: None }
 }
 
 /// Sets the projected places of the vertices without room on the model to their closest points there, so that the next

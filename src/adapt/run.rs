@@ -1,23 +1,22 @@
 //! The adapter as a function: mesh, place, metric in; mesh, place, metric, report out.
 use crate::adapt::coarsen;
 use crate::adapt::core::context::Context;
-use crate::adapt::core::fill::{self, Filled};
+use crate::adapt::core::fill::{self, Filled, Known};
 use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::required::{Freeze, Required};
-use crate::adapt::extract::{self, Extracted, References};
+use crate::adapt::extract::{self, Extracted};
 use crate::adapt::operations::insertion::centroid::PointCreation;
 use crate::adapt::operations::reconnection::criteria::Criterion;
 use crate::adapt::passes::pipeline::{Effort, GrowthEnd, Pipeline};
+use crate::adapt::references::References;
 use crate::adapt::schedule::work::{KINDS, Observer, Work};
 use crate::adapt::schedule::{Execution, Grains, Scheduler};
 use crate::adapt::surface::bounds::SurfaceBounds;
+use crate::geometry::Model;
 use crate::geometry::classify::Classification;
-use crate::geometry::discrete::outward_triangles;
-use crate::geometry::{Geometry, Model};
 use crate::mesh::TetMesh;
-use crate::metric::Source;
+use crate::metric::{Source, Sym3};
 use crate::tasks::{Plan, Pool, Team, stage};
-use std::collections::HashMap;
 use std::time::Duration;
 
 /// How to adapt.
@@ -89,11 +88,60 @@ pub fn adapt(
     pool: &Pool,
     observer: &dyn Observer,
 ) -> Result<Adapted, fill::Error> {
-    let required = Required::of(mesh, &options.freeze);
+    source.check(Team::new(pool, options.plan), mesh)?;
+    run(mesh, place, None, model, source, options, pool, observer)
+}
+
+/// What is known of a part of a larger mesh, beside the part as a mesh. Its boundary faces without a triangle are faces to other parts.
+#[derive(Clone, Copy)]
+pub struct Part<'a> {
+    /// ln M at its vertices.
+    pub logs: &'a [Sym3],
+    /// Vertices that must stay: those of the faces to other parts, ascending.
+    pub held: &'a [u32],
+    /// Triangles that must stay, since another part has them too.
+    pub triangles: &'a [u32],
+    /// Whether what is bad beside them may wait.
+    pub cuts_will_move: bool,
+}
+
+/// Adapts a part of a larger mesh: faces to other parts and what is held stay as they are, to the bit.
+///
+/// # Errors
+/// As [`adapt`], but for the boundary, which need not be closed by triangles.
+#[allow(clippy::too_many_arguments)]
+pub fn adapt_part(
+    mesh: &TetMesh,
+    place: &Classification,
+    part: Part<'_>,
+    model: &Model,
+    source: &Source,
+    options: &Options,
+    pool: &Pool,
+    observer: &dyn Observer,
+) -> Result<Adapted, fill::Error> {
+    run(mesh, place, Some(part), model, source, options, pool, observer)
+}
+
+#[allow(clippy::too_many_arguments)]
+fn run(
+    mesh: &TetMesh,
+    place: &Classification,
+    part: Option<Part<'_>>,
+    model: &Model,
+    source: &Source,
+    options: &Options,
+    pool: &Pool,
+    observer: &dyn Observer,
+) -> Result<Adapted, fill::Error> {
+    let mut required = Required::of(mesh, &options.freeze);
+    if let Some(part) = part {
+        let triangles = part.triangles.iter().map(|&t| mesh.triangles.nodes[t as usize]);
+        required.hold(mesh.vertices.len(), part.held, triangles);
+    }
     let place = &*required.held(mesh, place);
     let team = Team::new(pool, options.plan);
-    source.check(team, mesh)?;
-    let (Filled { store, unprojected, ids }, crowded) = filled(team, mesh, place, source, &required)?;
+    let (Filled { store, unprojected, ids }, crowded) = filled(team, mesh, place, part, source, &required)?;
     stage("store filled");
     let mut context = Context::new(store, source, model);
     context.required = required;
@@ -110,7 +158,11 @@ pub fn adapt(
     pipeline.crowded = crowded;
     pipeline.surface = options.surface;
     pipeline.max_vertices = options.max_vertices.unwrap_or(usize::MAX);
-    pipeline.effort = if options.is_draft { Effort::DRAFT } else { Effort::FULL };
+    pipeline.effort = match part {
+        _ if options.is_draft => Effort::DRAFT,
+        Some(part) if part.cuts_will_move => Effort::BETWEEN_CUTS,
+        _ => Effort::FULL,
+    };
     pipeline.run();
     if pipeline.torn {
         return Err(fill::Error::Torn);
@@ -123,12 +175,14 @@ pub fn adapt(
     drop(pipeline);
     context.store.trim();
     stage("passes");
-    let refs = References {
-        faces: face_refs(mesh, place, model),
-        inward: inward_faces(team, mesh, place, model),
-        edges: edge_refs(mesh, place, model),
+    let refs = match part {
+        Some(_) => References::of_numbers(model),
+        None => References::of(team, mesh, place, model),
     };
-    let extracted = extract::extract(team, &context, mesh, &refs, &unprojected);
+    let mut extracted = extract::extract(team, &context, mesh, &refs, &unprojected);
+    if let Some(part) = part {
+        extracted.part = Some(extract::part(team, &context, part.held));
+    }
     stage("extracted");
     Ok(Adapted { extracted, work, growth_end, unrepaired, deviating, geometry })
 }
@@ -138,13 +192,16 @@ fn filled(
     team: Team<'_>,
     mesh: &TetMesh,
     place: &Classification,
+    part: Option<Part<'_>>,
     source: &Source,
     required: &Required,
 ) -> Result<(Filled, bool), fill::Error> {
-    let coarse = coarsen::coarsened(team, mesh, place, source, required);
+    let is_part = part.is_some();
+    let logs = part.map(|part| part.logs).or_else(|| source.logs_on(mesh));
+    let coarse = coarsen::coarsened(team, mesh, place, source, required, logs);
     if let Some(coarse) = &coarse
         && let Ok(mut filled) =
-            fill::fill_known(team, &coarse.mesh, &coarse.place, source, Some(&coarse.logs), Some(&coarse.hints))
+            fill::fill_known(team, &coarse.mesh, &coarse.place, source, Known { is_part, ..coarse.known() })
     {
         let mut ids = vec![VertexId::NONE; mesh.vertices.len()];
         coarse.origin.iter().zip(&filled.ids).for_each(|(&old, &id)| ids[old as usize] = id);
@@ -152,36 +209,6 @@ fn filled(
         return Ok((filled, true));
     }
     // Faults of the mesh are told with the numbers of the input.
-    Ok((fill::fill(team, mesh, place, source)?, coarse.is_some()))
-}
-
-/// The reference of each model face: that of its first triangle.
-fn face_refs(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<i32> {
-    let mut refs: Vec<Option<i32>> = vec![None; model.topology().faces.len()];
-    for (&face, &reference) in place.faces.iter().zip(&mesh.triangles.refs) {
-        refs[face as usize].get_or_insert(reference);
-    }
-    refs.iter().enumerate().map(|(face, reference)| reference.unwrap_or(face as i32 + 1)).collect()
-}
-
-/// Whether most triangles of a face look into the domain, for each face. In the files of some programs all do.
-fn inward_faces(team: Team<'_>, mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<bool> {
-    let mut outward = vec![0i64; model.topology().faces.len()];
-    for ((given, turned), &face) in mesh.triangles.nodes.iter().zip(outward_triangles(team, mesh)).zip(&place.faces) {
-        outward[face as usize] += if *given == turned { 1 } else { -1 };
-    }
-    outward.into_iter().map(|balance| balance < 0).collect()
-}
-
-/// The reference of each model edge: that of its first listed mesh edge.
-fn edge_refs(mesh: &TetMesh, place: &Classification, model: &Model) -> Vec<i32> {
-    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-    let listed: HashMap<[u32; 2], i32> = mesh.edges.iter().map(|(nodes, r)| (sorted(nodes), r)).collect();
-    let mut refs: Vec<Option<i32>> = vec![None; model.topology().edges.len()];
-    for &(nodes, edge) in &place.ridges {
-        if let (slot @ None, Some(&reference)) = (&mut refs[edge as usize], listed.get(&sorted(nodes))) {
-            *slot = Some(reference);
-        }
-    }
-    refs.iter().enumerate().map(|(edge, reference)| reference.unwrap_or(edge as i32 + 1)).collect()
+    let known = Known { logs, hints: None, is_part };
+    Ok((fill::fill_known(team, mesh, place, source, known)?, coarse.is_some()))
 }

@@ -76,7 +76,7 @@ impl AdaptedMesh {
 
     /// Of what the kernel gives; `old` is the mesh that went in, taken apart at `doubled`.
     pub(super) fn of(team: Team<'_>, adapted: Adapted, model: &Model, old: &Background, doubled: Vec<u32>) -> Self {
-        let Extracted { mut mesh, classification, metrics, off_model, held, crossings } = adapted.extracted;
+        let Extracted { mut mesh, classification, metrics, off_model, held, crossings, .. } = adapted.extracted;
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &classification),
             #[cfg(feature = "occt")]

@@ -4,7 +4,8 @@ use crate::mesh::vector::Vec3;
 
 /// A symmetric 3×3 tensor; the six terms are in the order of .sol files: 11 12 22 13 23 33.
 /// The order is part of the type. Conversions from other orders are named functions.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
 pub struct Sym3(pub [f64; 6]);
 
 impl Sym3 {

@@ -55,7 +55,7 @@ fn crowded_is_what_has_several_times_the_tetrahedra_asked_for() {
     let place = placed(&mesh);
     // Edges of 0.25 to 0.43: about right for a size of 0.3. A size is a factor of eight in the number.
     for (size, crowded) in [(0.1, false), (0.3, false), (0.7, true), (2.0, true)] {
-        let coarse = coarsened(Team::alone(), &mesh, &place, &of_size(&mesh, size), &Required::default());
+        let coarse = coarsened(Team::alone(), &mesh, &place, &of_size(&mesh, size), &Required::default(), None);
         assert_eq!(coarse.is_some(), crowded, "size {size}");
     }
 }
@@ -65,7 +65,7 @@ fn an_inverted_mesh_is_left_to_who_tells_of_it() {
     let mut mesh = cube(4);
     mesh.tets.nodes[17].swap(0, 1);
     let place = placed(&cube(4));
-    assert!(coarsened(Team::alone(), &mesh, &place, &of_size(&cube(4), 2.0), &Required::default()).is_none());
+    assert!(coarsened(Team::alone(), &mesh, &place, &of_size(&cube(4), 2.0), &Required::default(), None).is_none());
 }
 
 proptest! {
@@ -78,7 +78,7 @@ proptest! {
         // The ball is twice as wide.
         let source = of_size(&mesh, if round { 2.0 * size } else { size });
         let place = placed(&mesh);
-        let coarse = coarsened(Team::alone(), &mesh, &place, &source, &Required::default()).expect("it is crowded");
+        let coarse = coarsened(Team::alone(), &mesh, &place, &source, &Required::default(), None).expect("it is crowded");
         prop_assert!(check(&coarse.mesh).is_valid());
         let (before, after) = (volume(&mesh), volume(&coarse.mesh));
         prop_assert!((before - after).abs() < if round { 0.05 * before } else { 1e-12 }, "{} {}", before, after);
@@ -93,7 +93,7 @@ proptest! {
             prop_assert_eq!(coarse.mesh.vertices[v], mesh.vertices[old as usize]);
             prop_assert!(mesh.tets.nodes[coarse.hints[v] as usize].contains(&old));
         }
-        prop_assert!(fill::fill_known(Team::alone(), &coarse.mesh, &coarse.place, &source, Some(&coarse.logs), Some(&coarse.hints)).is_ok());
+        prop_assert!(fill::fill_known(Team::alone(), &coarse.mesh, &coarse.place, &source, coarse.known()).is_ok());
     }
 }
 
@@ -107,9 +107,15 @@ fn what_is_required_stays() {
     mesh.edges.push(edge, 7);
     mesh.required_edges = vec![mesh.edges.len() as u32 - 1];
     mesh.required_vertices = vec![alone];
-    let coarse =
-        coarsened(Team::alone(), &mesh, &placed(&mesh), &of_size(&mesh, 2.0), &Required::of(&mesh, &Freeze::default()))
-            .expect("it is crowded");
+    let coarse = coarsened(
+        Team::alone(),
+        &mesh,
+        &placed(&mesh),
+        &of_size(&mesh, 2.0),
+        &Required::of(&mesh, &Freeze::default()),
+        None,
+    )
+    .expect("it is crowded");
     let number = |v: u32| coarse.origin.iter().position(|&old| old == v).expect("it stays") as u32;
     number(alone);
     let ends = edge.map(number);

@@ -78,12 +78,23 @@ pub struct Filled {
 ///
 /// # Errors
 /// When a tetrahedron is inverted, a face has more than two, or the triangles do not close the boundary.
+#[cfg(any(test, feature = "internals"))]
 pub fn fill(team: Team<'_>, mesh: &TetMesh, place: &Classification, source: &Source) -> Result<Filled, Error> {
-    fill_known(team, mesh, place, source, source.logs_on(mesh), None)
+    fill_known(team, mesh, place, source, Known { logs: source.logs_on(mesh), ..Known::default() })
 }
 
-/// As [`fill`], for a mesh that was made from another, so that ln M at its vertices is known, and the background tetrahedron in which
-/// the search for each vertex' metric begins.
+/// What is known of a mesh before it is filled in.
+#[derive(Clone, Copy, Default)]
+pub struct Known<'a> {
+    /// ln M at its vertices.
+    pub logs: Option<&'a [Sym3]>,
+    /// For each vertex the tetrahedron of the background in which the search for its metric begins.
+    pub hints: Option<&'a [u32]>,
+    /// Whether it is a part of a larger mesh: then faces on its boundary may have no triangle, as they are faces inside the larger mesh.
+    pub is_part: bool,
+}
+
+/// As [`fill`], for a mesh of which something is known.
 ///
 /// # Errors
 /// As [`fill`].
@@ -92,8 +103,7 @@ pub fn fill_known(
     mesh: &TetMesh,
     place: &Classification,
     source: &Source,
-    logs: Option<&[Sym3]>,
-    hints: Option<&[u32]>,
+    known: Known<'_>,
 ) -> Result<Filled, Error> {
     if mesh.tets.is_empty() {
         return Err(Error::Empty);
@@ -115,13 +125,13 @@ pub fn fill_known(
     let mut filling = Filling { team, mesh, place, order, store };
     filling.write_vertices();
     filling.write_tets(faces);
-    filling.tag_faces(faces)?;
+    filling.tag_faces(faces, known.is_part)?;
     filling.join_ridges();
     let mut unprojected = filling.leave_inverting();
     while filling.leave_crossing(faces, &mut unprojected) {
         unprojected.append(&mut filling.leave_inverting());
     }
-    filling.set_metrics(source, logs, hints);
+    filling.set_metrics(source, known.logs, known.hints);
     let Filling { mut store, order, .. } = filling;
     store.note_order();
     if measure(team, &store) {
@@ -189,13 +199,16 @@ impl Filling<'_> {
     /// Sets the tags of faces with a triangle.
     ///
     /// # Errors
-    /// When a face on the boundary has none.
-    fn tag_faces(&self, faces: &MatchedFaces) -> Result<(), Error> {
+    /// When a face on the boundary has none, unless the mesh is a part of a larger one.
+    fn tag_faces(&self, faces: &MatchedFaces, is_part: bool) -> Result<(), Error> {
         let triangles = TriangleIndex::new(self.team, &self.mesh.triangles.nodes, self.mesh.vertices.len());
         for Side { triangle, tet, face } in triangles.sides(self.team, &self.mesh.tets.nodes) {
             let (id, tag) = (self.order.tet_ids[tet as usize], self.place.faces[triangle as usize] + 1);
             let before = self.store.tags(id)[face as usize];
             self.store.set_tag(id, face as usize, if before == 0 { tag } else { tag.min(before) });
+        }
+        if is_part {
+            return Ok(());
         }
         let nodes = &self.mesh.tets.nodes;
         let open = self.team.collect(GRAIN, nodes.len(), |range, found| {

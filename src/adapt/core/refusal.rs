@@ -1,5 +1,5 @@
 //! What becomes of an attempted operation, and how it is counted.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Why an operation was not carried out. Every refusal leaves the mesh as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -49,7 +49,7 @@ impl Refusal {
 }
 
 /// Counts of one operation over one or more sweeps.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Counts {
     /// Items tried, conflicts and their repeats included.
     pub attempts: u64,

@@ -22,6 +22,11 @@ pub struct Freeze {
     pub regions: Vec<i32>,
 }
 
+/// The vertices of a mesh that must neither move nor go, ascending: those that it requires, and of what is frozen.
+pub fn held_vertices(mesh: &TetMesh, freeze: &Freeze) -> Vec<u32> {
+    Required::of(mesh, freeze).frozen().map(|v| v.0).collect()
+}
+
 /// Vertices, edges and regions that stay.
 #[derive(Default)]
 pub struct Required {
@@ -58,6 +63,15 @@ impl Required {
             required.frozen.clear();
         }
         required
+    }
+
+    /// Holds vertices, and the edges of triangles of held vertices, of a mesh that has so many vertices.
+    pub fn hold(&mut self, vertices: usize, held: &[u32], triangles: impl Iterator<Item = [u32; 3]>) {
+        self.frozen.resize(vertices, false);
+        held.iter().for_each(|&v| self.frozen[v as usize] = true);
+        for [a, b] in triangles.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]) {
+            self.edges.insert(key(VertexId(a), VertexId(b)));
+        }
     }
 
     /// Forgets vertices that no tetrahedron has, and their edges.

@@ -28,6 +28,11 @@ impl Shell {
         self.tags.iter().copied().filter(|&tag| tag != 0)
     }
 
+    /// Whether the edge is one of another part of the mesh too: a face about it has neither a tetrahedron behind it nor a tag.
+    pub fn is_shared(&self) -> bool {
+        !self.closed && [self.tags.first(), self.tags.last()].contains(&Some(&0))
+    }
+
     /// Turns a closed shell so that it begins at a tagged face, if there is one.
     pub fn begin_at_tag(&mut self) {
         let at = self.tags.iter().position(|&tag| tag != 0).unwrap_or(0);

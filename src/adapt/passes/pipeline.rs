@@ -209,7 +209,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.pass += 1;
             self.limit(shape_limits());
             self.shape_pass();
-            self.repair();
+            if self.effort.repairs {
+                self.repair();
+            }
             let moved = self.settle(pass);
             let after = self.cost();
             // What came onto the model late has not been looked at since.

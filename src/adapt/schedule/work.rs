@@ -43,7 +43,7 @@ impl Kind {
 }
 
 /// Time and counts of one kind of operation.
-#[derive(Clone, Copy, Debug, Default, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Work {
     /// Counts over all sweeps.
     pub counts: Counts,

@@ -3,7 +3,7 @@ use crate::geometry::Entity;
 use crate::mesh::vector::Vec3;
 
 /// A mesh put on a model. Entity indices count from 0, as in [`crate::geometry::Topology`].
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Classification {
     /// For each mesh vertex its entity of lowest dimension.
     pub entities: Vec<Entity>,

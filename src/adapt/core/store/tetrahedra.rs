@@ -42,12 +42,19 @@ impl Store {
         self.tets[t.index()].neighbours[i].store(n.0, Relaxed);
     }
 
-    /// The tag of each face: 0, or the model face counted from 1.
+    /// The tag of each face: 0, or the model face counted from 1. A face with neither a tag nor a neighbour is one to another part of a
+    /// larger mesh; as any change of the mesh keeps the faces of its cavity, it stays.
     #[inline(always)]
     pub fn tags(&self, t: TetId) -> [u32; 4] {
         self.must_hold_one_of(t);
         let record = &self.tets[t.index()].tags;
         std::array::from_fn(|i| record[i].load(Relaxed))
+    }
+
+    /// Whether the face opposite local vertex i is on the boundary, between regions, or a face to another part of a larger mesh.
+    #[inline(always)]
+    pub fn is_surface(&self, t: TetId, i: usize) -> bool {
+        self.tags(t)[i] != 0 || !self.neighbour(t, i).is_some()
     }
 
     /// Sets the tag of the face opposite local vertex i.

@@ -121,10 +121,11 @@ fn walls(team: Team<'_>, store: &Store) -> Vec<Wall> {
                 continue;
             }
             let (v, tags) = (store.vertices(t), store.tags(t));
-            for i in (0..4).filter(|&i| !n[i].is_some()) {
+            // Without a tag it is a face to another part of a larger mesh.
+            for i in (0..4).filter(|&i| !n[i].is_some() && tags[i] != 0) {
                 let [a, b, c] = FACE[i].map(|k| v[k]);
                 let vertices = [a, c, b];
-                walls.push(Wall { vertices, corners: vertices.map(|v| store.position(v)), face: tags[i].max(1) - 1 });
+                walls.push(Wall { vertices, corners: vertices.map(|v| store.position(v)), face: tags[i] - 1 });
             }
         }
     })

@@ -69,6 +69,9 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Splits an edge whose vertices are claimed, at a point of its straight line, on its entity of the model.
     pub fn split_at(&mut self, EdgeItem { a, b, tet }: EdgeItem, straight: Vec3) -> Result<(), Refusal> {
         self.gather_shell(a, b, tet)?;
+        if self.state.shell.is_shared() {
+            return Err(Refusal::Geometry);
+        }
         let entity = self.entity_of_edge(a, b);
         let placed = self.place(entity, straight, &[a, b]);
         let seeds = std::mem::take(&mut self.state.shell.tets);

@@ -21,7 +21,8 @@ impl<A: Access> Worker<'_, '_, A> {
         let (i, j) = (own(a)?, own(b)?);
         let tag = tags[c];
         let is_surface = |k: usize| tags[k] == tag && !n[k].is_some();
-        if tag == 0 || !is_surface(c) || !is_surface(d) || tags[i] != 0 || tags[j] != 0 {
+        let is_inside = |k: usize| tags[k] == 0 && n[k].is_some();
+        if tag == 0 || !is_surface(c) || !is_surface(d) || !is_inside(i) || !is_inside(j) {
             return Err(Refusal::Topology);
         }
         if self.store.ridge_curve(a, b).is_some() {

@@ -129,7 +129,8 @@ impl<A: Access> Worker<'_, '_, A> {
             }
         }
         let (first, last, tag) = (shell.ring[0], shell.ring[across], shell.tags[0]);
-        if shell.tags[across] != tag {
+        // Without a tag it is a face to another part of a larger mesh.
+        if tag == 0 || shell.tags[across] != tag {
             return Err(Refusal::Geometry);
         }
         let old = [([a, first, b], tag), ([a, b, last], tag)];

@@ -14,14 +14,21 @@ pub struct Effort {
     pub little: f64,
     /// Whether there are passes for the shapes once all vertices are on the model.
     pub shapes: bool,
+    /// Whether the worst tetrahedra are repaired one by one.
+    pub repairs: bool,
 }
 
 impl Effort {
     /// For a unit mesh.
-    pub const FULL: Self = Self { stages: true, waits: false, smooths: true, little: 0.05, shapes: true };
+    pub const FULL: Self =
+        Self { stages: true, waits: false, smooths: true, little: 0.05, shapes: true, repairs: true };
+
+    /// Between cuts that will move: what is bad beside them waits until then.
+    pub const BETWEEN_CUTS: Self = Self { repairs: false, ..Self::FULL };
 
     /// For a draft.
-    pub const DRAFT: Self = Self { stages: false, waits: true, smooths: false, little: 0.1, shapes: false };
+    pub const DRAFT: Self =
+        Self { stages: false, waits: true, smooths: false, little: 0.1, shapes: false, repairs: true };
 }
 
 #[cfg(test)]

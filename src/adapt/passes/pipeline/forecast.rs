@@ -53,7 +53,7 @@ impl Pipeline<'_, '_> {
     fn area_in_metric(&self) -> f64 {
         let store = &self.context.store;
         let tagged = |range: Range<usize>, step: u32| {
-            let faces = |t: TetId| (0..4).filter(move |&i| store.tags(t)[i] != 0).map(move |i| (t, i));
+            let faces = |t: TetId| (0..4).filter(move |&i| store.is_surface(t, i)).map(move |i| (t, i));
             store.live_tets_in(range).filter(move |t| t.0 % step == 0).flat_map(faces)
         };
         let all = self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, 1).count() as f64);
@@ -64,7 +64,8 @@ impl Pipeline<'_, '_> {
             let corners = FACE[i].map(|k| store.vertices(t)[k]);
             let [a, b, c] = corners.map(|v| store.position(v));
             let (ab, ac) = (sub(b, a), sub(c, a));
-            let is_curved = self.context.planes[store.tags(t)[i] as usize - 1].is_none();
+            let tag = store.tags(t)[i] as usize;
+            let is_curved = tag != 0 && self.context.planes[tag - 1].is_none();
             let area = |log: &Sym3| {
                 let metric = log.exp();
                 let [bb, cc, bc] = [(ab, ab), (ac, ac), (ab, ac)].map(|(x, y)| dot(x, metric.apply(y)));

@@ -42,7 +42,7 @@ const FULL: f64 = 0.995;
 const FAR: f64 = 1.25;
 
 /// Why a mesh stopped growing before its metric was met.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GrowthEnd {
     /// It has far more vertices than the complexity of the metric accounts for: no mesh meets it.
@@ -83,7 +83,7 @@ impl Pipeline<'_, '_> {
                 let sides = if store.neighbour(t, i).is_some() { 0.5 } else { 1.0 };
                 0.5 * sides * norm(area2(a, b, c)) * (0.5 * (least + middle)).exp()
             };
-            let tagged = |t: TetId| (0..4).filter(move |&i| store.tags(t)[i] != 0).map(move |i| (t, i));
+            let tagged = |t: TetId| (0..4).filter(move |&i| store.is_surface(t, i)).map(move |i| (t, i));
             store.live_tets_in(range).flat_map(tagged).map(|(t, i)| of(t, i)).sum()
         })
     }

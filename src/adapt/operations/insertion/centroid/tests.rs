@@ -134,7 +134,7 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let topology = model.topology();
         let edges = vec![1; topology.edges.len()];
         let faces = vec![1; topology.faces.len()];
-        let refs = extract::References { inward: vec![false; faces.len()], faces, edges };
+        let refs = crate::adapt::references::References { inward: vec![false; faces.len()], faces, edges };
         let extracted = extract::extract(Team::alone(), &context, &mesh, &refs, &[]);
         assert_valid_cube(&extracted.mesh);
     }
