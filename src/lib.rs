@@ -77,6 +77,8 @@ pub mod cli;
 #[doc(hidden)]
 pub mod cycle;
 #[doc(hidden)]
+pub mod decomposition;
+#[doc(hidden)]
 pub mod delaunay;
 #[cfg(feature = "formats")]
 #[doc(hidden)]

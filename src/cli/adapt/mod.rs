@@ -14,6 +14,7 @@ use super::waiting::Waiting;
 use super::{Outcome, interrupt};
 use crate::adapt::forecast::most_in_memory;
 use crate::adapt::{self, Adapted, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
+use crate::decomposition::{self, Job, Sizes};
 use crate::geometry::classify::keeps_references;
 use crate::memory;
 use crate::metric::Field;
@@ -63,6 +64,9 @@ pub struct Arguments {
     /// is memory for]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     max_vertices: Option<u32>,
+    /// Adapts the mesh part by part within this memory: 4GiB, 500MB
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    memory: Option<u64>,
     /// How the threads share the work
     #[arg(long, value_enum, default_value_t = Scheduler::default())]
     scheduler: Scheduler,
@@ -84,6 +88,26 @@ pub struct Arguments {
 fn deviation(text: &str) -> Result<f64, String> {
     let angle: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if (0.1..=89.0).contains(&angle) { Ok(angle) } else { Err("an angle from 0.1 to 89 degrees".into()) }
+}
+
+/// An amount of memory, in bytes.
+fn bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let number: f64 = digits.trim().parse().map_err(|_| "not an amount like 4GiB or 500MB".to_owned())?;
+    let factor = match text[digits.len()..].to_ascii_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "k" | "kb" => 1e3,
+        "m" | "mb" => 1e6,
+        "g" | "gb" => 1e9,
+        "t" | "tb" => 1e12,
+        "kib" => 1024.0,
+        "mib" => 1024.0 * 1024.0,
+        "gib" => 1024.0 * 1024.0 * 1024.0,
+        "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
+        unit => return Err(format!("{unit} is no unit of memory: KiB, MiB, GiB, TiB, KB, MB, GB or TB")),
+    };
+    let bytes = number * factor;
+    if bytes >= 1e6 && bytes.is_finite() { Ok(bytes as u64) } else { Err("at least a megabyte, as in 4GiB".into()) }
 }
 
 /// A distance from the model.
@@ -175,6 +199,14 @@ impl Arguments {
         progress.tell_forecasts(options.max_vertices, &self.output);
         if !is_last && !options.freeze.surfaces.is_empty() {
             self.check_references(input).map_err(named)?;
+        }
+        if self.memory.is_some() {
+            let Input { mesh, place, model, source, .. } = input;
+            let job = Job { mesh, place, model, options: &options, sizes: Sizes::default(), pool, observer: progress };
+            let adapted = decomposition::adapt(job, source);
+            progress.finish();
+            progress.has_room()?;
+            return adapted.map(|(adapted, _)| adapted).map_err(|error| named(error.to_string()).into());
         }
         let adapt = |input: &Input| {
             let Input { mesh, place, model, source, .. } = input;

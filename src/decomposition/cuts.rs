@@ -1,0 +1,146 @@
+//! Where a mesh is cut: planes that share the work evenly and cross few tetrahedra.
+use super::piece::Piece;
+use crate::mesh::vector::{Vec3, volume6};
+
+/// A tetrahedron at a former cut counts as so many where it is crossed: cuts move to where none was.
+const FORMER_CUT: f64 = 8.0;
+
+/// A cut leaves each side its share of the work, within this share of all.
+const SLACK: f64 = 0.06;
+
+/// So many places are tried for a cut, along each axis.
+const PLACES: usize = 24;
+
+/// Vertices for a unit of complexity.
+const VERTICES_PER_COMPLEXITY: f64 = 1.9;
+
+/// A tetrahedron that is there already is as much work as so many vertices that are made.
+const WORK_OF_GIVEN: f64 = 0.03;
+
+/// A tetrahedron that stands for several.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Sample {
+    /// Its box.
+    low: Vec3,
+    high: Vec3,
+    centre: Vec3,
+    /// Of the tetrahedra that it stands for.
+    work: f64,
+    /// How many it stands for.
+    count: f64,
+    /// 1 where it is at a former cut, else 0.
+    waits: u64,
+}
+
+/// At most so many tetrahedra of a piece, evenly spread over its list.
+pub fn samples(piece: &Piece, most: usize) -> Vec<Sample> {
+    let step = piece.len().div_ceil(most.max(1)).max(1);
+    let count = step as f64;
+    (0..piece.len())
+        .step_by(step)
+        .map(|t| {
+            let nodes = piece.mesh.tets.nodes[t];
+            let [a, b, c, d] = nodes.map(|v| piece.mesh.vertices[v as usize]);
+            let trace: f64 = nodes.iter().map(|&v| piece.logs[v as usize].trace()).sum();
+            let complexity = volume6(a, b, c, d) / 6.0 * (trace / 8.0).exp();
+            let over = |f: fn(f64, f64) -> f64| [0, 1, 2].map(|k| f(f(a[k], b[k]), f(c[k], d[k])));
+            Sample {
+                low: over(f64::min),
+                high: over(f64::max),
+                centre: centre(piece, t),
+                work: count * (VERTICES_PER_COMPLEXITY * complexity + WORK_OF_GIVEN),
+                count,
+                waits: u64::from(piece.waits(t)),
+            }
+        })
+        .collect()
+}
+
+/// The centroid of a tetrahedron.
+fn centre(piece: &Piece, t: usize) -> Vec3 {
+    let [a, b, c, d] = piece.mesh.tets.nodes[t].map(|v| piece.mesh.vertices[v as usize]);
+    [0, 1, 2].map(|k| 0.25 * ((a[k] + b[k]) + (c[k] + d[k])))
+}
+
+/// Where a mesh is cut into parts.
+pub struct Cuts {
+    tree: Tree,
+    /// The work that each part is expected to be.
+    pub work: Vec<f64>,
+}
+
+/// A tree of cuts. Its leaves are the parts.
+enum Tree {
+    /// A part.
+    Part(u32),
+    /// A plane across an axis: what lies below it, and the rest.
+    Plane(usize, f64, Box<[Tree; 2]>),
+}
+
+impl Cuts {
+    /// Into so many parts.
+    pub fn of(mut samples: Vec<Sample>, parts: usize) -> Self {
+        let tree = Tree::of(&mut samples, 0, parts.max(1) as u32);
+        let mut work = vec![0.0; parts];
+        samples.iter().for_each(|sample| work[tree.part_at(sample.centre) as usize] += sample.work);
+        Self { tree, work }
+    }
+
+    /// The part of each tetrahedron: that in which its centroid lies.
+    pub fn owners(&self, piece: &Piece) -> Vec<u32> {
+        (0..piece.len()).map(|t| self.tree.part_at(centre(piece, t))).collect()
+    }
+}
+
+impl Tree {
+    fn of(samples: &mut [Sample], first: u32, parts: u32) -> Self {
+        let half = parts / 2;
+        let Some((axis, at)) = (half > 0).then(|| best_cut(samples, f64::from(half) / f64::from(parts))).flatten()
+        else {
+            return Self::Part(first);
+        };
+        samples.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
+        let middle = samples.partition_point(|sample| sample.centre[axis] < at);
+        let (below, above) = samples.split_at_mut(middle);
+        let sides = [Self::of(below, first, half), Self::of(above, first + half, parts - half)];
+        Self::Plane(axis, at, Box::new(sides))
+    }
+
+    fn part_at(&self, p: Vec3) -> u32 {
+        let mut here = self;
+        loop {
+            match here {
+                Self::Part(part) => return *part,
+                Self::Plane(axis, at, sides) => here = &sides[usize::from(p[*axis] >= *at)],
+            }
+        }
+    }
+}
+
+/// The plane that crosses the fewest tetrahedra of those that leave about this share of the work below; none where there is no such plane.
+fn best_cut(samples: &mut [Sample], share: f64) -> Option<(usize, f64)> {
+    let all: f64 = samples.iter().map(|sample| sample.work).sum();
+    let mut best: Option<(f64, usize, f64)> = None;
+    for axis in 0..3 {
+        samples.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
+        let mut below = 0.0;
+        let mut window = Vec::new();
+        for sample in samples.iter() {
+            if (below / all - share).abs() <= SLACK {
+                window.push(sample.centre[axis]);
+            }
+            below += sample.work;
+        }
+        let step = window.len().div_ceil(PLACES).max(1);
+        for &at in window.iter().skip(step / 2).step_by(step) {
+            let crossed = samples.iter().filter(|sample| sample.low[axis] < at && at < sample.high[axis]);
+            let cost: f64 = crossed.map(|sample| sample.count * if sample.waits == 1 { FORMER_CUT } else { 1.0 }).sum();
+            let is_cut = samples.first().is_some_and(|first| first.centre[axis] < at);
+            if is_cut && best.is_none_or(|(least, ..)| cost < least) {
+                best = Some((cost, axis, at));
+            }
+        }
+    }
+    best.map(|(_, axis, at)| (axis, at))
+}

@@ -1,0 +1,494 @@
+//! What is done when: the mesh grows in stages, each cut anew, and then the tetrahedra around former cuts are adapted until none is left.
+//!
+//! Where the cuts lie and what becomes of a part depends on the mesh alone. Which rank does it, how many parts are done at once and
+//! where they lie meanwhile does not matter: every list is in the order of the parts.
+use super::Error;
+use super::bytes::{decoded, encoded, put, take};
+use super::cuts::{Cuts, Sample, samples};
+use super::join::join;
+use super::outline::{Numbering, Outline};
+use super::part::{Done, Round, Tools, adapt_piece};
+use super::piece::Piece;
+use super::shelf::{Key, Shelf};
+use super::split::split;
+use super::zones::divide;
+use crate::adapt::{Observer, Options, Scheduler};
+use crate::geometry::Model;
+use crate::metric::Source;
+use crate::metric::field::complexity_factor;
+use crate::ranks::{Ranks, agree};
+use crate::tasks::Pool;
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::time::Instant;
+
+/// From a stage to the next the mesh grows by this factor at most.
+const GROWTH: f64 = 8.0;
+
+/// Vertices for a unit of complexity.
+const VERTICES_PER_COMPLEXITY: f64 = 1.9;
+
+/// Most tetrahedra that are asked where to cut.
+const SAMPLES: usize = 1 << 20;
+
+/// The least of a piece.
+const LEAST_SAMPLES: usize = 1 << 10;
+
+/// From so many parts on, each is one thread's; fewer are adapted by all threads, one after the other.
+const OF_ONE_THREAD: usize = 4;
+
+/// Most rounds around former cuts.
+const MOST_ZONES: usize = 8;
+
+/// Memory for a vertex that is being adapted, bytes.
+const BYTES_A_VERTEX: f64 = 1_200.0;
+
+/// How large parts are.
+#[derive(Clone, Copy, Debug)]
+pub struct Sizes {
+    /// Vertices of a part of a large mesh.
+    pub part: f64,
+    /// Smaller meshes have up to so many parts, which serve as many threads,
+    pub few: f64,
+    /// unless these had fewer vertices than this.
+    pub least: f64,
+}
+
+impl Default for Sizes {
+    fn default() -> Self {
+        Self { part: 300_000.0, few: 16.0, least: 40_000.0 }
+    }
+}
+
+impl Sizes {
+    /// Parts of so many vertices.
+    pub fn of(vertices: f64) -> Self {
+        Self { part: vertices, few: 1.0, least: vertices }
+    }
+
+    /// Into how many parts a mesh of so many vertices is cut.
+    fn parts(&self, vertices: f64) -> usize {
+        (vertices / self.part).max((vertices / self.least).min(self.few)).ceil().max(1.0) as usize
+    }
+}
+
+/// What the parts of a run have in common.
+#[derive(Clone, Copy)]
+pub struct Common<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// How to adapt; the scheduler does not count.
+    pub options: &'a Options,
+    /// How large parts are.
+    pub sizes: Sizes,
+    /// The threads.
+    pub pool: &'a Pool,
+    /// The processes.
+    pub ranks: &'a dyn Ranks,
+    /// Where pieces lie.
+    pub shelf: &'a Shelf,
+    /// Bytes of memory for all that is done at once, at the most.
+    pub memory: Option<u64>,
+    /// Is told of the progress.
+    pub observer: &'a dyn Observer,
+}
+
+/// A round.
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+pub struct Told {
+    /// Parts.
+    pub parts: usize,
+    /// Tetrahedra that it began with.
+    pub tets: usize,
+    /// Vertices of the parts after it; one on several counts for each.
+    pub vertices: usize,
+    /// Wall time, s.
+    pub seconds: f64,
+}
+
+/// What a part became, as all ranks know it.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Became {
+    part: u32,
+    rank: u32,
+    /// Tetrahedra and vertices that are not finished.
+    tets: u64,
+    vertices: u64,
+    /// Vertices with those that are finished.
+    all: u64,
+}
+
+/// The pieces of a round that are not finished, and samples of their tetrahedra, in the order of the parts.
+#[derive(Default)]
+struct Active {
+    round: u32,
+    pieces: Vec<Became>,
+    samples: Vec<Sample>,
+}
+
+/// The rounds so far.
+pub struct Rounds<'a> {
+    common: Common<'a>,
+    /// What came of them.
+    pub done: Done,
+    /// Each of them.
+    pub told: Vec<Told>,
+    /// The finished pieces and the ranks that have them.
+    pub finished: Vec<(Key, u32)>,
+    active: Active,
+    next_id: u64,
+}
+
+/// The observer of a part: it hears of an end alone.
+struct Quiet<'a>(&'a dyn Observer);
+
+impl Observer for Quiet<'_> {
+    fn stop(&self) -> bool {
+        self.0.stop()
+    }
+}
+
+/// A list that several threads add to.
+type Shared<T> = Mutex<Vec<T>>;
+
+fn add<T>(list: &Shared<T>, item: T) {
+    list.lock().unwrap_or_else(PoisonError::into_inner).push(item);
+}
+
+/// The list, sorted.
+fn sorted<T, K: Ord>(list: Shared<T>, key: impl Fn(&T) -> K) -> Vec<T> {
+    let mut list = list.into_inner().unwrap_or_else(PoisonError::into_inner);
+    list.sort_by_key(key);
+    list
+}
+
+/// The shares of the complexity of the stages, ascending to 1.
+fn growth(wanted: f64, given: f64, sizes: &Sizes) -> Vec<f64> {
+    let mut shares = vec![1.0];
+    while shares[0] * wanted > GROWTH * given && sizes.parts(shares[0] * wanted) > 1 {
+        shares.insert(0, shares[0] / GROWTH);
+    }
+    shares
+}
+
+impl<'a> Rounds<'a> {
+    /// Before the first. `whole` is the mesh, on the rank that has it.
+    ///
+    /// # Errors
+    /// Where it cannot be put away.
+    pub fn new(common: Common<'a>, whole: Option<Piece>) -> Result<Self, Error> {
+        let active = Active::default();
+        let (done, told, finished) = (Done::default(), Vec::new(), Vec::new());
+        let mut rounds = Self { common, done, told, finished, active, next_id: 1 << 40 };
+        let list = Shared::default();
+        let put = whole.map_or(Ok(()), |whole| rounds.put_away(0, 0, [whole, Piece::default()], &list));
+        rounds.agreed(put)?;
+        rounds.become_active(0, list)?;
+        Ok(rounds)
+    }
+
+    /// Makes a mesh of this complexity of `given` vertices. On return `source` is as it was.
+    ///
+    /// # Errors
+    /// Those of the kernel, and where pieces cannot be kept.
+    pub fn run(&mut self, source: &mut Source, team: crate::tasks::Team<'_>, complexity: f64, given: usize) -> Result<(), Error> {
+        let (wanted, given) = (VERTICES_PER_COMPLEXITY * complexity, given as f64);
+        let sizes = self.common.sizes;
+        let stages = growth(wanted, given, &sizes);
+        let (mut present, mut scaled) = (given, 0.0);
+        for (at, &share) in stages.iter().enumerate() {
+            let log_factor = complexity_factor(1.0, share).ln();
+            source.scale(team, log_factor - scaled);
+            let parts = sizes.parts(present.max(share * wanted));
+            let is_last = at + 1 == stages.len();
+            self.round(source, parts, log_factor - scaled, false, is_last)?;
+            (present, scaled) = (share * wanted, log_factor);
+        }
+        for _ in 0..MOST_ZONES {
+            let vertices: u64 = self.active.pieces.iter().map(|piece| piece.vertices).sum();
+            if vertices == 0 || self.is_stopped() {
+                break;
+            }
+            self.round(source, sizes.parts(vertices as f64), 0.0, true, true)?;
+        }
+        self.finish_all();
+        Ok(())
+    }
+
+    /// Whether the user has ended the run, on any rank.
+    fn is_stopped(&self) -> bool {
+        let own = [u8::from(self.common.observer.stop())];
+        self.common.ranks.gather(&own).iter().any(|stopped| stopped == &[1])
+    }
+
+    /// What is left is finished as it is.
+    fn finish_all(&mut self) {
+        let Active { round, pieces, .. } = std::mem::take(&mut self.active);
+        let left = pieces.iter().filter(|piece| piece.tets > 0);
+        self.finished.extend(left.map(|piece| (Key::Active { round, part: piece.part }, piece.rank)));
+        self.finished.sort_unstable();
+    }
+
+    /// The error of any rank.
+    fn agreed<T>(&self, result: Result<T, Error>) -> Result<T, Error> {
+        if self.common.ranks.count() == 1 {
+            return result;
+        }
+        agree(self.common.ranks, result.map_err(|error| error.to_string())).map_err(Error::Told)
+    }
+
+    /// Cuts what is active into parts, whose ln M grow by `log_factor`, and adapts each. In the last round of the stages, and in those after, what
+    /// no cut has touched is finished.
+    fn round(&mut self, source: &Source, parts: usize, log_factor: f64, is_zone: bool, divides: bool) -> Result<(), Error> {
+        let began = Instant::now();
+        let round = self.active.round + 1;
+        let cuts = Cuts::of(std::mem::take(&mut self.active.samples), parts);
+        let tets = self.active.pieces.iter().map(|piece| piece.tets as usize).sum();
+        let owners = self.owners(parts, &cuts.work);
+        let mine = self.deal(round, &cuts, log_factor, &owners)?;
+        let list = Shared::default();
+        let adapted = self.adapt_parts(round, source, (parts, &mine), (is_zone, divides), &list);
+        self.agreed(adapted)?;
+        self.next_id += (parts as u64) << 33;
+        self.forget_active();
+        self.become_active(round, list)?;
+        let vertices = self.active.pieces.iter().map(|piece| piece.all as usize).sum();
+        self.told.push(Told { parts, tets, vertices, seconds: began.elapsed().as_secs_f64() });
+        Ok(())
+    }
+
+    /// The rank of each part: the heaviest first, each to the rank with the least work so far.
+    fn owners(&self, parts: usize, work: &[f64]) -> Vec<u32> {
+        let mut order: Vec<usize> = (0..parts).collect();
+        order.sort_by(|&a, &b| work[b].total_cmp(&work[a]).then(a.cmp(&b)));
+        let mut load = vec![0.0; self.common.ranks.count()];
+        let mut owners = vec![0; parts];
+        for part in order {
+            let least = (0..load.len()).min_by(|&a, &b| f64::total_cmp(&load[a], &load[b])).unwrap_or(0);
+            load[least] += work[part];
+            owners[part] = least as u32;
+        }
+        owners
+    }
+
+    /// Gives each part its share of each active piece. Returns the parts of this rank, each with the pieces that it has a share of.
+    fn deal(&self, round: u32, cuts: &Cuts, log_factor: f64, owners: &[u32]) -> Result<Vec<(u32, Vec<u32>)>, Error> {
+        let Common { shelf, ranks, .. } = self.common;
+        let (own, parts) = (ranks.rank() as u32, owners.len());
+        let (kept, sent) = (Shared::default(), Shared::default());
+        let mine: Vec<Became> = self.active.pieces.iter().copied().filter(|piece| piece.rank == own && piece.tets > 0).collect();
+        let threads = self.at_once(mine.iter().map(|piece| piece.vertices as f64).fold(0.0, f64::max) * 0.4);
+        let dealt = on_threads(threads, mine.len(), |at| {
+            let of = mine[at].part;
+            let mut piece = shelf.take(Key::Active { round: self.active.round, part: of })?;
+            piece.scale(log_factor);
+            let shares = if parts == 1 { vec![piece] } else { split(&piece, &cuts.owners(&piece), parts, |_, _| true) };
+            for (share, part) in shares.into_iter().zip(0..).filter(|(share, _)| share.len() > 0) {
+                match owners[part as usize] {
+                    rank if rank == own => {
+                        shelf.put(Key::Share { round, part, of }, share)?;
+                        add(&kept, (part, of));
+                    }
+                    rank => add(&sent, ((of, part), rank, encoded(&share))),
+                }
+            }
+            Ok(())
+        });
+        self.agreed(dealt)?;
+        let messages = sorted(sent, |(key, ..)| *key).into_iter().map(|((of, part), rank, mut bytes)| {
+            put(&mut bytes, &[part, of]);
+            (rank as usize, bytes)
+        });
+        let received = ranks.exchange(messages.collect()).into_iter().try_for_each(|(_, bytes)| {
+            let (share, key) = bytes.split_at(bytes.len() - 16);
+            let [part, of]: [u32; 2] = take(&mut &*key).and_then(|key| key.try_into().ok()).ok_or(Error::Message)?;
+            shelf.put(Key::Share { round, part, of }, decoded(share).ok_or(Error::Message)?)?;
+            add(&kept, (part, of));
+            Ok(())
+        });
+        self.agreed(received)?;
+        let kept = sorted(kept, |key| *key);
+        let by_part = kept.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|key| key.1).collect()));
+        Ok(by_part.collect())
+    }
+
+    /// How many parts of so many vertices may be in memory at once.
+    fn at_once(&self, vertices: f64) -> usize {
+        let threads = self.common.pool.threads();
+        let Some(memory) = self.common.memory else { return threads };
+        ((memory as f64 / (BYTES_A_VERTEX * vertices.max(1.0))) as usize).clamp(1, threads)
+    }
+
+    /// Adapts the parts of this rank.
+    fn adapt_parts(
+        &self,
+        round: u32,
+        source: &Source,
+        (parts, mine): (usize, &[(u32, Vec<u32>)]),
+        (is_zone, divides): (bool, bool),
+        list: &Shared<(Became, Vec<Sample>, Done)>,
+    ) -> Result<(), Error> {
+        let Common { model, options, pool, shelf, observer, sizes, .. } = self.common;
+        let is_shared = parts < OF_ONE_THREAD;
+        let scheduler = if is_shared { Scheduler::Deterministic } else { Scheduler::Sequential };
+        let options = Options { scheduler, is_draft: false, ..options.clone() };
+        let quiet = Quiet(observer);
+        let adapt = |at: usize, pool: &Pool| {
+            let (part, of) = &mine[at];
+            let part = *part;
+            let share = |&of: &u32| shelf.take(Key::Share { round, part, of });
+            let piece = join(of.iter().map(share).collect::<Result<Vec<_>, _>>()?);
+            let tools = Tools { model, source, options: &options, pool, observer: &quiet };
+            let first_id = self.next_id + (u64::from(part) << 33);
+            let (piece, done) = adapt_piece(tools, piece, Round { is_zone, is_alone: parts == 1 }, first_id)?;
+            of.iter().for_each(|&of| shelf.forget(Key::Share { round, part, of }));
+            let pieces = if divides { divide(&piece) } else { [piece, Piece::default()] };
+            self.put_away(round, part, pieces, list)?;
+            if let Some((.., known)) = list.lock().unwrap_or_else(PoisonError::into_inner).iter_mut().find(|(became, ..)| became.part == part) {
+                *known = done;
+            }
+            observer.advance(1);
+            Ok(())
+        };
+        if is_shared {
+            return (0..mine.len()).try_for_each(|at| adapt(at, pool));
+        }
+        on_threads(self.at_once(sizes.part), mine.len(), |at| adapt(at, &Pool::new(1).map_err(|error| Error::Told(error.to_string()))?))
+    }
+
+    /// Puts away what a part became: what is not finished, and what is.
+    fn put_away(
+        &self,
+        round: u32,
+        part: u32,
+        [active, finished]: [Piece; 2],
+        list: &Shared<(Became, Vec<Sample>, Done)>,
+    ) -> Result<(), Error> {
+        let Common { shelf, ranks, .. } = self.common;
+        let most = (SAMPLES / self.active.pieces.len().max(1)).max(LEAST_SAMPLES);
+        let became = Became {
+            part,
+            rank: ranks.rank() as u32,
+            tets: active.len() as u64,
+            vertices: active.ids.len() as u64,
+            all: (active.ids.len() + finished.ids.len()) as u64,
+        };
+        add(list, (became, samples(&active, most), Done::default()));
+        if active.len() > 0 {
+            shelf.put(Key::Active { round, part }, active)?;
+        }
+        if finished.len() > 0 {
+            shelf.put(Key::Finished { round, part }, finished)?;
+        }
+        Ok(())
+    }
+
+    /// All ranks tell what their parts became.
+    fn become_active(&mut self, round: u32, list: Shared<(Became, Vec<Sample>, Done)>) -> Result<(), Error> {
+        let mut bytes = Vec::new();
+        for (became, samples, done) in sorted(list, |(became, ..)| became.part) {
+            put(&mut bytes, &[became]);
+            put(&mut bytes, &samples);
+            put(&mut bytes, &serde_json::to_vec(&done).map_err(|_| Error::Message)?);
+        }
+        let mut all = Vec::new();
+        for from in self.common.ranks.gather(&bytes) {
+            let mut from = &from[..];
+            while !from.is_empty() {
+                let [became]: [Became; 1] = take(&mut from).and_then(|one| one.try_into().ok()).ok_or(Error::Message)?;
+                let samples: Vec<Sample> = take(&mut from).ok_or(Error::Message)?;
+                let done = take::<u8>(&mut from).ok_or(Error::Message)?;
+                all.push((became, samples, serde_json::from_slice::<Done>(&done).map_err(|_| Error::Message)?));
+            }
+        }
+        all.sort_by_key(|(became, ..)| became.part);
+        self.active = Active { round, ..Active::default() };
+        for (became, mut samples, done) in all {
+            self.done.add(&done);
+            if became.all > became.vertices {
+                self.finished.push((Key::Finished { round, part: became.part }, became.rank));
+            }
+            self.active.pieces.push(became);
+            self.active.samples.append(&mut samples);
+        }
+        Ok(())
+    }
+
+    /// What was active before this round is not needed any more.
+    fn forget_active(&self) {
+        let Active { round, pieces, .. } = &self.active;
+        for piece in pieces.iter().filter(|piece| piece.rank == self.common.ranks.rank() as u32) {
+            self.common.shelf.forget(Key::Active { round: *round, part: piece.part });
+        }
+    }
+
+    /// The numbers of all vertices in the whole mesh.
+    ///
+    /// # Errors
+    /// Where a piece cannot be read.
+    pub fn numbering(&self) -> Result<Numbering, Error> {
+        let Common { shelf, ranks, .. } = self.common;
+        let own = ranks.rank() as u32;
+        let list = Shared::default();
+        let outlined = on_threads(self.common.pool.threads(), self.finished.len(), |at| {
+            let (key, rank) = self.finished[at];
+            if rank == own {
+                let piece = shelf.take(key)?;
+                add(&list, (at as u64, Outline::of(&piece)));
+                shelf.give_back(key, piece);
+            }
+            Ok(())
+        });
+        self.agreed(outlined)?;
+        let mut bytes = Vec::new();
+        for (at, outline) in sorted(list, |(at, _)| *at) {
+            put(&mut bytes, &[at]);
+            bytes.append(&mut outline.encoded());
+        }
+        let mut outlines = Vec::new();
+        for from in ranks.gather(&bytes) {
+            let mut from = &from[..];
+            while !from.is_empty() {
+                let at = take::<u64>(&mut from).ok_or(Error::Message)?;
+                outlines.push((at, Outline::decoded(&mut from).ok_or(Error::Message)?));
+            }
+        }
+        outlines.sort_by_key(|(at, _)| at[0]);
+        Ok(Numbering::of(outlines.into_iter().map(|(_, outline)| outline).collect()))
+    }
+
+    /// Calls f with each finished piece of this rank and its place in their order, on all threads.
+    ///
+    /// # Errors
+    /// That of f, and where a piece cannot be read.
+    pub fn for_each_finished(&self, f: impl Fn(usize, Piece) -> Result<(), Error> + Sync) -> Result<(), Error> {
+        let own = self.common.ranks.rank() as u32;
+        let done = on_threads(self.common.pool.threads(), self.finished.len(), |at| match self.finished[at] {
+            (key, rank) if rank == own => f(at, self.common.shelf.take(key)?),
+            _ => Ok(()),
+        });
+        self.agreed(done)
+    }
+}
+
+/// Calls f with 0, 1, … on so many threads. Ends at the first error.
+fn on_threads(threads: usize, items: usize, f: impl Fn(usize) -> Result<(), Error> + Sync) -> Result<(), Error> {
+    let next = AtomicUsize::new(0);
+    let failed = Mutex::new(None);
+    let work = || {
+        while let Some(at) = Some(next.fetch_add(1, Relaxed)).filter(|&at| at < items) {
+            if let Err(error) = f(at) {
+                next.store(items, Relaxed);
+                failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            }
+        }
+    };
+    if threads <= 1 || items <= 1 {
+        work();
+    } else {
+        std::thread::scope(|scope| (0..threads.min(items)).for_each(|_| drop(scope.spawn(work))));
+    }
+    failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+}

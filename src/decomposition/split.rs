@@ -1,0 +1,195 @@
+//! From a piece to smaller ones.
+use super::piece::{Piece, SHARED, WAITING};
+use crate::geometry::Entity;
+use crate::mesh::adjacency::{self, EDGES, FACES, MatchedFaces, TriangleIndex, sorted2, sorted3};
+use crate::tasks::{Rows, Team};
+use std::collections::HashSet;
+
+/// A vertex of several owners.
+const SEVERAL: u32 = u32::MAX - 1;
+
+/// A vertex without a number in the present piece, or without an owner.
+const NONE: u32 = u32::MAX;
+
+/// Gives each tetrahedron to its owner, of `owners`: the pieces in the order of their owners, some of them empty. Vertices that come to
+/// several are marked as shared. `is_cut` tells whether the face between two tetrahedra of different owners is a cut: its vertices wait then.
+pub fn split(piece: &Piece, owner: &[u32], owners: usize, is_cut: impl Fn(usize, usize) -> bool) -> Vec<Piece> {
+    let mut marks = piece.marks.clone();
+    let mut of_vertex = vec![NONE; marks.len()];
+    for (nodes, &owner) in piece.mesh.tets.nodes.iter().zip(owner) {
+        for &v in nodes {
+            let known = &mut of_vertex[v as usize];
+            *known = if *known == NONE || *known == owner { owner } else { SEVERAL };
+        }
+    }
+    marks.iter_mut().zip(&of_vertex).filter(|(_, owner)| **owner == SEVERAL).for_each(|(mark, _)| *mark |= SHARED);
+    let tets = Rows::by_key::<1>(Team::alone(), owners, owner.len(), |t| [owner[t]]);
+    let triangles = triangles_of(piece, owner, owners);
+    let cuts = cuts_of(piece, owner, owners, is_cut);
+    cuts.iter().flatten().flatten().for_each(|&v| marks[v as usize] |= WAITING);
+    let mut number = vec![NONE; marks.len()];
+    let cut = Cut { piece, marks: &marks, of_vertex: &of_vertex, is_whole: owners == 1 };
+    (0..owners).map(|own| cut.take(tets.row(own), &triangles[own], &cuts[own], &mut number)).collect()
+}
+
+/// Of a piece some vertices, among them all that lie on lines and triangles, with these and without tetrahedra.
+pub fn split_vertices(piece: &Piece, wanted: &[bool]) -> Piece {
+    let vertices: Vec<u32> = (0..).zip(wanted).filter(|(_, wanted)| **wanted).map(|(v, _)| v).collect();
+    let mut number = vec![NONE; piece.ids.len()];
+    vertices.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
+    let cut = Cut { piece, marks: &piece.marks, of_vertex: &[], is_whole: true };
+    let triangles: Vec<(u32, bool)> = (0..).zip(piece.halves.iter().copied()).collect();
+    let mut part = Piece::default();
+    cut.take_vertices(&mut part, &vertices);
+    cut.take_triangles(&mut part, &triangles, &number);
+    cut.take_lines(&mut part, &number);
+    part
+}
+
+/// For each owner its triangles, and whether another has each too.
+fn triangles_of(piece: &Piece, owner: &[u32], owners: usize) -> Vec<Vec<(u32, bool)>> {
+    let mesh = &piece.mesh;
+    let index = TriangleIndex::new(Team::alone(), &mesh.triangles.nodes, mesh.vertices.len());
+    let mut sides: Vec<(u32, u32)> = index
+        .sides(Team::alone(), &mesh.tets.nodes)
+        .into_iter()
+        .map(|side| (side.triangle, owner[side.tet as usize]))
+        .collect();
+    sides.sort_unstable();
+    sides.dedup();
+    let mut of = vec![Vec::new(); owners];
+    for same in sides.chunk_by(|a, b| a.0 == b.0) {
+        for &(triangle, own) in same {
+            of[own as usize].push((triangle, same.len() > 1 || piece.halves[triangle as usize]));
+        }
+    }
+    of
+}
+
+/// For each owner the faces that are cuts: those that were cuts before and are open still, and those between owners.
+fn cuts_of(piece: &Piece, owner: &[u32], owners: usize, is_cut: impl Fn(usize, usize) -> bool) -> Vec<Vec<[u32; 3]>> {
+    let known: HashSet<[u32; 3]> = piece.cuts.iter().copied().collect();
+    let faces = MatchedFaces::of(Team::alone(), &piece.mesh.tets.nodes);
+    let mut of = vec![Vec::new(); owners];
+    for (t, (nodes, neighbours)) in piece.mesh.tets.nodes.iter().zip(&faces.neighbours).enumerate() {
+        for (face, &n) in FACES.iter().zip(neighbours) {
+            let nodes = || sorted3(face.map(|k| nodes[k]));
+            let is_cut = match n {
+                adjacency::NONE => !known.is_empty() && known.contains(&nodes()),
+                n => owner[n as usize] != owner[t] && is_cut(t, n as usize),
+            };
+            if is_cut {
+                of[owner[t] as usize].push(nodes());
+            }
+        }
+    }
+    of
+}
+
+/// A piece that is being cut.
+struct Cut<'p> {
+    piece: &'p Piece,
+    marks: &'p [u8],
+    of_vertex: &'p [u32],
+    is_whole: bool,
+}
+
+impl Cut<'_> {
+    /// The piece of these tetrahedra, triangles and cuts. `number` has a place for each vertex, and is left as it was.
+    fn take(&self, tets: &[u32], triangles: &[(u32, bool)], cuts: &[[u32; 3]], number: &mut [u32]) -> Piece {
+        let from = &self.piece.mesh;
+        let mut piece = Piece::default();
+        let mut vertices = Vec::new();
+        for &t in tets {
+            let nodes = from.tets.nodes[t as usize].map(|v| {
+                if number[v as usize] == NONE {
+                    number[v as usize] = vertices.len() as u32;
+                    vertices.push(v);
+                }
+                number[v as usize]
+            });
+            piece.mesh.tets.push(nodes, from.tets.refs[t as usize]);
+        }
+        self.take_vertices(&mut piece, &vertices);
+        self.take_triangles(&mut piece, triangles, number);
+        piece.cuts = cuts.iter().map(|nodes| sorted3(nodes.map(|v| number[v as usize]))).collect();
+        self.take_lines(&mut piece, number);
+        vertices.iter().for_each(|&v| number[v as usize] = NONE);
+        piece
+    }
+
+    fn take_vertices(&self, piece: &mut Piece, vertices: &[u32]) {
+        let (from, place) = (&self.piece.mesh, &self.piece.place);
+        let at = |v: &u32| *v as usize;
+        piece.mesh.vertices = vertices.iter().map(|v| from.vertices[at(v)]).collect();
+        piece.mesh.vertex_refs = vertices.iter().map(|v| from.vertex_refs[at(v)]).collect();
+        piece.place.entities = vertices.iter().map(|v| place.entities[at(v)]).collect();
+        piece.place.parameters = vertices.iter().map(|v| place.parameters[at(v)]).collect();
+        piece.place.projected = vertices.iter().map(|v| place.projected[at(v)]).collect();
+        piece.logs = vertices.iter().map(|v| self.piece.logs[at(v)]).collect();
+        piece.ids = vertices.iter().map(|v| self.piece.ids[at(v)]).collect();
+        piece.marks = vertices.iter().map(|v| self.marks[at(v)]).collect();
+    }
+
+    fn take_triangles(&self, piece: &mut Piece, triangles: &[(u32, bool)], number: &[u32]) {
+        let from = &self.piece.mesh;
+        let required: HashSet<u32> = from.required_triangles.iter().copied().collect();
+        for &(triangle, is_half) in triangles {
+            let old = triangle as usize;
+            if required.contains(&triangle) {
+                piece.mesh.required_triangles.push(piece.mesh.triangles.len() as u32);
+            }
+            let nodes = from.triangles.nodes[old].map(|v| number[v as usize]);
+            piece.mesh.triangles.push(nodes, from.triangles.refs[old]);
+            piece.place.faces.push(self.piece.place.faces[old]);
+            piece.halves.push(is_half);
+        }
+    }
+
+    /// Required vertices and edges, and ridges.
+    fn take_lines(&self, piece: &mut Piece, number: &[u32]) {
+        let from = &self.piece.mesh;
+        let numbered = |nodes: [u32; 2]| {
+            let nodes = nodes.map(|v| number[v as usize]);
+            (!nodes.contains(&NONE)).then_some(nodes)
+        };
+        let required = from.required_vertices.iter().map(|&v| number[v as usize]);
+        piece.mesh.required_vertices = required.filter(|&v| v != NONE).collect();
+        for &e in &from.required_edges {
+            if let Some(nodes) = numbered(from.edges.nodes[e as usize]) {
+                piece.mesh.required_edges.push(piece.mesh.edges.len() as u32);
+                piece.mesh.edges.push(nodes, from.edges.refs[e as usize]);
+            }
+        }
+        // Where both ends are shared, the edge itself may be another piece's.
+        let is_doubtful =
+            |[a, b]: [u32; 2]| !self.is_whole && [a, b].iter().all(|&v| self.of_vertex[v as usize] == SEVERAL);
+        let mut doubtful = Vec::new();
+        for &(nodes, curve) in &self.piece.place.ridges {
+            match numbered(nodes) {
+                Some(new) if is_doubtful(nodes) => doubtful.push((new, curve)),
+                Some(new) => piece.place.ridges.push((new, curve)),
+                None => {}
+            }
+        }
+        if !doubtful.is_empty() {
+            let edges = edges_on_lines(piece);
+            piece.place.ridges.extend(doubtful.into_iter().filter(|(nodes, _)| edges.contains(&sorted2(*nodes))));
+        }
+    }
+}
+
+/// The edges of tetrahedra whose ends both lie on edges or vertices of the model and are shared.
+fn edges_on_lines(piece: &Piece) -> HashSet<[u32; 2]> {
+    let may_end = |v: u32| {
+        piece.marks[v as usize] & SHARED != 0
+            && matches!(piece.place.entities[v as usize], Entity::Edge(_) | Entity::Vertex(_))
+    };
+    let mut edges = HashSet::new();
+    for nodes in &piece.mesh.tets.nodes {
+        let ends = nodes.map(may_end);
+        let among = EDGES.iter().filter(|[i, j]| ends[*i] && ends[*j]);
+        edges.extend(among.map(|&[i, j]| sorted2([nodes[i], nodes[j]])));
+    }
+    edges
+}
