@@ -33,7 +33,7 @@ pub fn broadcast(ranks: &dyn Ranks, bytes: &[u8]) -> Vec<u8> {
 pub fn sum(ranks: &dyn Ranks, own: &[u64]) -> Vec<u64> {
     let own: Vec<[u8; 8]> = own.iter().map(|term| term.to_le_bytes()).collect();
     let add = |a: u64, b: u64| a.checked_add(b).expect("a sum over all ranks fits into 64 bits");
-    sums(ranks, &own, |bytes| u64::from_le_bytes(bytes), add)
+    sums(ranks, &own, u64::from_le_bytes, add)
 }
 
 /// The sums over all ranks, one for each of the terms, added from rank 0 on: the same bits on every rank and in every run with as many
@@ -44,7 +44,7 @@ pub fn sum(ranks: &dyn Ranks, own: &[u64]) -> Vec<u64> {
 /// Where ranks have different numbers of terms.
 pub fn sum_reals(ranks: &dyn Ranks, own: &[f64]) -> Vec<f64> {
     let own: Vec<[u8; 8]> = own.iter().map(|term| term.to_le_bytes()).collect();
-    sums(ranks, &own, |bytes| f64::from_le_bytes(bytes), |a, b| a + b)
+    sums(ranks, &own, f64::from_le_bytes, |a, b| a + b)
 }
 
 /// The terms of all ranks, added from rank 0 on.
