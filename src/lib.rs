@@ -66,7 +66,8 @@
 //!
 //! # Features
 //! `occt` (default) reads CAD models by OpenCASCADE. `cli` (default) is the program and all that only it needs; a library goes without:
-//! `geo-adapt = { version = "0.1", default-features = false, features = ["occt"] }`. `tbb` and `openmp` are further task back-ends.
+//! `geo-adapt = { version = "0.1", default-features = false, features = ["occt"] }`. `tbb` and `openmp` are further task back-ends, and
+//! `mpi` runs on several machines.
 #[doc(hidden)]
 pub mod adapt;
 pub mod api;
@@ -97,6 +98,8 @@ pub mod metric;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod process;
+#[doc(hidden)]
+pub mod ranks;
 #[doc(hidden)]
 pub mod sizing;
 #[cfg(feature = "occt")]

@@ -13,3 +13,4 @@ mod library;
 mod memory_end;
 mod narrow_voids;
 mod no_backend;
+mod ranks;

@@ -49,10 +49,11 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("mesh", &["tasks", "memory"]),
     ("memory", &[]),
     ("process", &[]),
+    ("ranks", &[]),
 ];
 
 /// Rooms in which no files name each other in a circle, but within one part: a module of the room with all that is in it.
-const ROOMS: &[&str] = &["adapt", "cycle", "cli/bootstrap", "process", "memory"];
+const ROOMS: &[&str] = &["adapt", "cycle", "cli/bootstrap", "process", "memory", "ranks"];
 
 fn is_layer(name: &str) -> bool {
     ALLOWED.iter().any(|(layer, _)| *layer == name)
