@@ -43,11 +43,6 @@ impl Joined {
         Self { whole, vertices, halves, ridges, edges }
     }
 
-    /// The number of a shared vertex.
-    pub fn number_of(&self, id: u64) -> Option<u32> {
-        self.vertices.get(&id).copied()
-    }
-
     /// Adds a piece. Returns the numbers of its vertices in the whole.
     pub fn add(&mut self, piece: &Piece) -> Vec<u32> {
         let numbers = self.add_vertices(piece);

@@ -193,7 +193,13 @@ impl<'a> Rounds<'a> {
     ///
     /// # Errors
     /// Those of the kernel, and where pieces cannot be kept.
-    pub fn run(&mut self, source: &mut Source, team: crate::tasks::Team<'_>, complexity: f64, given: usize) -> Result<(), Error> {
+    pub fn run(
+        &mut self,
+        source: &mut Source,
+        team: crate::tasks::Team<'_>,
+        complexity: f64,
+        given: usize,
+    ) -> Result<(), Error> {
         let (wanted, given) = (VERTICES_PER_COMPLEXITY * complexity, given as f64);
         let sizes = self.common.sizes;
         let stages = growth(wanted, given, &sizes);
@@ -241,7 +247,14 @@ impl<'a> Rounds<'a> {
 
     /// Cuts what is active into parts, whose ln M grow by `log_factor`, and adapts each. In the last round of the stages, and in those after, what
     /// no cut has touched is finished.
-    fn round(&mut self, source: &Source, parts: usize, log_factor: f64, is_zone: bool, divides: bool) -> Result<(), Error> {
+    fn round(
+        &mut self,
+        source: &Source,
+        parts: usize,
+        log_factor: f64,
+        is_zone: bool,
+        divides: bool,
+    ) -> Result<(), Error> {
         let began = Instant::now();
         let round = self.active.round + 1;
         let cuts = Cuts::of(std::mem::take(&mut self.active.samples), parts);
@@ -278,7 +291,8 @@ impl<'a> Rounds<'a> {
         let Common { shelf, ranks, .. } = self.common;
         let (own, parts) = (ranks.rank() as u32, owners.len());
         let (kept, sent) = (Shared::default(), Shared::default());
-        let mine: Vec<Became> = self.active.pieces.iter().copied().filter(|piece| piece.rank == own && piece.tets > 0).collect();
+        let mine: Vec<Became> =
+            self.active.pieces.iter().copied().filter(|piece| piece.rank == own && piece.tets > 0).collect();
         let threads = self.at_once(mine.iter().map(|piece| piece.vertices as f64).fold(0.0, f64::max) * 0.4);
         let dealt = on_threads(threads, mine.len(), |at| {
             let of = mine[at].part;
@@ -346,7 +360,9 @@ impl<'a> Rounds<'a> {
             of.iter().for_each(|&of| shelf.forget(Key::Share { round, part, of }));
             let pieces = if divides { divide(&piece) } else { [piece, Piece::default()] };
             self.put_away(round, part, pieces, list)?;
-            if let Some((.., known)) = list.lock().unwrap_or_else(PoisonError::into_inner).iter_mut().find(|(became, ..)| became.part == part) {
+            if let Some((.., known)) =
+                list.lock().unwrap_or_else(PoisonError::into_inner).iter_mut().find(|(became, ..)| became.part == part)
+            {
                 *known = done;
             }
             observer.advance(1);
@@ -355,7 +371,9 @@ impl<'a> Rounds<'a> {
         if is_shared {
             return (0..mine.len()).try_for_each(|at| adapt(at, pool));
         }
-        on_threads(self.at_once(sizes.part), mine.len(), |at| adapt(at, &Pool::new(1).map_err(|error| Error::Told(error.to_string()))?))
+        on_threads(self.at_once(sizes.part), mine.len(), |at| {
+            adapt(at, &Pool::new(1).map_err(|error| Error::Told(error.to_string()))?)
+        })
     }
 
     /// Puts away what a part became: what is not finished, and what is.
@@ -397,7 +415,8 @@ impl<'a> Rounds<'a> {
         for from in self.common.ranks.gather(&bytes) {
             let mut from = &from[..];
             while !from.is_empty() {
-                let [became]: [Became; 1] = take(&mut from).and_then(|one| one.try_into().ok()).ok_or(Error::Message)?;
+                let [became]: [Became; 1] =
+                    take(&mut from).and_then(|one| one.try_into().ok()).ok_or(Error::Message)?;
                 let samples: Vec<Sample> = take(&mut from).ok_or(Error::Message)?;
                 let done = take::<u8>(&mut from).ok_or(Error::Message)?;
                 all.push((became, samples, serde_json::from_slice::<Done>(&done).map_err(|_| Error::Message)?));

@@ -14,7 +14,7 @@ use super::waiting::Waiting;
 use super::{Outcome, interrupt};
 use crate::adapt::forecast::most_in_memory;
 use crate::adapt::{self, Adapted, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
-use crate::decomposition::{self, Job, Sizes};
+use crate::decomposition::{self, Common, Shelf, Sizes};
 use crate::geometry::classify::keeps_references;
 use crate::memory;
 use crate::metric::Field;
@@ -67,6 +67,9 @@ pub struct Arguments {
     /// Adapts the mesh part by part within this memory: 4GiB, 500MB
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     memory: Option<u64>,
+    /// Vertices of a part, with --memory [default: up to 300000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..), allow_negative_numbers = true)]
+    part_vertices: Option<u32>,
     /// How the threads share the work
     #[arg(long, value_enum, default_value_t = Scheduler::default())]
     scheduler: Scheduler,
@@ -202,11 +205,27 @@ impl Arguments {
         }
         if self.memory.is_some() {
             let Input { mesh, place, model, source, .. } = input;
-            let job = Job { mesh, place, model, options: &options, sizes: Sizes::default(), pool, observer: progress };
-            let adapted = decomposition::adapt(job, source);
+            let shelf = Shelf::in_memory();
+            let common = Common {
+                model,
+                options: &options,
+                sizes: self.part_vertices.map_or_else(Sizes::default, |vertices| Sizes::of(f64::from(vertices))),
+                pool,
+                ranks: &crate::ranks::Alone,
+                shelf: &shelf,
+                memory: self.memory,
+                observer: progress,
+            };
+            let adapted = decomposition::adapt(common, mesh, place, source);
+            let adapted = adapted.and_then(|adapted| {
+                if std::env::var_os("GEO_ADAPT_STAGES").is_some() {
+                    adapted.told().iter().for_each(|told| eprintln!("{told:?}"));
+                }
+                adapted.into_memory(team)
+            });
             progress.finish();
             progress.has_room()?;
-            return adapted.map(|(adapted, _)| adapted).map_err(|error| named(error.to_string()).into());
+            return adapted.map_err(|error| named(error.to_string()).into());
         }
         let adapt = |input: &Input| {
             let Input { mesh, place, model, source, .. } = input;

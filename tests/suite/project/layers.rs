@@ -36,7 +36,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("api", &["adapt", "metric", "geometry", "transfer", "tasks", "mesh"]),
     ("formats", &["geometry", "mesh", "tasks"]),
     ("adapt", &["sizing", "metric", "geometry", "tasks", "mesh", "memory"]),
-    ("decomposition", &["adapt", "metric", "geometry", "tasks", "mesh"]),
+    ("decomposition", &["adapt", "metric", "geometry", "ranks", "tasks", "mesh"]),
     ("sizing", &["metric", "geometry", "tasks", "mesh"]),
     ("image", &["tasks", "mesh"]),
     ("surface", &["geometry", "mesh", "tasks"]),
