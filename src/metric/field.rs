@@ -1,8 +1,9 @@
 //! Metric fields at the vertices of a mesh: files, complexity.
 use super::held::SIZES;
 use super::{Error, Sym3};
+use crate::mesh::TetMesh;
 use crate::mesh::io::{self, Batch, FieldKind, Read, Solution, SolutionField};
-use crate::mesh::{TetMesh, vector::volume6};
+use crate::mesh::vector::{Vec3, volume6};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -239,21 +240,27 @@ fn kind_name(kind: FieldKind) -> &'static str {
 /// Complexity C = Σ_v √det(M_v)·V_v of a mesh with a metric at every vertex; V_v is a quarter of the volume of the
 /// tetrahedra at v. A unit mesh has about 2C vertices and 12C tetrahedra.
 pub fn complexity(team: Team<'_>, mesh: &TetMesh, metrics: &[Sym3]) -> f64 {
-    weighted_complexity(team, mesh, &team.map(GRAIN, metrics.len(), |v| metrics[v].sqrt_det()))
+    let densities = team.map(GRAIN, metrics.len(), |v| metrics[v].sqrt_det());
+    weighted_complexity(team, &mesh.vertices, &mesh.tets.nodes, &densities)
 }
 
 /// [`complexity`] from ln M: √det M = e^(tr/2).
 pub fn complexity_of_logs(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 {
-    weighted_complexity(team, mesh, &team.map(GRAIN, logs.len(), |v| (0.5 * logs[v].trace()).exp()))
+    complexity_of_tets(team, &mesh.vertices, &mesh.tets.nodes, logs)
 }
 
-fn weighted_complexity(team: Team<'_>, mesh: &TetMesh, densities: &[f64]) -> f64 {
+/// [`complexity_of_logs`] of some tetrahedra, shape (t, 4), on vertices, shape (n, 3): the share that they have in that of their mesh.
+pub fn complexity_of_tets(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], logs: &[Sym3]) -> f64 {
+    weighted_complexity(team, vertices, tets, &team.map(GRAIN, logs.len(), |v| (0.5 * logs[v].trace()).exp()))
+}
+
+fn weighted_complexity(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], densities: &[f64]) -> f64 {
     let of_tet = |tet: &[u32; 4]| {
-        let [a, b, c, d] = tet.map(|v| mesh.vertices[v as usize]);
+        let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
         let density: f64 = tet.iter().map(|&v| densities[v as usize]).sum();
         volume6(a, b, c, d) * density
     };
-    over_tets(team, mesh, of_tet) / 24.0
+    over_tets(team, tets, of_tet) / 24.0
 }
 
 /// Complexity ∫ √det M of the log-Euclidean interpolant, exactly: √det M = e^ℓ with ℓ = tr(ln M)/2 linear in a tetrahedron. On a
@@ -263,12 +270,12 @@ pub fn complexity_between(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 
         let [a, b, c, d] = tet.map(|v| mesh.vertices[v as usize]);
         volume6(a, b, c, d) / 6.0 * mean_exponential(tet.map(|v| 0.5 * logs[v as usize].trace()))
     };
-    over_tets(team, mesh, of_tet)
+    over_tets(team, &mesh.tets.nodes, of_tet)
 }
 
 /// Sum over the tetrahedra.
-fn over_tets(team: Team<'_>, mesh: &TetMesh, of_tet: impl Fn(&[u32; 4]) -> f64 + Sync) -> f64 {
-    team.sum(GRAIN, mesh.tets.len(), |range| mesh.tets.nodes[range].iter().map(&of_tet).sum())
+fn over_tets(team: Team<'_>, tets: &[[u32; 4]], of_tet: impl Fn(&[u32; 4]) -> f64 + Sync) -> f64 {
+    team.sum(GRAIN, tets.len(), |range| tets[range].iter().map(&of_tet).sum())
 }
 
 /// Mean of e^ℓ over a tetrahedron, ℓ linear with these values at its vertices: Σ_k 3!/(k+3)! h_k(ℓ), with h_k the complete

@@ -2,6 +2,7 @@
 //!
 //! Reading goes bytes → `source` (sections; found by `ascii` or `binary`) → `read` (arrays, through a `cursor`);
 //! writing goes arrays → `write` (checked) → `layout` (what stands where; `rows` by a `sink`) → `batch`.
+//! Binary files larger than memory are read and written by [`slices`].
 mod ascii;
 mod batch;
 mod binary;
@@ -17,6 +18,7 @@ mod points;
 mod read;
 mod rows;
 mod sink;
+pub mod slices;
 mod solution;
 mod source;
 mod write;
@@ -27,6 +29,7 @@ pub use error::Error;
 pub use missing::meant;
 pub use place::{check_writable, follow};
 pub use points::read_points;
+pub use rows::Slice;
 pub use solution::{FieldKind, Solution, SolutionField};
 
 use super::TetMesh;
