@@ -7,6 +7,7 @@ mod ascii;
 mod batch;
 mod binary;
 mod bytes;
+mod counts;
 mod cursor;
 mod error;
 mod keyword;
@@ -25,6 +26,7 @@ mod write;
 
 pub use batch::{Batch, write_beside};
 pub use bytes::{check_regular, read_file, read_file_on, read_head};
+pub use counts::MeshCounts;
 pub use error::Error;
 pub use missing::meant;
 pub use place::{check_writable, follow};

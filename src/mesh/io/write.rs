@@ -2,8 +2,7 @@
 use super::keyword::Keyword;
 use super::layout::{Layout, version};
 use super::rows::{Content, Slice, mesh_sections, solution_sections};
-use super::slices::MeshCounts;
-use super::{Batch, Error, Solution, SolutionField};
+use super::{Batch, Error, MeshCounts, Solution, SolutionField};
 use crate::mesh::{OnFace, TetMesh};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;

@@ -6,8 +6,7 @@ use super::super::read::{
     association, check_mesh, element, indices, mesh_notices, solution_notices, solution_section, vertex,
 };
 use super::super::source::{Contents, Encoding, Section, Source, Words, empty};
-use super::super::{Error, FieldKind, Solution, SolutionField, check_regular};
-use super::MeshCounts;
+use super::super::{Error, FieldKind, MeshCounts, Solution, SolutionField, check_regular};
 use super::file::{Heads, Positioned};
 use crate::mesh::vector::Vec3;
 use crate::mesh::{Association, Elements};

@@ -1,7 +1,7 @@
 use super::super::layout::{Framed, frame, version};
 use super::super::read::{mesh_from, solution_from};
 use super::super::rows::{Slice, sections};
-use super::super::{Batch, FieldKind, Solution, SolutionField, write_mesh, write_solution};
+use super::super::{Batch, FieldKind, MeshCounts, Solution, SolutionField, write_mesh, write_solution};
 use super::*;
 use crate::mesh::samples::cube;
 use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};

@@ -1,13 +1,11 @@
 //! Writing binary files by slices.
-use super::super::Error;
-use super::super::FieldKind;
 use super::super::keyword::Keyword;
 use super::super::layout::{Framed, frame, version};
 use super::super::rows::{Slice, sections};
 use super::super::sink::Binary;
 use super::super::source::{Section, Words};
 use super::super::write::{check_counts, check_slice};
-use super::MeshCounts;
+use super::super::{Error, FieldKind, MeshCounts};
 use super::covered::Covered;
 use super::file::Positioned;
 use crate::tasks::{GRAIN, Team};

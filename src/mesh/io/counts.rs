@@ -1,6 +1,6 @@
 //! How many rows each section of a mesh has.
-use super::super::keyword::Keyword;
-use super::super::rows::Slice;
+use super::keyword::Keyword;
+use super::rows::Slice;
 use crate::mesh::TetMesh;
 
 /// Numbers of the entities of a mesh and of its lists, as a file has them. Sections without rows are left out of a file.
@@ -39,7 +39,7 @@ impl MeshCounts {
     }
 
     /// What `count` says of each keyword.
-    pub(in super::super) fn from_each(count: impl Fn(Keyword) -> usize) -> Self {
+    pub(super) fn from_each(count: impl Fn(Keyword) -> usize) -> Self {
         Self {
             vertices: count(Keyword::Vertices),
             edges: count(Keyword::Edges),
@@ -57,7 +57,7 @@ impl MeshCounts {
     }
 
     /// Rows of a keyword.
-    pub(in super::super) fn rows(&self, keyword: Keyword) -> usize {
+    pub(super) fn rows(&self, keyword: Keyword) -> usize {
         match keyword {
             Keyword::Vertices => self.vertices,
             Keyword::Edges => self.edges,
