@@ -1,11 +1,14 @@
 //! Metric fields at the vertices of a mesh: files, complexity.
 use super::held::SIZES;
 use super::{Error, Sym3};
+use crate::mesh::TetMesh;
 use crate::mesh::io::{self, Batch, FieldKind, Read, Solution, SolutionField};
-use crate::mesh::{TetMesh, vector::volume6};
+use crate::mesh::vector::{Vec3, volume6};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+mod slices;
 
 /// A metric at every vertex of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -69,8 +72,7 @@ impl Field {
     /// # Errors
     /// [`Error::NotHeld`] when a tensor is not positive definite in doubles.
     pub fn solution(&self, team: Team<'_>, path: &Path) -> Result<Solution, Error> {
-        let held = |m: Sym3| if m.is_held() { Ok(m) } else { Err(m.sizes()) };
-        tensors(team, path, self.metrics.len(), |v| held(self.metrics[v]))
+        tensors(team, path, 0, &self.metrics, held).map(tensor_field)
     }
 
     /// M = exp of these logarithms as a file holds it; `path` is what errors say.
@@ -78,7 +80,7 @@ impl Field {
     /// # Errors
     /// As of [`Field::solution`].
     pub fn solution_of_logs(team: Team<'_>, path: &Path, logs: &[Sym3]) -> Result<Solution, Error> {
-        tensors(team, path, logs.len(), |v| logs[v].held_exp().ok_or_else(|| logs[v].sizes_of_log()))
+        tensors(team, path, 0, logs, held_exp).map(tensor_field)
     }
 
     /// Writes .sol or .solb by the extension.
@@ -118,28 +120,43 @@ impl Field {
     }
 }
 
-/// What `metric` gives for each vertex, or else the error with its sizes, if it cannot be written.
+/// A metric as a file holds it, or else its sizes.
+fn held(metric: Sym3) -> Result<Sym3, [f64; 3]> {
+    if metric.is_held() { Ok(metric) } else { Err(metric.sizes()) }
+}
+
+/// M of its logarithm as a file holds it, or else its sizes.
+fn held_exp(log: Sym3) -> Result<Sym3, [f64; 3]> {
+    log.held_exp().ok_or_else(|| log.sizes_of_log())
+}
+
+/// What `metric` gives for each of some vertices, from vertex `start` on, or else the error with its sizes, if it cannot be written.
 fn tensors(
     team: Team<'_>,
     path: &Path,
-    count: usize,
-    metric: impl Fn(usize) -> Result<Sym3, [f64; 3]> + Sync,
-) -> Result<Solution, Error> {
-    let kind = FieldKind::SymmetricTensor;
-    let mut values = vec![0.0; kind.values() * count];
+    start: usize,
+    of: &[Sym3],
+    metric: impl Fn(Sym3) -> Result<Sym3, [f64; 3]> + Sync,
+) -> Result<Vec<[f64; 6]>, Error> {
+    let mut values = vec![[0.0; 6]; of.len()];
     let first = AtomicUsize::new(usize::MAX);
-    team.fill(kind.values() * GRAIN, &mut values, |start, chunk| {
-        let rows = chunk.as_chunks_mut().0;
-        rows.iter_mut().zip(start / kind.values()..).for_each(|(row, v)| match metric(v) {
+    team.fill(GRAIN, &mut values, |start, rows| {
+        rows.iter_mut().zip(start..).for_each(|(row, v)| match metric(of[v]) {
             Ok(metric) => *row = metric.0,
             Err(_) => _ = first.fetch_min(v, Relaxed),
         });
     });
     let first = first.into_inner();
-    if let Some(Err(sizes)) = (first < count).then(|| metric(first)) {
-        return Err(Error::NotHeld { path: path.into(), vertex: first + 1, sizes });
+    if let Some(Err(sizes)) = of.get(first).map(|&of| metric(of)) {
+        return Err(Error::NotHeld { path: path.into(), vertex: start + first + 1, sizes });
     }
-    Ok(Solution { vertices: count, fields: vec![SolutionField { kind, values }] })
+    Ok(values)
+}
+
+/// The solution of these tensors.
+fn tensor_field(tensors: Vec<[f64; 6]>) -> Solution {
+    let (vertices, kind) = (tensors.len(), FieldKind::SymmetricTensor);
+    Solution { vertices, fields: vec![SolutionField { kind, values: tensors.into_flattened() }] }
 }
 
 /// ln M; none when M is not positive definite.
@@ -171,37 +188,56 @@ fn of_each(
     expected: Option<usize>,
     convert: impl Fn(Sym3) -> Option<Sym3> + Sync,
 ) -> Result<Read<Vec<Sym3>>, Error> {
-    let field = only_metric(path, solution)?;
-    let vertices = solution.vertices;
-    if let Some(expected) = expected.filter(|&expected| expected != vertices) {
-        return Err(Error::Count { path: path.into(), found: vertices, expected });
-    }
-    let is_sizes = field.kind == FieldKind::Scalar;
-    let metric = |vertex: usize| match is_sizes {
-        true => Some(field.values[vertex]).filter(|h| SIZES.contains(h)).map(isotropic),
-        false => Some(Sym3(field.values.as_chunks().0[vertex])),
-    };
-    let parts = team.chunks(GRAIN, vertices, |range| {
-        let convert = |vertex: usize| metric(vertex).and_then(&convert).ok_or(vertex);
-        range.map(convert).collect::<Result<Vec<Sym3>, usize>>()
-    });
-    let wrong = |v: usize| match is_sizes {
-        true => Error::NotASize { path: path.into(), vertex: v + 1, size: field.values[v] },
-        false => {
-            let eigenvalues = Sym3(field.values.as_chunks().0[v]).eigen_jacobi().values;
-            Error::NotPositive { path: path.into(), vertex: v + 1, eigenvalues }
-        }
-    };
-    let converted = parts.into_iter().collect::<Result<Vec<_>, usize>>().map_err(wrong)?;
+    let kinds: Vec<_> = solution.fields.iter().map(|field| field.kind).collect();
+    let kind = only_metric(path, &kinds)?;
+    check_count(path, solution.vertices, expected)?;
+    let content = of_vertices(team, path, solution, 0, convert)?;
     let mut notices = Vec::new();
-    if is_sizes {
-        let (least, greatest) = extremes(&field.values);
+    if kind == FieldKind::Scalar {
+        let (least, greatest) = extremes(&solution.fields[0].values);
         notices.push(format!(
             "{}: one scalar a vertex: isotropic sizes, from {least:.4} to {greatest:.4} (a solution goes in by --field)",
             path.display()
         ));
     }
-    Ok(Read { content: team.join(converted), notices })
+    Ok(Read { content, notices })
+}
+
+/// What `convert` makes of the metrics at some vertices, from vertex `start` on. There is one field, as [`only_metric`] has it.
+fn of_vertices(
+    team: Team<'_>,
+    path: &Path,
+    solution: &Solution,
+    start: usize,
+    convert: impl Fn(Sym3) -> Option<Sym3> + Sync,
+) -> Result<Vec<Sym3>, Error> {
+    let field = &solution.fields[0];
+    let is_sizes = field.kind == FieldKind::Scalar;
+    let metric = |vertex: usize| match is_sizes {
+        true => Some(field.values[vertex]).filter(|h| SIZES.contains(h)).map(isotropic),
+        false => Some(Sym3(field.values.as_chunks().0[vertex])),
+    };
+    let parts = team.chunks(GRAIN, solution.vertices, |range| {
+        let convert = |vertex: usize| metric(vertex).and_then(&convert).ok_or(vertex);
+        range.map(convert).collect::<Result<Vec<Sym3>, usize>>()
+    });
+    let wrong = |v: usize| match is_sizes {
+        true => Error::NotASize { path: path.into(), vertex: start + v + 1, size: field.values[v] },
+        false => {
+            let eigenvalues = Sym3(field.values.as_chunks().0[v]).eigen_jacobi().values;
+            Error::NotPositive { path: path.into(), vertex: start + v + 1, eigenvalues }
+        }
+    };
+    let converted = parts.into_iter().collect::<Result<Vec<_>, usize>>().map_err(wrong)?;
+    Ok(team.join(converted))
+}
+
+/// Whether there are as many metrics as vertices, where that is known.
+fn check_count(path: &Path, found: usize, expected: Option<usize>) -> Result<(), Error> {
+    match expected.filter(|&expected| expected != found) {
+        Some(expected) => Err(Error::Count { path: path.into(), found, expected }),
+        None => Ok(()),
+    }
 }
 
 /// h⁻² I, the metric of the same size h in all directions.
@@ -214,14 +250,12 @@ fn extremes(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)))
 }
 
-/// The one field of a metric file: symmetric tensors, or scalars, which are sizes.
-fn only_metric<'a>(path: &Path, solution: &'a Solution) -> Result<&'a SolutionField, Error> {
-    if let [field] = &solution.fields[..]
-        && matches!(field.kind, FieldKind::SymmetricTensor | FieldKind::Scalar)
-    {
-        return Ok(field);
+/// The kind of the one field of a metric file: symmetric tensors, or scalars, which are sizes.
+fn only_metric(path: &Path, kinds: &[FieldKind]) -> Result<FieldKind, Error> {
+    if let &[kind @ (FieldKind::SymmetricTensor | FieldKind::Scalar)] = kinds {
+        return Ok(kind);
     }
-    let kinds: Vec<&str> = solution.fields.iter().map(|field| kind_name(field.kind)).collect();
+    let kinds: Vec<&str> = kinds.iter().map(|&kind| kind_name(kind)).collect();
     let found =
         if kinds.is_empty() { "no field at the vertices".into() } else { format!("fields: {}", kinds.join(", ")) };
     Err(Error::Kind { path: path.into(), found })
@@ -239,21 +273,27 @@ fn kind_name(kind: FieldKind) -> &'static str {
 /// Complexity C = Σ_v √det(M_v)·V_v of a mesh with a metric at every vertex; V_v is a quarter of the volume of the
 /// tetrahedra at v. A unit mesh has about 2C vertices and 12C tetrahedra.
 pub fn complexity(team: Team<'_>, mesh: &TetMesh, metrics: &[Sym3]) -> f64 {
-    weighted_complexity(team, mesh, &team.map(GRAIN, metrics.len(), |v| metrics[v].sqrt_det()))
+    let densities = team.map(GRAIN, metrics.len(), |v| metrics[v].sqrt_det());
+    weighted_complexity(team, &mesh.vertices, &mesh.tets.nodes, &densities)
 }
 
 /// [`complexity`] from ln M: √det M = e^(tr/2).
 pub fn complexity_of_logs(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 {
-    weighted_complexity(team, mesh, &team.map(GRAIN, logs.len(), |v| (0.5 * logs[v].trace()).exp()))
+    complexity_of_tets(team, &mesh.vertices, &mesh.tets.nodes, logs)
 }
 
-fn weighted_complexity(team: Team<'_>, mesh: &TetMesh, densities: &[f64]) -> f64 {
+/// [`complexity_of_logs`] of some tetrahedra, shape (t, 4), on vertices, shape (n, 3): the share that they have in that of their mesh.
+pub fn complexity_of_tets(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], logs: &[Sym3]) -> f64 {
+    weighted_complexity(team, vertices, tets, &team.map(GRAIN, logs.len(), |v| (0.5 * logs[v].trace()).exp()))
+}
+
+fn weighted_complexity(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], densities: &[f64]) -> f64 {
     let of_tet = |tet: &[u32; 4]| {
-        let [a, b, c, d] = tet.map(|v| mesh.vertices[v as usize]);
+        let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
         let density: f64 = tet.iter().map(|&v| densities[v as usize]).sum();
         volume6(a, b, c, d) * density
     };
-    over_tets(team, mesh, of_tet) / 24.0
+    over_tets(team, tets, of_tet) / 24.0
 }
 
 /// Complexity ∫ √det M of the log-Euclidean interpolant, exactly: √det M = e^ℓ with ℓ = tr(ln M)/2 linear in a tetrahedron. On a
@@ -263,12 +303,12 @@ pub fn complexity_between(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 
         let [a, b, c, d] = tet.map(|v| mesh.vertices[v as usize]);
         volume6(a, b, c, d) / 6.0 * mean_exponential(tet.map(|v| 0.5 * logs[v as usize].trace()))
     };
-    over_tets(team, mesh, of_tet)
+    over_tets(team, &mesh.tets.nodes, of_tet)
 }
 
 /// Sum over the tetrahedra.
-fn over_tets(team: Team<'_>, mesh: &TetMesh, of_tet: impl Fn(&[u32; 4]) -> f64 + Sync) -> f64 {
-    team.sum(GRAIN, mesh.tets.len(), |range| mesh.tets.nodes[range].iter().map(&of_tet).sum())
+fn over_tets(team: Team<'_>, tets: &[[u32; 4]], of_tet: impl Fn(&[u32; 4]) -> f64 + Sync) -> f64 {
+    team.sum(GRAIN, tets.len(), |range| tets[range].iter().map(&of_tet).sum())
 }
 
 /// Mean of e^ℓ over a tetrahedron, ℓ linear with these values at its vertices: Σ_k 3!/(k+3)! h_k(ℓ), with h_k the complete
@@ -308,91 +348,4 @@ pub fn scale_to_complexity(team: Team<'_>, mesh: &TetMesh, metrics: &mut [Sym3],
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::samples::cube;
-
-    fn write(name: &str, kind: FieldKind, values: Vec<f64>) -> (tempfile::TempDir, std::path::PathBuf) {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(name);
-        let per_vertex = if kind == FieldKind::Scalar { 1 } else { 6 };
-        let solution = Solution { vertices: values.len() / per_vertex, fields: vec![SolutionField { kind, values }] };
-        io::write_solution(&path, &solution).unwrap();
-        (folder, path)
-    }
-
-    #[test]
-    fn complexity_of_a_constant_metric() {
-        let mesh = cube(3);
-        let mut metrics = vec![Sym3::diagonal(4.0, 9.0, 25.0); mesh.vertices.len()];
-        assert!((complexity(Team::alone(), &mesh, &metrics) - 30.0).abs() < 1e-12);
-        let logs: Vec<Sym3> = metrics.iter().map(Sym3::ln).collect();
-        assert!((complexity_of_logs(Team::alone(), &mesh, &logs) - 30.0).abs() < 1e-12);
-        let factor = scale_to_complexity(Team::alone(), &mesh, &mut metrics, 240.0);
-        assert!((factor - 4.0).abs() < 1e-12);
-        assert!((complexity(Team::alone(), &mesh, &metrics) - 240.0).abs() < 1e-10);
-    }
-
-    #[test]
-    fn the_integral_between_vertices_is_exact() {
-        let mesh = cube(1);
-        // √det M = e^(x + 8y), whose integral is the product of two.
-        let log = |p: [f64; 3]| Sym3::diagonal(1.0, 1.0, 0.0).times(p[0] + 8.0 * p[1]);
-        let logs: Vec<Sym3> = mesh.vertices.iter().map(|&p| log(p)).collect();
-        let exact = (1f64.exp() - 1.0) * (8f64.exp() - 1.0) / 8.0;
-        let found = complexity_between(Team::alone(), &mesh, &logs);
-        assert!((found / exact - 1.0).abs() < 1e-13, "{found} {exact}");
-        assert!(
-            complexity_of_logs(Team::alone(), &mesh, &logs) > 2.0 * exact,
-            "the sum over the vertices is far off here"
-        );
-        // Sizes that differ by 1e12: finite, and below the greatest value.
-        let steep = mean_exponential([0.0, -3.0, 27.0, 82.9]);
-        assert!(steep > 0.0 && steep < 82.9f64.exp(), "{steep}");
-        assert_eq!(mean_exponential([0.0; 4]), 1.0);
-    }
-
-    #[test]
-    fn what_was_written_is_read() {
-        let field = Field { metrics: vec![Sym3([4.0, 0.5, 9.0, 0.25, -1.0, 25.0]), Sym3::IDENTITY] };
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["m.sol", "m.solb"] {
-            let path = folder.path().join(name);
-            field.write(&path).unwrap();
-            assert_eq!(Field::read(&path, 2).unwrap().content, field);
-        }
-    }
-
-    #[test]
-    fn scalars_are_isotropic_sizes() {
-        let (_folder, path) = write("sizes.sol", FieldKind::Scalar, vec![0.5, 2.0]);
-        let Read { content, notices } = Field::read(&path, 2).unwrap();
-        assert_eq!(content.metrics, [Sym3::diagonal(4.0, 4.0, 4.0), Sym3::diagonal(0.25, 0.25, 0.25)]);
-        assert!(notices[0].contains("isotropic sizes, from 0.5000 to 2.0000"), "{notices:?}");
-        let logs = Field::read_logs(Team::alone(), &path, 2).unwrap().content;
-        for (log, h) in logs.iter().zip([0.5, 2.0]) {
-            assert!(log.sizes_of_log().iter().all(|size| (size / h - 1.0).abs() < 1e-14), "{log:?}");
-        }
-    }
-
-    #[test]
-    fn errors_name_file_vertex_and_remedy() {
-        for wrong in [0.0, -2.0, 1e200] {
-            let (_folder, path) = write("scalar.solb", FieldKind::Scalar, vec![1.0, wrong]);
-            let message = Field::read(&path, 2).unwrap_err().to_string();
-            assert!(
-                message.contains("scalar.solb: the size of vertex 2 is ") && message.contains("--field"),
-                "{message}"
-            );
-        }
-
-        let values = [[1.0, 0.0, 1.0, 0.0, 0.0, 1.0], [1.0, 2.0, 1.0, 0.0, 0.0, 1.0]].concat();
-        let (_folder, path) = write("indefinite.solb", FieldKind::SymmetricTensor, values);
-        let message = Field::read(&path, 2).unwrap_err().to_string();
-        assert!(message.contains("indefinite.solb: metric of vertex 2 is not positive definite"), "{message}");
-        assert!(message.contains("(eigenvalues -1.000e0, 1.000e0, 3.000e0)"), "{message}");
-
-        let message = Field::read(&path, 5).unwrap_err().to_string();
-        assert!(message.contains("metric at 2 vertices, but the mesh has 5"), "{message}");
-    }
-}
+mod tests;

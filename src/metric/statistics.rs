@@ -2,7 +2,7 @@
 use super::quality::edge_length;
 use super::{Sym3, field, mean_ratios};
 use crate::mesh::adjacency::Edges;
-use crate::mesh::vector::{distance, sub, volume6};
+use crate::mesh::vector::{Vec3, distance, sub, volume6};
 use crate::mesh::{Elements, TetMesh};
 use crate::tasks::{GRAIN, Team};
 use serde::Serialize;
@@ -57,7 +57,7 @@ impl Distribution {
 }
 
 /// A [`Distribution`] of values that come one by one.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 struct Accumulator<'b> {
     bounds: &'b [f64],
     closed_above: bool,
@@ -153,47 +153,100 @@ pub struct Statistics {
 impl Statistics {
     /// Of a mesh with a metric at every vertex.
     pub fn in_metric(team: Team<'_>, mesh: &TetMesh, metrics: &[Sym3]) -> Self {
-        let logs = team.map(GRAIN, metrics.len(), |v| metrics[v].ln());
-        let length = |[a, b]: [u32; 2]| {
-            let v = sub(mesh.vertices[b as usize], mesh.vertices[a as usize]);
-            edge_length(v, &metrics[a as usize], &metrics[b as usize])
-        };
-        let mut statistics = Self::of(team, mesh, length, &LENGTH_CLASSES, |v| logs[v as usize]);
-        let classes = &statistics.edge_lengths.classes;
-        let unit: usize = classes
-            .iter()
-            .filter(|class| class.low == Some(FRAC_1_SQRT_2) || class.high == Some(SQRT_2))
-            .map(|class| class.count)
-            .sum();
-        let complexity = field::complexity_of_logs(team, mesh, &logs);
-        statistics.metric = Some(MetricFigures {
-            complexity,
-            vertices_per_complexity: mesh.vertices.len() as f64 / complexity,
-            unit_edges: unit as f64 / statistics.edge_lengths.count.max(1) as f64,
-        });
-        statistics
+        Figures::in_metric(team, Part::whole(mesh), metrics, |_| true).statistics()
     }
 
     /// Of a mesh alone: lengths and mean ratios in space.
     pub fn in_space(team: Team<'_>, mesh: &TetMesh) -> Self {
-        let length = |[a, b]: [u32; 2]| distance(mesh.vertices[a as usize], mesh.vertices[b as usize]);
-        Self::of(team, mesh, length, &[], |_| Sym3::ZERO)
+        Figures::in_space(team, Part::whole(mesh), |_| true).statistics()
+    }
+}
+
+/// A part of a mesh: what is counted with it. Nodes are indices into its own vertices.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'m> {
+    /// Coordinates of all vertices of its elements, shape (n, 3), model units.
+    pub vertices: &'m [Vec3],
+    /// How many of them are counted here, and in no other part.
+    pub own_vertices: usize,
+    /// Its tetrahedra, in no other part.
+    pub tets: &'m Elements<4>,
+    /// Its triangles, in no other part.
+    pub triangles: &'m Elements<3>,
+    /// Its tagged edges, in no other part.
+    pub edges: &'m Elements<2>,
+}
+
+impl<'m> Part<'m> {
+    /// All of a mesh.
+    pub fn whole(mesh: &'m TetMesh) -> Self {
+        Self {
+            vertices: &mesh.vertices,
+            own_vertices: mesh.vertices.len(),
+            tets: &mesh.tets,
+            triangles: &mesh.triangles,
+            edges: &mesh.edges,
+        }
+    }
+}
+
+/// The figures of some parts of a mesh, from which [`Statistics`] follow when all are there.
+///
+/// Sums are rounded in the order in which the parts are joined, so join them in an order of their own, not in that in which they are
+/// done: `all.into_iter().reduce(Figures::and)` of a list of them.
+#[derive(Clone, Debug)]
+pub struct Figures {
+    /// Those that only add up; the others are empty.
+    sums: Statistics,
+    lengths: Accumulator<'static>,
+    ratios: Accumulator<'static>,
+    complexity: Option<f64>,
+}
+
+impl Figures {
+    /// Of a part with a metric at every vertex, shape (n,). Of its tetrahedra's edges, pairs of nodes in ascending order, it has those that it
+    /// `counts`: for an edge that several parts have, that must be true in one of them.
+    pub fn in_metric(
+        team: Team<'_>,
+        part: Part<'_>,
+        metrics: &[Sym3],
+        counts: impl Fn([u32; 2]) -> bool + Sync,
+    ) -> Self {
+        let logs = team.map(GRAIN, metrics.len(), |v| metrics[v].ln());
+        let length = |[a, b]: [u32; 2]| {
+            let v = sub(part.vertices[b as usize], part.vertices[a as usize]);
+            edge_length(v, &metrics[a as usize], &metrics[b as usize])
+        };
+        let mut figures = Self::of(team, part, counts, length, &LENGTH_CLASSES, |v| logs[v as usize]);
+        figures.complexity = Some(field::complexity_of_tets(team, part.vertices, &part.tets.nodes, &logs));
+        figures
+    }
+
+    /// Of a part alone: lengths and mean ratios in space. Edges as in [`Figures::in_metric`].
+    pub fn in_space(team: Team<'_>, part: Part<'_>, counts: impl Fn([u32; 2]) -> bool + Sync) -> Self {
+        let length = |[a, b]: [u32; 2]| distance(part.vertices[a as usize], part.vertices[b as usize]);
+        Self::of(team, part, counts, length, &[], |_| Sym3::ZERO)
     }
 
     fn of(
         team: Team<'_>,
-        mesh: &TetMesh,
+        part: Part<'_>,
+        counts: impl Fn([u32; 2]) -> bool + Sync,
         length: impl Fn([u32; 2]) -> f64 + Sync,
-        length_classes: &[f64],
+        length_classes: &'static [f64],
         log: impl Fn(u32) -> Sym3 + Sync,
     ) -> Self {
-        let edges = Edges::of(team, &mesh.tets.nodes);
+        let edges = Edges::of(team, &part.tets.nodes);
         let lengths = gathered(team, edges.nodes(), Accumulator::new(length_classes, false), |range, lengths| {
-            edges.for_each(range, |edge| lengths.add(length(edge)));
+            edges.for_each(range, |edge| {
+                if counts(edge) {
+                    lengths.add(length(edge));
+                }
+            });
         });
         drop(edges);
-        let points = |tet: &[u32; 4]| tet.map(|v| mesh.vertices[v as usize]);
-        let tets = &mesh.tets.nodes;
+        let points = |tet: &[u32; 4]| tet.map(|v| part.vertices[v as usize]);
+        let tets = &part.tets.nodes;
         let ratios = gathered(team, tets.len(), Accumulator::new(&RATIO_CLASSES, true), |range, ratios| {
             mean_ratios(tets[range].iter(), |tet| (points(tet), tet.map(&log)), |_, ratio| ratios.add(ratio));
         });
@@ -201,19 +254,52 @@ impl Statistics {
             let [a, b, c, d] = points(tet);
             volume6(a, b, c, d) / 6.0
         };
-        Self {
-            vertices: mesh.vertices.len(),
-            tets: mesh.tets.len(),
-            triangles: mesh.triangles.len(),
-            tagged_edges: mesh.edges.len(),
+        let sums = Statistics {
+            vertices: part.own_vertices,
+            tets: tets.len(),
+            triangles: part.triangles.len(),
+            tagged_edges: part.edges.len(),
             volume: team.sum(GRAIN, tets.len(), |range| tets[range].iter().map(volume).sum()),
-            regions: by_reference(team, &mesh.tets),
-            patches: by_reference(team, &mesh.triangles),
-            curves: by_reference(team, &mesh.edges),
-            edge_lengths: lengths.distribution(),
-            mean_ratios: ratios.distribution(),
+            regions: by_reference(team, part.tets),
+            patches: by_reference(team, part.triangles),
+            curves: by_reference(team, part.edges),
+            edge_lengths: Distribution::default(),
+            mean_ratios: Distribution::default(),
             metric: None,
-        }
+        };
+        Self { sums, lengths, ratios, complexity: None }
+    }
+
+    /// Joins the figures of other parts to these. Either all are in the metric or none is.
+    #[must_use]
+    pub fn and(mut self, other: Self) -> Self {
+        let (sums, others) = (&mut self.sums, other.sums);
+        sums.vertices += others.vertices;
+        sums.tets += others.tets;
+        sums.triangles += others.triangles;
+        sums.tagged_edges += others.tagged_edges;
+        sums.volume += others.volume;
+        add_counts(&mut sums.regions, others.regions);
+        add_counts(&mut sums.patches, others.patches);
+        add_counts(&mut sums.curves, others.curves);
+        self.lengths = self.lengths.and(other.lengths);
+        self.ratios = self.ratios.and(other.ratios);
+        self.complexity = self.complexity.zip(other.complexity).map(|(a, b)| a + b);
+        self
+    }
+
+    /// The statistics of what has been joined. Places of least values ([`Distribution::argmin`]) count through the parts, one after the other.
+    pub fn statistics(self) -> Statistics {
+        let Self { sums, lengths, ratios, complexity } = self;
+        let (edge_lengths, mean_ratios) = (lengths.distribution(), ratios.distribution());
+        let is_unit = |class: &&Class| class.low == Some(FRAC_1_SQRT_2) || class.high == Some(SQRT_2);
+        let unit: usize = edge_lengths.classes.iter().filter(is_unit).map(|class| class.count).sum();
+        let metric = complexity.map(|complexity| MetricFigures {
+            complexity,
+            vertices_per_complexity: sums.vertices as f64 / complexity,
+            unit_edges: unit as f64 / edge_lengths.count.max(1) as f64,
+        });
+        Statistics { edge_lengths, mean_ratios, metric, ..sums }
     }
 }
 
@@ -243,48 +329,14 @@ pub fn by_reference<const N: usize>(team: Team<'_>, elements: &Elements<N>) -> B
         counts
     });
     let mut counts = BTreeMap::new();
-    parts.into_iter().flatten().for_each(|(reference, count)| *counts.entry(reference).or_insert(0) += count);
+    parts.into_iter().for_each(|part| add_counts(&mut counts, part));
     counts
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::samples::cube;
-
-    #[test]
-    fn classes_and_bounds() {
-        let d = Distribution::of(&[0.5, 1.0, 1.5, -2.0, 9.0], &[0.0, 1.0, 2.0, f64::INFINITY], false);
-        // −2 counts in the first class.
-        assert_eq!(d.classes.iter().map(|class| class.count).collect::<Vec<_>>(), [2, 2, 1]);
-        assert_eq!((d.count, d.min, d.max, d.mean, d.argmin), (5, -2.0, 9.0, 2.0, 3));
-        assert_eq!((d.classes[2].low, d.classes[2].high), (Some(2.0), None));
-        let d = Distribution::of(&[0.5, 1.0, 1.5], &[0.0, 1.0, 2.0], true);
-        assert_eq!(d.classes.iter().map(|class| class.count).collect::<Vec<_>>(), [2, 1]);
-        assert_eq!(Distribution::of(&[], &[0.0, 1.0], true).count, 0);
-    }
-
-    #[test]
-    fn figures_of_a_cube() {
-        let n = 4;
-        let mesh = cube(n);
-        // Sizes 1/n: edges of length 1, √2 (face diagonals; in the class above by rounding or not) and √3.
-        let metrics = vec![Sym3::IDENTITY.times(f64::from(n * n) * 0.99); mesh.vertices.len()];
-        let statistics = Statistics::in_metric(Team::alone(), &mesh, &metrics);
-        let figures = statistics.metric.clone().unwrap();
-        assert!((figures.complexity - (f64::from(n) * 0.99f64.sqrt()).powi(3)).abs() < 1e-9);
-        assert!((figures.vertices_per_complexity * figures.complexity - 125.0).abs() < 1e-9);
-        let (axis, face, body) = (3 * 4 * 25, 3 * 16 * 5, 64);
-        let share = f64::from(axis + face) / f64::from(axis + face + body);
-        assert!((figures.unit_edges - share).abs() < 1e-12, "{figures:?}");
-        assert!((statistics.volume - 1.0).abs() < 1e-12);
-        assert_eq!(statistics.patches, (1..=6).map(|side| (side, 32)).collect());
-        assert_eq!((statistics.regions[&1], statistics.tets), (384, 384));
-        // All tetrahedra are alike.
-        let ratios = &statistics.mean_ratios;
-        assert!((ratios.min - ratios.max).abs() < 1e-12 && (ratios.min - ratios.mean).abs() < 1e-12);
-        let alone = Statistics::in_space(Team::alone(), &mesh);
-        assert!((alone.mean_ratios.mean - ratios.mean).abs() < 1e-12 && alone.metric.is_none());
-        assert!((alone.edge_lengths.min - 0.25).abs() < 1e-15 && alone.edge_lengths.classes.is_empty());
-    }
+/// Adds the counts of other elements.
+fn add_counts(counts: &mut BTreeMap<i32, usize>, others: BTreeMap<i32, usize>) {
+    others.into_iter().for_each(|(reference, count)| *counts.entry(reference).or_insert(0) += count);
 }
+
+#[cfg(test)]
+mod tests;

@@ -67,7 +67,7 @@ fn is_word(token: &[u8]) -> bool {
 
 /// Finds the sections of a text: each goes to the next word.
 pub(super) fn contents<'a>(path: &'a Path, bytes: &'a [u8]) -> Result<Contents<'a>, Error> {
-    let source = Source { path, bytes, encoding: Encoding::Ascii };
+    let source = Source { path, bytes, start: 0, encoding: Encoding::Ascii };
     let start = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let mut tokens = Tokens { bytes, next: start };
     check_version(&source, &mut tokens)?;
@@ -100,7 +100,7 @@ pub(super) fn contents<'a>(path: &'a Path, bytes: &'a [u8]) -> Result<Contents<'
         let message = format!("{} follows the end; cut it off", shown(&bytes[token.clone()]));
         return Err(source.error(token.start, "End", message));
     }
-    check_dimension(&source, dimension)?;
+    check_dimension(&source, bytes.len(), dimension)?;
     Ok(contents)
 }
 

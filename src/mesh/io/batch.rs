@@ -25,6 +25,8 @@ pub struct Batch {
     /// Renamed last.
     main: Vec<Staged>,
     folders: Vec<Staged>,
+    /// Files that [`Batch::open`] gave away, with their targets.
+    open: Vec<(PathBuf, File)>,
 }
 
 /// The files that are written already, each with its target.
@@ -79,6 +81,24 @@ impl Batch {
         Ok(())
     }
 
+    /// As [`Batch::add`], or as [`Batch::add_main`] if it `is_main`: an empty file beside the target, for who writes it at any place. It must be
+    /// whole before [`Batch::commit`].
+    ///
+    /// # Errors
+    /// As there, and for a device or a pipe, which can only be written from front to back.
+    pub fn open(&mut self, path: &Path, is_main: bool) -> Result<File, Error> {
+        let stream = || refusal("this is a device or a pipe, which is written in order; name a file");
+        let mut files = Err(stream());
+        self.add_laid_out(path, is_main, |to| {
+            let To::File(file) = to else { return Err(stream()) };
+            files = file.try_clone().and_then(|own| Ok((own, file.try_clone()?)));
+            Ok(())
+        })?;
+        let (own, file) = files.map_err(|error| Error::system(path, error))?;
+        self.open.push((path.to_owned(), own));
+        Ok(file)
+    }
+
     /// Removes a file of an older result, which would be taken for one of this result, before the new files come.
     pub fn remove(&mut self, path: &Path) {
         self.old.push(path.to_owned());
@@ -98,6 +118,9 @@ impl Batch {
     /// # Errors
     /// [`Error::System`] when one cannot be brought to the disk, removed or renamed.
     pub fn commit(mut self) -> Result<(), Error> {
+        for (to, file) in self.open.drain(..) {
+            file.sync_all().map_err(|error| Error::system(&to, error))?;
+        }
         for Staged { to, sync, .. } in self.files.iter_mut().chain(&mut self.main) {
             let Some(sync) = sync.take() else { continue };
             let synced = sync.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));

@@ -83,6 +83,15 @@ impl Keyword {
         Self::ALL.into_iter().find(|k| k.name().as_bytes() == name)
     }
 
+    /// What the indices of its rows count; of vertices and solutions, which have none, vertices.
+    pub(super) fn target(self) -> Self {
+        match self {
+            Self::Ridges | Self::RequiredEdges => Self::Edges,
+            Self::RequiredTriangles => Self::Triangles,
+            _ => Self::Vertices,
+        }
+    }
+
     /// Numbers of integers and reals in a row; a solution's reals follow from its header.
     pub(super) fn row(self) -> (usize, usize) {
         match self {

@@ -3,6 +3,7 @@
 //! A file is parts (its head, each section, its end), each a head and rows; some rows are a piece, which one task encodes. In a binary file
 //! the counts tell where each piece goes, so tasks put them there in any order. A text, a pipe, and a system without such writes get the
 //! pieces from front to back. The bytes are the same.
+use super::binary::row_size;
 use super::keyword::{DIMENSION, END};
 use super::rows::Content;
 use super::sink::{Binary, Sink, Text};
@@ -199,10 +200,27 @@ fn binary_parts(version: i64, words: Words, sections: &[Section]) -> Vec<Part<'_
     parts
 }
 
-/// Bytes of a row.
-fn row_size(words: Words, section: &Section) -> usize {
-    let (ints, reals) = section.row();
-    ints * words.int + reals * words.real
+/// A head of a binary file, and the rows that follow it.
+pub(super) struct Framed<'s> {
+    /// Where the head begins.
+    pub place: u64,
+    /// Its bytes.
+    pub head: Vec<u8>,
+    /// The section whose rows follow, and the bytes of a row.
+    pub rows: Option<(&'s Section, usize)>,
+}
+
+/// A binary file without its rows.
+pub(super) fn frame(version: i64, sections: &[Section]) -> Vec<Framed<'_>> {
+    let (words, mut next) = (Words::of_version(version, false), 0);
+    let parts = binary_parts(version, words, sections).into_iter();
+    parts
+        .map(|Part { head, rows }| {
+            let (place, rows) = (next, rows.map(|section| (section, row_size(words, section))));
+            next += head.len() as u64 + rows.map_or(0, |(section, row)| section.count as u64 * row as u64);
+            Framed { place, head, rows }
+        })
+        .collect()
 }
 
 /// Bytes of a section behind its keyword and position.

@@ -2,10 +2,12 @@
 //!
 //! Reading goes bytes → `source` (sections; found by `ascii` or `binary`) → `read` (arrays, through a `cursor`);
 //! writing goes arrays → `write` (checked) → `layout` (what stands where; `rows` by a `sink`) → `batch`.
+//! Binary files larger than memory are read and written by [`slices`].
 mod ascii;
 mod batch;
 mod binary;
 mod bytes;
+mod counts;
 mod cursor;
 mod error;
 mod keyword;
@@ -17,16 +19,19 @@ mod points;
 mod read;
 mod rows;
 mod sink;
+pub mod slices;
 mod solution;
 mod source;
 mod write;
 
 pub use batch::{Batch, write_beside};
 pub use bytes::{check_regular, read_file, read_file_on, read_head};
+pub use counts::MeshCounts;
 pub use error::Error;
 pub use missing::meant;
 pub use place::{check_writable, follow};
 pub use points::read_points;
+pub use rows::Slice;
 pub use solution::{FieldKind, Solution, SolutionField};
 
 use super::TetMesh;

@@ -5,13 +5,25 @@ use super::cursor::{Cursor, Fault, columns, room, rows};
 use super::keyword::Keyword;
 use super::source::{Contents, Encoding, Section, Source};
 use super::{Error, Read, Solution, SolutionField};
-use crate::mesh::{Elements, OnEdge, OnFace, OnVertex, TetMesh};
+use crate::mesh::vector::Vec3;
+use crate::mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
 
 /// A mesh from the bytes of a file.
 pub(super) fn mesh_from(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
     let contents = Contents::of(path, bytes)?;
+    check_mesh(&contents)?;
+    let content = match contents.source.encoding {
+        Encoding::Ascii => mesh::<AsciiCursor>(team, &contents)?,
+        Encoding::Binary(_) => mesh::<BinaryCursor>(team, &contents)?,
+    };
+    Ok(Read { content, notices: mesh_notices(contents) })
+}
+
+/// A mesh has vertices, and no more than indices can count.
+pub(super) fn check_mesh(contents: &Contents<'_>) -> Result<(), Error> {
+    let path = contents.source.path;
     let Some(vertices) = contents.section(Keyword::Vertices).filter(|s| s.count > 0) else {
         let message = "no Vertices: a mesh is expected (a solution file is none)";
         return Err(Error::content(path, "whole file", message));
@@ -20,60 +32,67 @@ pub(super) fn mesh_from(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Rea
         let message = format!("{} vertices; at most {} are supported", vertices.count, u32::MAX);
         return Err(Error::content(path, "Vertices", message));
     }
-    let content = match contents.source.encoding {
-        Encoding::Ascii => mesh::<AsciiCursor>(team, &contents)?,
-        Encoding::Binary(_) => mesh::<BinaryCursor>(team, &contents)?,
-    };
-    let mut notices = contents.notices;
-    notices.extend(
-        contents
-            .sections
-            .iter()
-            .filter(|s| s.keyword == Keyword::SolAtVertices)
-            .map(|section| contents.source.notice(section.body.start, "SolAtVertices in a mesh file")),
-    );
-    Ok(Read { content, notices })
+    Ok(())
+}
+
+/// What is passed over in a mesh file.
+pub(super) fn mesh_notices(contents: Contents<'_>) -> Vec<String> {
+    let Contents { source, sections, mut notices } = contents;
+    let solutions = sections.iter().filter(|s| s.keyword == Keyword::SolAtVertices);
+    notices.extend(solutions.map(|section| source.notice(section.body.start, "SolAtVertices in a mesh file")));
+    notices
 }
 
 /// A solution from the bytes of a file.
 pub(super) fn solution_from(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<Solution>, Error> {
     let contents = Contents::of(path, bytes)?;
-    let Some(section) = contents.section(Keyword::SolAtVertices) else {
-        let message = "no SolAtVertices: a solution with values at vertices is expected (a mesh file is none)";
-        return Err(Error::content(path, "whole file", message));
-    };
+    let section = solution_section(&contents)?;
     let content = match contents.source.encoding {
         Encoding::Ascii => solution::<AsciiCursor>(&contents.source, section)?,
         Encoding::Binary(_) => binary_solution(team, &contents.source, section)?,
     };
-    let mut notices = contents.notices;
-    notices.extend(contents.sections.iter().filter(|s| s.keyword != Keyword::SolAtVertices).map(|section| {
-        contents.source.notice(section.body.start, &format!("{} in a solution file", section.keyword.name()))
-    }));
-    Ok(Read { content, notices })
+    Ok(Read { content, notices: solution_notices(contents) })
+}
+
+/// The section of a solution file.
+pub(super) fn solution_section<'c>(contents: &'c Contents<'_>) -> Result<&'c Section, Error> {
+    contents.section(Keyword::SolAtVertices).ok_or_else(|| {
+        let message = "no SolAtVertices: a solution with values at vertices is expected (a mesh file is none)";
+        Error::content(contents.source.path, "whole file", message)
+    })
+}
+
+/// What is passed over in a solution file.
+pub(super) fn solution_notices(contents: Contents<'_>) -> Vec<String> {
+    let Contents { source, sections, mut notices } = contents;
+    notices.extend(
+        sections.iter().filter(|s| s.keyword != Keyword::SolAtVertices).map(|section| {
+            source.notice(section.body.start, &format!("{} in a solution file", section.keyword.name()))
+        }),
+    );
+    notices
 }
 
 fn mesh<'a, C: Cursor<'a>>(team: Team<'_>, contents: &Contents<'a>) -> Result<TetMesh, Error> {
     let source = &contents.source;
+    let vertices = contents.count(Keyword::Vertices);
     let mut mesh = TetMesh::default();
     for section in &contents.sections {
+        let list = || indices::<C>(source, section, contents.count(section.keyword.target()));
         match section.keyword {
             Keyword::Vertices => {
-                let row = |row: &mut C| Ok((row.reals()?, row.reference()?));
-                (mesh.vertices, mesh.vertex_refs) = columns(team, source, section, ([0.0; 3], 0), row)?;
+                (mesh.vertices, mesh.vertex_refs) = columns(team, source, section, ([0.0; 3], 0), vertex::<C>)?;
             }
-            Keyword::Edges => mesh.edges = elements::<C, 2>(team, contents, section)?,
-            Keyword::Triangles => mesh.triangles = elements::<C, 3>(team, contents, section)?,
-            Keyword::Tetrahedra => mesh.tets = elements::<C, 4>(team, contents, section)?,
-            Keyword::Corners => mesh.corners = indices::<C>(contents, section, Keyword::Vertices)?,
-            Keyword::Ridges => mesh.ridges = indices::<C>(contents, section, Keyword::Edges)?,
-            Keyword::RequiredVertices => mesh.required_vertices = indices::<C>(contents, section, Keyword::Vertices)?,
-            Keyword::RequiredEdges => mesh.required_edges = indices::<C>(contents, section, Keyword::Edges)?,
-            Keyword::RequiredTriangles => {
-                mesh.required_triangles = indices::<C>(contents, section, Keyword::Triangles)?;
-            }
+            Keyword::Edges => mesh.edges = elements::<C, 2>(team, source, section, vertices)?,
+            Keyword::Triangles => mesh.triangles = elements::<C, 3>(team, source, section, vertices)?,
+            Keyword::Tetrahedra => mesh.tets = elements::<C, 4>(team, source, section, vertices)?,
+            Keyword::Corners => mesh.corners = list()?,
+            Keyword::Ridges => mesh.ridges = list()?,
+            Keyword::RequiredVertices => mesh.required_vertices = list()?,
+            Keyword::RequiredEdges => mesh.required_edges = list()?,
+            Keyword::RequiredTriangles => mesh.required_triangles = list()?,
             Keyword::OnVertices | Keyword::OnEdges | Keyword::OnFaces => {
-                association::<C>(contents, section, &mut mesh)?;
+                association::<C>(source, section, vertices, &mut mesh.association)?;
             }
             Keyword::SolAtVertices => {}
         }
@@ -81,37 +100,57 @@ fn mesh<'a, C: Cursor<'a>>(team: Team<'_>, contents: &Contents<'a>) -> Result<Te
     Ok(mesh)
 }
 
+/// A row of Vertices.
+#[inline(always)]
+pub(super) fn vertex<'a, C: Cursor<'a>>(row: &mut C) -> Result<(Vec3, i32), String> {
+    Ok((row.reals()?, row.reference()?))
+}
+
+/// A row of elements of a mesh of so many vertices.
+#[inline(always)]
+pub(super) fn element<'a, C: Cursor<'a>, const N: usize>(
+    row: &mut C,
+    vertices: usize,
+) -> Result<([u32; N], i32), String> {
+    let mut nodes = [0; N];
+    for node in &mut nodes {
+        *node = row.index(vertices, Keyword::Vertices)?;
+    }
+    Ok((nodes, row.reference()?))
+}
+
 fn elements<'a, C: Cursor<'a>, const N: usize>(
     team: Team<'_>,
-    contents: &Contents<'a>,
+    source: &Source<'a>,
     section: &Section,
+    vertices: usize,
 ) -> Result<Elements<N>, Error> {
-    let vertices = contents.count(Keyword::Vertices);
-    let row = |row: &mut C| {
-        let mut nodes = [0; N];
-        for node in &mut nodes {
-            *node = row.index(vertices, Keyword::Vertices)?;
-        }
-        Ok((nodes, row.reference()?))
-    };
-    let (nodes, refs) = columns(team, &contents.source, section, ([0; N], 0), row)?;
+    let (nodes, refs) = columns(team, source, section, ([0; N], 0), |row: &mut C| element(row, vertices))?;
     Ok(Elements { nodes, refs })
 }
 
-fn indices<'a, C: Cursor<'a>>(contents: &Contents<'a>, section: &Section, of: Keyword) -> Result<Vec<u32>, Error> {
-    let limit = contents.count(of);
+/// A list of indices into so many entities.
+pub(super) fn indices<'a, C: Cursor<'a>>(
+    source: &Source<'a>,
+    section: &Section,
+    limit: usize,
+) -> Result<Vec<u32>, Error> {
     let mut indices = Vec::with_capacity(room(section));
-    rows::<C>(&contents.source, section, |row| {
-        indices.push(row.index(limit, of)?);
+    rows::<C>(source, section, |row| {
+        indices.push(row.index(limit, section.keyword.target())?);
         Ok(())
     })?;
     Ok(indices)
 }
 
-fn association<'a, C: Cursor<'a>>(contents: &Contents<'a>, section: &Section, mesh: &mut TetMesh) -> Result<(), Error> {
-    let vertices = contents.count(Keyword::Vertices);
-    let to = &mut mesh.association;
-    rows::<C>(&contents.source, section, |row| {
+/// One of the three lists of an association.
+pub(super) fn association<'a, C: Cursor<'a>>(
+    source: &Source<'a>,
+    section: &Section,
+    vertices: usize,
+    to: &mut Association,
+) -> Result<(), Error> {
+    rows::<C>(source, section, |row| {
         let vertex = row.index(vertices, Keyword::Vertices)?;
         let id = row.reference()?;
         match section.keyword {

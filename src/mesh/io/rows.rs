@@ -1,10 +1,134 @@
 //! The sections of a mesh or a solution, and their rows value by value.
+use super::Solution;
 use super::keyword::Keyword;
 use super::sink::Sink;
 use super::source::Section;
-use super::{Solution, SolutionField};
-use crate::mesh::{Elements, TetMesh};
+use crate::mesh::vector::Vec3;
+use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
 use std::ops::Range;
+
+/// Some rows of one section, to be written. Indices count from 0 in the whole mesh, not in the slice.
+#[derive(Clone, Copy, Debug)]
+pub enum Slice<'a> {
+    /// Coordinates, shape (n, 3), and references, shape (n,), of vertices.
+    Vertices(&'a [Vec3], &'a [i32]),
+    /// Nodes, shape (n, 2), and references, shape (n,), of tagged edges.
+    Edges(&'a [[u32; 2]], &'a [i32]),
+    /// Nodes, shape (n, 3), and references, shape (n,), of triangles.
+    Triangles(&'a [[u32; 3]], &'a [i32]),
+    /// Nodes, shape (n, 4), and references, shape (n,), of tetrahedra.
+    Tets(&'a [[u32; 4]], &'a [i32]),
+    /// Vertices that are corners, shape (n,).
+    Corners(&'a [u32]),
+    /// Edges that are ridges, shape (n,).
+    Ridges(&'a [u32]),
+    /// Vertices that must stay, shape (n,).
+    RequiredVertices(&'a [u32]),
+    /// Edges that must stay, shape (n,).
+    RequiredEdges(&'a [u32]),
+    /// Triangles that must stay, shape (n,).
+    RequiredTriangles(&'a [u32]),
+    /// Vertices on vertices of the model, shape (n,).
+    OnVertices(&'a [OnVertex]),
+    /// Vertices on edges of the model, shape (n,).
+    OnEdges(&'a [OnEdge]),
+    /// Vertices on faces of the model, shape (n,).
+    OnFaces(&'a [OnFace]),
+    /// Symmetric tensors at vertices, shape (n, 6), each 11 12 22 13 23 33.
+    Tensors(&'a [[f64; 6]]),
+}
+
+impl<'a> Slice<'a> {
+    /// All rows of a keyword; none of one that a mesh has not.
+    pub(super) fn of(mesh: &'a TetMesh, keyword: Keyword) -> Option<Self> {
+        let on = &mesh.association;
+        Some(match keyword {
+            Keyword::Vertices => Self::Vertices(&mesh.vertices, &mesh.vertex_refs),
+            Keyword::Edges => Self::Edges(&mesh.edges.nodes, &mesh.edges.refs),
+            Keyword::Triangles => Self::Triangles(&mesh.triangles.nodes, &mesh.triangles.refs),
+            Keyword::Tetrahedra => Self::Tets(&mesh.tets.nodes, &mesh.tets.refs),
+            Keyword::Corners => Self::Corners(&mesh.corners),
+            Keyword::Ridges => Self::Ridges(&mesh.ridges),
+            Keyword::RequiredVertices => Self::RequiredVertices(&mesh.required_vertices),
+            Keyword::RequiredEdges => Self::RequiredEdges(&mesh.required_edges),
+            Keyword::RequiredTriangles => Self::RequiredTriangles(&mesh.required_triangles),
+            Keyword::OnVertices => Self::OnVertices(&on.vertices),
+            Keyword::OnEdges => Self::OnEdges(&on.edges),
+            Keyword::OnFaces => Self::OnFaces(&on.faces),
+            Keyword::SolAtVertices => return None,
+        })
+    }
+
+    /// Its keyword.
+    pub(super) fn keyword(&self) -> Keyword {
+        match self {
+            Self::Vertices(..) => Keyword::Vertices,
+            Self::Edges(..) => Keyword::Edges,
+            Self::Triangles(..) => Keyword::Triangles,
+            Self::Tets(..) => Keyword::Tetrahedra,
+            Self::Corners(_) => Keyword::Corners,
+            Self::Ridges(_) => Keyword::Ridges,
+            Self::RequiredVertices(_) => Keyword::RequiredVertices,
+            Self::RequiredEdges(_) => Keyword::RequiredEdges,
+            Self::RequiredTriangles(_) => Keyword::RequiredTriangles,
+            Self::OnVertices(_) => Keyword::OnVertices,
+            Self::OnEdges(_) => Keyword::OnEdges,
+            Self::OnFaces(_) => Keyword::OnFaces,
+            Self::Tensors(_) => Keyword::SolAtVertices,
+        }
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Vertices(points, _) => points.len(),
+            Self::Edges(nodes, _) => nodes.len(),
+            Self::Triangles(nodes, _) => nodes.len(),
+            Self::Tets(nodes, _) => nodes.len(),
+            Self::Corners(indices)
+            | Self::Ridges(indices)
+            | Self::RequiredVertices(indices)
+            | Self::RequiredEdges(indices)
+            | Self::RequiredTriangles(indices) => indices.len(),
+            Self::OnVertices(on) => on.len(),
+            Self::OnEdges(on) => on.len(),
+            Self::OnFaces(on) => on.len(),
+            Self::Tensors(tensors) => tensors.len(),
+        }
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Gives the sink some of the rows.
+    pub(super) fn write(&self, rows: Range<usize>, sink: &mut impl Sink) {
+        match *self {
+            Self::Vertices(points, refs) => {
+                for (x, &reference) in points[rows.clone()].iter().zip(&refs[rows]) {
+                    x.iter().for_each(|&x| sink.real(x));
+                    sink.int(reference.into());
+                    sink.end_row();
+                }
+            }
+            Self::Edges(nodes, refs) => element_rows(&nodes[rows.clone()], &refs[rows], sink),
+            Self::Triangles(nodes, refs) => element_rows(&nodes[rows.clone()], &refs[rows], sink),
+            Self::Tets(nodes, refs) => element_rows(&nodes[rows.clone()], &refs[rows], sink),
+            Self::Corners(indices)
+            | Self::Ridges(indices)
+            | Self::RequiredVertices(indices)
+            | Self::RequiredEdges(indices)
+            | Self::RequiredTriangles(indices) => index_rows(&indices[rows], sink),
+            Self::OnVertices(on) => on[rows].iter().for_each(|v| associated_row(v.vertex, v.id, [], sink)),
+            Self::OnEdges(on) => on[rows].iter().for_each(|v| associated_row(v.vertex, v.id, [v.t, v.r], sink)),
+            Self::OnFaces(on) => {
+                on[rows].iter().for_each(|v| associated_row(v.vertex, v.id, [v.uv[0], v.uv[1], v.r], sink));
+            }
+            Self::Tensors(tensors) => field_rows(&[(6, tensors.as_flattened())], rows, sink),
+        }
+    }
+}
 
 /// What is written.
 pub(super) enum Content<'a> {
@@ -16,29 +140,26 @@ impl Content<'_> {
     /// Gives the sink some rows of a keyword.
     pub(super) fn rows(&self, keyword: Keyword, rows: Range<usize>, sink: &mut impl Sink) {
         match self {
-            Content::Mesh(mesh) => mesh_rows(mesh, keyword, rows, sink),
-            Content::Solution(solution) => solution_rows(solution, rows, sink),
+            Content::Mesh(mesh) => {
+                if let Some(slice) = Slice::of(mesh, keyword) {
+                    slice.write(rows, sink);
+                }
+            }
+            Content::Solution(solution) => {
+                let fields: Vec<_> = solution.fields.iter().map(|f| (f.kind.values(), &f.values[..])).collect();
+                field_rows(&fields, rows, sink);
+            }
         }
     }
 }
 
 /// The sections of a mesh, empty ones left out.
 pub(super) fn mesh_sections(mesh: &TetMesh) -> Vec<Section> {
-    let count = |keyword| match keyword {
-        Keyword::Vertices => mesh.vertices.len(),
-        Keyword::Edges => mesh.edges.len(),
-        Keyword::Triangles => mesh.triangles.len(),
-        Keyword::Tetrahedra => mesh.tets.len(),
-        Keyword::Corners => mesh.corners.len(),
-        Keyword::Ridges => mesh.ridges.len(),
-        Keyword::RequiredVertices => mesh.required_vertices.len(),
-        Keyword::RequiredEdges => mesh.required_edges.len(),
-        Keyword::RequiredTriangles => mesh.required_triangles.len(),
-        Keyword::OnVertices => mesh.association.vertices.len(),
-        Keyword::OnEdges => mesh.association.edges.len(),
-        Keyword::OnFaces => mesh.association.faces.len(),
-        Keyword::SolAtVertices => 0,
-    };
+    sections(|keyword| Slice::of(mesh, keyword).map_or(0, |slice| slice.len()))
+}
+
+/// Sections with so many rows, empty ones left out.
+pub(super) fn sections(count: impl Fn(Keyword) -> usize) -> Vec<Section> {
     let sections = Keyword::ALL.into_iter().map(|keyword| Section {
         keyword,
         count: count(keyword),
@@ -54,35 +175,8 @@ pub(super) fn solution_sections(solution: &Solution) -> Vec<Section> {
     vec![Section { keyword: Keyword::SolAtVertices, count: solution.vertices, body: 0..0, kinds }]
 }
 
-fn mesh_rows(mesh: &TetMesh, keyword: Keyword, rows: Range<usize>, sink: &mut impl Sink) {
-    let on = &mesh.association;
-    match keyword {
-        Keyword::Vertices => {
-            for (x, &reference) in mesh.vertices[rows.clone()].iter().zip(&mesh.vertex_refs[rows]) {
-                x.iter().for_each(|&x| sink.real(x));
-                sink.int(reference.into());
-                sink.end_row();
-            }
-        }
-        Keyword::Edges => element_rows(&mesh.edges, rows, sink),
-        Keyword::Triangles => element_rows(&mesh.triangles, rows, sink),
-        Keyword::Tetrahedra => element_rows(&mesh.tets, rows, sink),
-        Keyword::Corners => index_rows(&mesh.corners[rows], sink),
-        Keyword::Ridges => index_rows(&mesh.ridges[rows], sink),
-        Keyword::RequiredVertices => index_rows(&mesh.required_vertices[rows], sink),
-        Keyword::RequiredEdges => index_rows(&mesh.required_edges[rows], sink),
-        Keyword::RequiredTriangles => index_rows(&mesh.required_triangles[rows], sink),
-        Keyword::OnVertices => on.vertices[rows].iter().for_each(|v| associated_row(v.vertex, v.id, [], sink)),
-        Keyword::OnEdges => on.edges[rows].iter().for_each(|v| associated_row(v.vertex, v.id, [v.t, v.r], sink)),
-        Keyword::OnFaces => {
-            on.faces[rows].iter().for_each(|v| associated_row(v.vertex, v.id, [v.uv[0], v.uv[1], v.r], sink));
-        }
-        Keyword::SolAtVertices => {}
-    }
-}
-
-fn element_rows<const N: usize>(elements: &Elements<N>, rows: Range<usize>, sink: &mut impl Sink) {
-    for (nodes, &reference) in elements.nodes[rows.clone()].iter().zip(&elements.refs[rows]) {
+fn element_rows<const N: usize>(nodes: &[[u32; N]], refs: &[i32], sink: &mut impl Sink) {
+    for (nodes, &reference) in nodes.iter().zip(refs) {
         nodes.iter().for_each(|&node| sink.int(i64::from(node) + 1));
         sink.int(reference.into());
         sink.end_row();
@@ -103,10 +197,11 @@ fn associated_row<const N: usize>(vertex: u32, id: i32, reals: [f64; N], sink: &
     sink.end_row();
 }
 
-fn solution_rows(solution: &Solution, rows: Range<usize>, sink: &mut impl Sink) {
+/// Rows of fields, each with its number of values at a vertex.
+fn field_rows(fields: &[(usize, &[f64])], rows: Range<usize>, sink: &mut impl Sink) {
     for vertex in rows {
-        for SolutionField { kind, values } in &solution.fields {
-            values[vertex * kind.values()..][..kind.values()].iter().for_each(|&x| sink.real(x));
+        for &(width, values) in fields {
+            values[vertex * width..][..width].iter().for_each(|&x| sink.real(x));
         }
         sink.end_row();
     }

@@ -38,13 +38,15 @@ impl Words {
     }
 }
 
-/// The bytes of a file.
+/// The bytes of a file, or some of a binary one. All places are counted from the file's beginning.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     /// The file's name, for errors.
     pub path: &'a Path,
-    /// Its bytes.
+    /// Its bytes from `start` on.
     pub bytes: &'a [u8],
+    /// Where these begin in the file.
+    pub start: usize,
     /// Its encoding.
     pub encoding: Encoding,
 }
@@ -84,9 +86,12 @@ impl Contents<'_> {
     /// Finds the sections of a file, told ASCII or binary by its first bytes.
     pub(super) fn of<'a>(path: &'a Path, bytes: &'a [u8]) -> Result<Contents<'a>, Error> {
         match bytes {
-            [] => Err(Error::content(path, "byte 0", "the file is empty; a mesh or solution file is expected")),
-            [1, 0, 0, 0, ..] => binary::contents(path, bytes, false),
-            [0, 0, 0, 1, ..] => binary::contents(path, bytes, true),
+            [] => Err(empty(path)),
+            [1, 0, 0, 0, ..] | [0, 0, 0, 1, ..] => {
+                let mut contents = binary::contents(path, bytes, bytes[0] == 0)?;
+                contents.source.bytes = bytes;
+                Ok(contents)
+            }
             _ => ascii::contents(path, bytes),
         }
     }
@@ -110,6 +115,11 @@ impl Contents<'_> {
         self.sections.push(section);
         Ok(())
     }
+}
+
+/// The error of a file without bytes.
+pub(super) fn empty(path: &Path) -> Error {
+    Error::content(path, "byte 0", "the file is empty; a mesh or solution file is expected")
 }
 
 impl Source<'_> {
@@ -152,11 +162,11 @@ pub(super) fn field_kinds(codes: impl Iterator<Item = i64>) -> Result<Vec<FieldK
         .collect()
 }
 
-/// Only three dimensions are read.
-pub(super) fn check_dimension(source: &Source, dimension: Option<i64>) -> Result<(), Error> {
+/// Only three dimensions are read. `size` is the number of bytes of the file.
+pub(super) fn check_dimension(source: &Source, size: usize, dimension: Option<i64>) -> Result<(), Error> {
     match dimension {
         Some(3) => Ok(()),
         Some(d) => Err(source.error(0, "Dimension", format!("dimension {d} is not supported; give a mesh in 3D"))),
-        None => Err(source.error(source.bytes.len(), "Dimension", "Dimension is missing; 'Dimension 3' is expected")),
+        None => Err(source.error(size, "Dimension", "Dimension is missing; 'Dimension 3' is expected")),
     }
 }

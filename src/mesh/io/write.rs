@@ -1,9 +1,9 @@
 //! From a mesh or a solution to a file.
 use super::keyword::Keyword;
 use super::layout::{Layout, version};
-use super::rows::{Content, mesh_sections, solution_sections};
-use super::{Batch, Error, Solution, SolutionField};
-use crate::mesh::{Elements, OnFace, TetMesh};
+use super::rows::{Content, Slice, mesh_sections, solution_sections};
+use super::{Batch, Error, MeshCounts, Solution, SolutionField};
+use crate::mesh::{OnFace, TetMesh};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
 
@@ -40,37 +40,58 @@ fn is_binary(path: &Path, name: &str) -> Result<bool, Error> {
 }
 
 /// A place and what is wrong there.
-type Fault = (String, String);
+pub(super) type Fault = (String, String);
 
 /// Rows that a task checks.
 const CHECKED: usize = 4 * GRAIN;
 
 /// What is written must be readable again.
 fn check_mesh(team: Team<'_>, mesh: &TetMesh) -> Result<(), Fault> {
-    let vertices = mesh.vertices.len();
-    if vertices == 0 {
+    let counts = MeshCounts::of(mesh);
+    check_counts(&counts)?;
+    let mut slices = Keyword::ALL.into_iter().filter_map(|keyword| Slice::of(mesh, keyword));
+    slices.try_for_each(|slice| check_slice(team, &slice, 0, &counts))
+}
+
+/// A mesh has vertices.
+pub(super) fn check_counts(counts: &MeshCounts) -> Result<(), Fault> {
+    if counts.vertices == 0 {
         return Err((Keyword::Vertices.name().into(), "the mesh has no vertices; nothing is written".into()));
     }
-    check_length(Keyword::Vertices, mesh.vertex_refs.len(), vertices)?;
-    check_finite(team, Keyword::Vertices, vertices, |v| mesh.vertices[v])?;
-    check_elements(team, Keyword::Edges, &mesh.edges, vertices)?;
-    check_elements(team, Keyword::Triangles, &mesh.triangles, vertices)?;
-    check_elements(team, Keyword::Tetrahedra, &mesh.tets, vertices)?;
-    let check = |keyword, indices: &[u32], limit| check_indices(team, keyword, indices.len(), |k| indices[k], limit);
-    check(Keyword::Corners, &mesh.corners, vertices)?;
-    check(Keyword::Ridges, &mesh.ridges, mesh.edges.len())?;
-    check(Keyword::RequiredVertices, &mesh.required_vertices, vertices)?;
-    check(Keyword::RequiredEdges, &mesh.required_edges, mesh.edges.len())?;
-    check(Keyword::RequiredTriangles, &mesh.required_triangles, mesh.triangles.len())?;
-    let on = &mesh.association;
-    check_indices(team, Keyword::OnVertices, on.vertices.len(), |k| on.vertices[k].vertex, vertices)?;
-    check_indices(team, Keyword::OnEdges, on.edges.len(), |k| on.edges[k].vertex, vertices)?;
-    check_indices(team, Keyword::OnFaces, on.faces.len(), |k| on.faces[k].vertex, vertices)?;
-    check_finite(team, Keyword::OnEdges, on.edges.len(), |k| [on.edges[k].t, on.edges[k].r])?;
-    check_finite(team, Keyword::OnFaces, on.faces.len(), |k| {
-        let OnFace { uv: [u, v], r, .. } = on.faces[k];
-        [u, v, r]
-    })
+    Ok(())
+}
+
+/// Whether some rows of a mesh or a metric, from row `start` on, can be read again.
+pub(super) fn check_slice(team: Team<'_>, slice: &Slice<'_>, start: usize, counts: &MeshCounts) -> Result<(), Fault> {
+    let rows = Checked { team, keyword: slice.keyword(), start, count: slice.len() };
+    let limit = counts.rows(rows.keyword.target());
+    match *slice {
+        Slice::Vertices(points, refs) => {
+            rows.have_references(refs)?;
+            rows.are_finite(|v| points[v])
+        }
+        Slice::Edges(nodes, refs) => rows.are_elements(nodes, refs, limit),
+        Slice::Triangles(nodes, refs) => rows.are_elements(nodes, refs, limit),
+        Slice::Tets(nodes, refs) => rows.are_elements(nodes, refs, limit),
+        Slice::Corners(indices)
+        | Slice::Ridges(indices)
+        | Slice::RequiredVertices(indices)
+        | Slice::RequiredEdges(indices)
+        | Slice::RequiredTriangles(indices) => rows.are_below(limit, |k| [indices[k]]),
+        Slice::OnVertices(on) => rows.are_below(limit, |k| [on[k].vertex]),
+        Slice::OnEdges(on) => {
+            rows.are_below(limit, |k| [on[k].vertex])?;
+            rows.are_finite(|k| [on[k].t, on[k].r])
+        }
+        Slice::OnFaces(on) => {
+            rows.are_below(limit, |k| [on[k].vertex])?;
+            rows.are_finite(|k| {
+                let OnFace { uv: [u, v], r, .. } = on[k];
+                [u, v, r]
+            })
+        }
+        Slice::Tensors(tensors) => rows.are_finite(|v| tensors[v]),
+    }
 }
 
 fn check_solution(team: Team<'_>, solution: &Solution) -> Result<(), Fault> {
@@ -85,60 +106,54 @@ fn check_solution(team: Team<'_>, solution: &Solution) -> Result<(), Fault> {
             let message = format!("{length} values; {width} at each of {vertices} vertices are expected");
             return Err((format!("{name}, field {number}"), message));
         }
-        check_finite(team, Keyword::SolAtVertices, solution.vertices, |v| &values[v * width..][..width])?;
+        let rows = Checked { team, keyword: Keyword::SolAtVertices, start: 0, count: solution.vertices };
+        rows.are_finite(|v| &values[v * width..][..width])?;
     }
     Ok(())
 }
 
-fn check_length(keyword: Keyword, refs: usize, entities: usize) -> Result<(), Fault> {
-    if refs == entities {
-        return Ok(());
-    }
-    Err((keyword.name().into(), format!("{refs} references for {entities} entities; give each one reference")))
-}
-
-fn check_elements<const N: usize>(
-    team: Team<'_>,
+/// Rows that are checked.
+struct Checked<'p> {
+    team: Team<'p>,
     keyword: Keyword,
-    elements: &Elements<N>,
-    vertices: usize,
-) -> Result<(), Fault> {
-    check_length(keyword, elements.refs.len(), elements.nodes.len())?;
-    match team.first(CHECKED, elements.len(), |k| elements.nodes[k].iter().any(|&v| v as usize >= vertices)) {
-        None => Ok(()),
-        Some(k) => Err(out_of_range(keyword, k, vertices)),
-    }
-}
-
-fn check_indices(
-    team: Team<'_>,
-    keyword: Keyword,
+    /// The first row's number in the section, from 0.
+    start: usize,
     count: usize,
-    index: impl Fn(usize) -> u32 + Sync,
-    limit: usize,
-) -> Result<(), Fault> {
-    match team.first(CHECKED, count, |k| index(k) as usize >= limit) {
-        None => Ok(()),
-        Some(k) => Err(out_of_range(keyword, k, limit)),
+}
+
+impl Checked<'_> {
+    fn have_references(&self, refs: &[i32]) -> Result<(), Fault> {
+        if refs.len() == self.count {
+            return Ok(());
+        }
+        let (refs, entities) = (refs.len(), self.count);
+        let message = format!("{refs} references for {entities} entities; give each one reference");
+        Err((self.keyword.name().into(), message))
     }
-}
 
-fn out_of_range(keyword: Keyword, position: usize, limit: usize) -> Fault {
-    let message = format!("an index is out of range: {limit} are there, counted from 0; nothing is written");
-    (format!("{} {}", keyword.name(), position + 1), message)
-}
+    fn are_elements<const N: usize>(&self, nodes: &[[u32; N]], refs: &[i32], limit: usize) -> Result<(), Fault> {
+        self.have_references(refs)?;
+        self.are_below(limit, |k| nodes[k])
+    }
 
-fn check_finite<R: AsRef<[f64]>>(
-    team: Team<'_>,
-    keyword: Keyword,
-    count: usize,
-    row: impl Fn(usize) -> R + Sync,
-) -> Result<(), Fault> {
-    match team.first(CHECKED, count, |k| !row(k).as_ref().iter().all(|x| x.is_finite())) {
-        None => Ok(()),
-        Some(k) => {
-            let message = "a value is not a finite number; nothing is written".into();
-            Err((format!("{} {}", keyword.name(), k + 1), message))
+    fn are_below<const N: usize>(&self, limit: usize, row: impl Fn(usize) -> [u32; N] + Sync) -> Result<(), Fault> {
+        self.none_is(
+            |k| row(k).iter().any(|&index| index as usize >= limit),
+            || format!("an index is out of range: {limit} are there, counted from 0; nothing is written"),
+        )
+    }
+
+    fn are_finite<R: AsRef<[f64]>>(&self, row: impl Fn(usize) -> R + Sync) -> Result<(), Fault> {
+        self.none_is(
+            |k| !row(k).as_ref().iter().all(|x| x.is_finite()),
+            || "a value is not a finite number; nothing is written".into(),
+        )
+    }
+
+    fn none_is(&self, is_wrong: impl Fn(usize) -> bool + Sync, message: impl Fn() -> String) -> Result<(), Fault> {
+        match self.team.first(CHECKED, self.count, is_wrong) {
+            None => Ok(()),
+            Some(k) => Err((format!("{} {}", self.keyword.name(), self.start + k + 1), message())),
         }
     }
 }

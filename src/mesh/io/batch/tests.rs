@@ -71,6 +71,30 @@ fn files_that_belong_together_come_together_or_not_at_all() {
 }
 
 #[test]
+fn an_open_file_is_written_until_all_come() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.meshb");
+    fs::write(&path, b"old").unwrap();
+    let mut batch = Batch::new();
+    let mut file = batch.open(&path, true).unwrap();
+    assert_eq!(file.metadata().unwrap().len(), 0);
+    file.write_all(b"new").unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    batch.commit().unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"new");
+    drop(Batch::new().open(&path, false).unwrap());
+    assert_eq!((names(folder.path()).len(), fs::read(&path).unwrap()), (1, b"new".to_vec()));
+    let mut batch = Batch::new();
+    let inside = folder.path().join("new/b.meshb");
+    batch.folder(&folder.path().join("new")).unwrap();
+    batch.open(&inside, false).unwrap().write_all(b"inside").unwrap();
+    batch.commit().unwrap();
+    assert_eq!(fs::read(inside).unwrap(), b"inside");
+    #[cfg(unix)]
+    assert!(Batch::new().open(Path::new("/dev/null"), false).unwrap_err().to_string().contains("is a device"));
+}
+
+#[test]
 fn the_main_file_is_renamed_last() {
     let folder = tempfile::tempdir().unwrap();
     let (mesh, solution) = (folder.path().join("a.meshb"), folder.path().join("a.solb"));
