@@ -29,6 +29,11 @@ impl How {
     }
 }
 
+/// Says nothing from now on but errors: another process speaks for this one.
+pub fn hush() {
+    QUIET.store(true, Relaxed);
+}
+
 /// Whether nothing but errors is wanted.
 pub fn is_quiet() -> bool {
     QUIET.load(Relaxed)

@@ -8,6 +8,7 @@
 mod bytes;
 mod cuts;
 mod join;
+mod journal;
 mod manifold;
 mod outline;
 mod part;
@@ -18,8 +19,9 @@ mod shelf;
 mod split;
 mod zones;
 
-pub use rounds::{Common, Sizes, Told};
-pub use run::{Adapted, Slice, adapt};
+pub use journal::JOURNAL;
+pub use rounds::{Common, Sizes, Told, wanted_vertices};
+pub use run::{Adapted, Measured, Slice, adapt};
 pub use shelf::Shelf;
 
 /// A run by parts that failed.

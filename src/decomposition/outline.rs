@@ -5,7 +5,7 @@ use super::join::Joined;
 use super::piece::{Piece, SHARED};
 use super::split::split_vertices;
 use crate::geometry::Entity;
-use crate::mesh::adjacency::TriangleIndex;
+use crate::mesh::adjacency::{TriangleIndex, sorted3};
 use crate::tasks::Team;
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ use std::collections::HashMap;
 #[derive(Default)]
 pub struct Outline {
     /// Its listed vertices, those on the model or required, with its triangles, ridges and required entities, and no tetrahedra. The reference of
-    /// a triangle that another piece has too is the region behind it.
+    /// a triangle that another piece has too is the region behind it, and its cuts are the triangles with tetrahedra on both sides.
     pub skin: Piece,
     /// Its other vertices that are shared, in their order.
     pub shared: Vec<u64>,
@@ -37,15 +37,18 @@ impl Outline {
     pub fn of(piece: &Piece) -> Self {
         let listed = listed(piece);
         let mut skin = split_vertices(piece, &listed);
-        if piece.halves.contains(&true) {
-            let mesh = &piece.mesh;
-            let index = TriangleIndex::new(Team::alone(), &mesh.triangles.nodes, mesh.vertices.len());
-            for side in index.sides(Team::alone(), &mesh.tets.nodes) {
-                if piece.halves[side.triangle as usize] {
-                    skin.mesh.triangles.refs[side.triangle as usize] = mesh.tets.refs[side.tet as usize];
-                }
+        let mesh = &piece.mesh;
+        let index = TriangleIndex::new(Team::alone(), &mesh.triangles.nodes, mesh.vertices.len());
+        let mut sides = vec![0u8; mesh.triangles.len()];
+        for side in index.sides(Team::alone(), &mesh.tets.nodes) {
+            let triangle = side.triangle as usize;
+            sides[triangle] += 1;
+            if piece.halves[triangle] {
+                skin.mesh.triangles.refs[triangle] = mesh.tets.refs[side.tet as usize];
             }
         }
+        let inner = (0..sides.len()).filter(|&t| sides[t] > 1 || piece.halves[t]);
+        skin.cuts = inner.map(|t| sorted3(skin.mesh.triangles.nodes[t])).collect();
         let inner = || (0..piece.ids.len()).filter(|&v| !listed[v]);
         let is_shared = |v: &usize| piece.marks[*v] & SHARED != 0;
         let shared: Vec<u64> = inner().filter(is_shared).map(|v| piece.ids[v]).collect();

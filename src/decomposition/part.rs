@@ -27,6 +27,12 @@ pub struct Done {
 }
 
 impl Done {
+    /// With a mesh, as the kernel gives it.
+    pub fn with(self, extracted: Extracted) -> Adapted {
+        let Self { work, growth_end, unrepaired, deviating, geometry } = self;
+        Adapted { extracted, work, growth_end, unrepaired, deviating, geometry }
+    }
+
     /// Adds what came of another part.
     pub fn add(&mut self, other: &Self) {
         for (work, more) in self.work.iter_mut().zip(&other.work) {

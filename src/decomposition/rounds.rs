@@ -6,6 +6,7 @@ use super::Error;
 use super::bytes::{decoded, encoded, put, take};
 use super::cuts::{Cuts, Sample, samples};
 use super::join::join;
+use super::journal::Journal;
 use super::outline::{Numbering, Outline};
 use super::part::{Done, Round, Tools, adapt_piece};
 use super::piece::Piece;
@@ -30,7 +31,7 @@ const GROWTH: f64 = 8.0;
 const VERTICES_PER_COMPLEXITY: f64 = 1.9;
 
 /// Most tetrahedra that are asked where to cut.
-const SAMPLES: usize = 1 << 20;
+const SAMPLES: usize = 1 << 18;
 
 /// The least of a piece.
 const LEAST_SAMPLES: usize = 1 << 10;
@@ -110,7 +111,7 @@ pub struct Told {
 /// What a part became, as all ranks know it.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-struct Became {
+pub struct Became {
     part: u32,
     rank: u32,
     /// Tetrahedra and vertices that are not finished.
@@ -139,6 +140,12 @@ pub struct Rounds<'a> {
     pub finished: Vec<(Key, u32)>,
     active: Active,
     next_id: u64,
+    /// Steps of the plan that are done.
+    steps: usize,
+    /// What the run is known by.
+    run: u64,
+    /// Vertices of the finished pieces.
+    finished_vertices: u64,
 }
 
 /// The observer of a part: it hears of an end alone.
@@ -164,6 +171,11 @@ fn sorted<T, K: Ord>(list: Shared<T>, key: impl Fn(&T) -> K) -> Vec<T> {
     list
 }
 
+/// Vertices of a mesh of this complexity, about.
+pub fn wanted_vertices(complexity: f64) -> f64 {
+    VERTICES_PER_COMPLEXITY * complexity
+}
+
 /// The shares of the complexity of the stages, ascending to 1.
 fn growth(wanted: f64, given: f64, sizes: &Sizes) -> Vec<f64> {
     let mut shares = vec![1.0];
@@ -174,19 +186,69 @@ fn growth(wanted: f64, given: f64, sizes: &Sizes) -> Vec<f64> {
 }
 
 impl<'a> Rounds<'a> {
-    /// Before the first. `whole` is the mesh, on the rank that has it.
+    /// Before the first: `whole` makes the piece that is the mesh, on rank 0. Or after those that are in the journal of a run of this name.
     ///
     /// # Errors
     /// Where it cannot be put away.
-    pub fn new(common: Common<'a>, whole: Option<Piece>) -> Result<Self, Error> {
+    pub fn new(common: Common<'a>, run: u64, whole: impl FnOnce() -> Piece) -> Result<Self, Error> {
         let active = Active::default();
         let (done, told, finished) = (Done::default(), Vec::new(), Vec::new());
-        let mut rounds = Self { common, done, told, finished, active, next_id: 1 << 40 };
+        let mut rounds =
+            Self { common, done, told, finished, active, next_id: 1 << 40, steps: 0, run, finished_vertices: 0 };
+        if rounds.goes_on() {
+            return Ok(rounds);
+        }
         let list = Shared::default();
-        let put = whole.map_or(Ok(()), |whole| rounds.put_away(0, 0, [whole, Piece::default()], &list));
+        let put = match common.ranks.rank() {
+            0 => rounds.put_away(0, 0, [whole(), Piece::default()], &list),
+            _ => Ok(()),
+        };
         rounds.agreed(put)?;
         rounds.become_active(0, list)?;
         Ok(rounds)
+    }
+
+    /// Goes on from the journal, if all ranks find the same one.
+    fn goes_on(&mut self) -> bool {
+        let found = Journal::read(self.common.shelf, self.run);
+        let round = found.as_ref().map_or(u32::MAX, |(journal, ..)| journal.round);
+        let rounds = self.common.ranks.gather(&round.to_ne_bytes());
+        let Some((journal, mut pieces, samples)) = found.filter(|_| rounds.iter().all(|other| *other == rounds[0]))
+        else {
+            return false;
+        };
+        let ranks = self.common.ranks.count() as u32;
+        let Journal { round, steps, next_id, finished, done, told, .. } = journal;
+        pieces.iter_mut().zip(0..).for_each(|(piece, at)| piece.rank = at % ranks);
+        self.finished = finished.into_iter().zip(0..).map(|(key, at)| (key, at % ranks)).collect();
+        self.active = Active { round, pieces, samples };
+        (self.steps, self.next_id, self.done, self.told) = (steps, next_id, done, told);
+        true
+    }
+
+    /// How many rounds were done before this run went on.
+    pub fn rounds_before(&self) -> usize {
+        self.told.len()
+    }
+
+    /// Writes the journal.
+    fn note(&self) -> Result<(), Error> {
+        let written = match (self.common.shelf, self.common.ranks.rank()) {
+            (Shelf::Disk(folder), 0) => {
+                let journal = Journal {
+                    run: self.run,
+                    round: self.active.round,
+                    steps: self.steps,
+                    next_id: self.next_id,
+                    finished: self.finished.iter().map(|(key, _)| *key).collect(),
+                    done: self.done.clone(),
+                    told: self.told.clone(),
+                };
+                journal.write(folder, &self.active.pieces, &self.active.samples)
+            }
+            _ => Ok(()),
+        };
+        self.agreed(written)
     }
 
     /// Makes a mesh of this complexity of `given` vertices. On return `source` is as it was.
@@ -200,19 +262,21 @@ impl<'a> Rounds<'a> {
         complexity: f64,
         given: usize,
     ) -> Result<(), Error> {
-        let (wanted, given) = (VERTICES_PER_COMPLEXITY * complexity, given as f64);
+        let (wanted, given) = (wanted_vertices(complexity), given as f64);
         let sizes = self.common.sizes;
         let stages = growth(wanted, given, &sizes);
         let (mut present, mut scaled) = (given, 0.0);
         for (at, &share) in stages.iter().enumerate() {
             let log_factor = complexity_factor(1.0, share).ln();
             source.scale(team, log_factor - scaled);
-            let parts = sizes.parts(present.max(share * wanted));
-            let is_last = at + 1 == stages.len();
-            self.round(source, parts, log_factor - scaled, false, is_last)?;
+            if at >= self.steps {
+                let parts = sizes.parts(present.max(share * wanted));
+                let is_last = at + 1 == stages.len();
+                self.round(source, parts, log_factor - scaled, false, is_last)?;
+            }
             (present, scaled) = (share * wanted, log_factor);
         }
-        for _ in 0..MOST_ZONES {
+        while self.steps < stages.len() + MOST_ZONES {
             let vertices: u64 = self.active.pieces.iter().map(|piece| piece.vertices).sum();
             if vertices == 0 || self.is_stopped() {
                 break;
@@ -221,6 +285,12 @@ impl<'a> Rounds<'a> {
         }
         self.finish_all();
         Ok(())
+    }
+
+    /// Vertices of all pieces; one on several counts for each.
+    fn vertices(&self) -> usize {
+        let active: u64 = self.active.pieces.iter().map(|piece| piece.vertices).sum();
+        active as usize + self.finished_vertices as usize
     }
 
     /// Whether the user has ended the run, on any rank.
@@ -259,16 +329,25 @@ impl<'a> Rounds<'a> {
         let round = self.active.round + 1;
         let cuts = Cuts::of(std::mem::take(&mut self.active.samples), parts);
         let tets = self.active.pieces.iter().map(|piece| piece.tets as usize).sum();
+        self.common.observer.begin(crate::adapt::Kind::Split, self.told.len(), parts);
         let owners = self.owners(parts, &cuts.work);
         let mine = self.deal(round, &cuts, log_factor, &owners)?;
         let list = Shared::default();
         let adapted = self.adapt_parts(round, source, (parts, &mine), (is_zone, divides), &list);
         self.agreed(adapted)?;
         self.next_id += (parts as u64) << 33;
-        self.forget_active();
+        self.steps += 1;
+        let before = (self.active.round, std::mem::take(&mut self.active.pieces));
         self.become_active(round, list)?;
         let vertices = self.active.pieces.iter().map(|piece| piece.all as usize).sum();
+        self.common.observer.vertices(self.vertices());
         self.told.push(Told { parts, tets, vertices, seconds: began.elapsed().as_secs_f64() });
+        self.note()?;
+        // With the journal, what was before is not needed any more.
+        let own = self.common.ranks.rank() as u32;
+        for piece in before.1.iter().filter(|piece| piece.rank == own) {
+            self.common.shelf.forget(Key::Active { round: before.0, part: piece.part });
+        }
         Ok(())
     }
 
@@ -426,6 +505,7 @@ impl<'a> Rounds<'a> {
         self.active = Active { round, ..Active::default() };
         for (became, mut samples, done) in all {
             self.done.add(&done);
+            self.finished_vertices += became.all - became.vertices;
             if became.all > became.vertices {
                 self.finished.push((Key::Finished { round, part: became.part }, became.rank));
             }
@@ -433,14 +513,6 @@ impl<'a> Rounds<'a> {
             self.active.samples.append(&mut samples);
         }
         Ok(())
-    }
-
-    /// What was active before this round is not needed any more.
-    fn forget_active(&self) {
-        let Active { round, pieces, .. } = &self.active;
-        for piece in pieces.iter().filter(|piece| piece.rank == self.common.ranks.rank() as u32) {
-            self.common.shelf.forget(Key::Active { round: *round, part: piece.part });
-        }
     }
 
     /// The numbers of all vertices in the whole mesh.
@@ -478,17 +550,37 @@ impl<'a> Rounds<'a> {
         Ok(Numbering::of(outlines.into_iter().map(|(_, outline)| outline).collect()))
     }
 
-    /// Calls f with each finished piece of this rank and its place in their order, on all threads.
+    /// Calls f on rank 0 with each finished piece of all ranks and its place in their order: on all threads where there is one rank, else one
+    /// after the other.
     ///
     /// # Errors
     /// That of f, and where a piece cannot be read.
     pub fn for_each_finished(&self, f: impl Fn(usize, Piece) -> Result<(), Error> + Sync) -> Result<(), Error> {
-        let own = self.common.ranks.rank() as u32;
-        let done = on_threads(self.common.pool.threads(), self.finished.len(), |at| match self.finished[at] {
-            (key, rank) if rank == own => f(at, self.common.shelf.take(key)?),
-            _ => Ok(()),
-        });
-        self.agreed(done)
+        let Common { shelf, ranks, pool, .. } = self.common;
+        if ranks.count() == 1 {
+            return on_threads(pool.threads(), self.finished.len(), |at| f(at, shelf.take(self.finished[at].0)?));
+        }
+        // One piece of each rank at a time.
+        let mut of_rank = vec![Vec::new(); ranks.count()];
+        self.finished.iter().zip(0..).for_each(|((key, rank), at)| of_rank[*rank as usize].push((*key, at)));
+        let most = of_rank.iter().map(Vec::len).max().unwrap_or(0);
+        for turn in 0..most {
+            let own = of_rank[ranks.rank()].get(turn).map(|&(key, at)| Ok::<_, Error>((at, shelf.take(key)?)));
+            let own = self.agreed(own.transpose())?;
+            let message = |(at, piece): (usize, Piece)| {
+                let mut bytes = encoded(&piece);
+                put(&mut bytes, &[at as u64]);
+                (0, bytes)
+            };
+            let received = ranks.exchange(own.into_iter().map(message).collect());
+            let done = received.into_iter().try_for_each(|(_, bytes)| {
+                let (piece, at) = bytes.split_at(bytes.len() - 16);
+                let at: Vec<u64> = take(&mut &*at).ok_or(Error::Message)?;
+                f(at[0] as usize, decoded(piece).ok_or(Error::Message)?)
+            });
+            self.agreed(done)?;
+        }
+        Ok(())
     }
 }
 

@@ -124,7 +124,7 @@ pub struct MetricFigures {
 }
 
 /// The figures of a mesh.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Default, Clone, Debug, PartialEq, Serialize)]
 pub struct Statistics {
     /// Number of vertices.
     pub vertices: usize,
@@ -285,6 +285,13 @@ impl Figures {
         self.lengths = self.lengths.and(other.lengths);
         self.ratios = self.ratios.and(other.ratios);
         self.complexity = self.complexity.zip(other.complexity).map(|(a, b)| a + b);
+        self
+    }
+
+    /// Adds edges of these lengths, say of those that several parts have.
+    #[must_use]
+    pub fn with_lengths(mut self, lengths: impl IntoIterator<Item = f64>) -> Self {
+        lengths.into_iter().for_each(|length| self.lengths.add(length));
         self
     }
 

@@ -3,12 +3,14 @@ use super::report::Report;
 use crate::cli::figures::FigureArguments;
 use crate::cli::files::reading::METRIC;
 use crate::cli::files::{Files, Outputs, Target};
+use crate::decomposition::{self, Adapted, Measured};
 use crate::formats::{Dataset, NamedField};
-use crate::mesh::io::FieldKind;
+use crate::mesh::io::{FieldKind, MeshCounts};
 use crate::metric::Field;
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -76,12 +78,45 @@ impl Targets {
         let lost = outputs.mesh(team, &self.mesh, &data)?;
         report.mesh = data.mesh;
         report.metrics = field.metrics;
+        self.finish(outputs, &mut report, times)?;
+        Ok((report, lost))
+    }
+
+    /// The same of a mesh that is not in memory: the report has its boundary, whose vertices come first, and the rest comes by slices. `times` are
+    /// the start, and those since when the work began and when it ended.
+    pub fn write_slices(
+        &self,
+        team: Team<'_>,
+        mut report: Report,
+        adapted: &Adapted<'_>,
+        (start, [prepared, finished]): (Instant, [Duration; 2]),
+    ) -> Result<Report, Failure> {
+        let metric = self.metric.as_ref().ok_or("a mesh by slices has its metric beside it")?;
+        let mut outputs = self.outputs()?;
+        let [vertices, tets] = adapted.size();
+        let counts = MeshCounts { vertices, tets, ..MeshCounts::of(&report.mesh) };
+        let writer = outputs.slices(&self.mesh, metric, &counts, &report.names)?;
+        let measured = Mutex::new(Measured::of(team, &report.mesh, &report.metrics));
+        writer.put_listed(team, &report.mesh, &report.metrics)?;
+        adapted.for_each_slice(|mut slice| {
+            let told = |error: Failure| decomposition::Error::Told(error.to_string());
+            writer.put(&slice).map_err(told)?;
+            measured.lock().unwrap_or_else(PoisonError::into_inner).add(&mut slice);
+            Ok(())
+        })?;
+        writer.finish()?;
+        report.statistics = measured.into_inner().unwrap_or_else(PoisonError::into_inner).statistics();
+        self.finish(outputs, &mut report, [prepared, finished, start.elapsed()])?;
+        Ok(report)
+    }
+
+    /// Adds the report, and gives all files their names.
+    fn finish(&self, mut outputs: Outputs, report: &mut Report, times: [Duration; 3]) -> Result<(), Failure> {
         let [prepared, finished, measured] = times.map(|time| time.as_secs_f64());
         report.seconds.read_and_classify = prepared;
         report.seconds.adapt = finished - prepared;
         report.seconds.total = measured;
-        outputs.json(self.report.as_ref(), &report)?;
-        outputs.commit()?;
-        Ok((report, lost))
+        outputs.json(self.report.as_ref(), &*report)?;
+        outputs.commit()
     }
 }

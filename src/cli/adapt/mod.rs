@@ -1,4 +1,5 @@
 //! `geo-adapt adapt`.
+mod by_parts;
 pub mod field;
 pub mod files;
 pub mod input;
@@ -7,6 +8,7 @@ mod meet;
 pub mod parts;
 pub mod progress;
 pub mod report;
+mod scratch;
 mod source;
 
 use super::figures::FigureArguments;
@@ -14,10 +16,10 @@ use super::waiting::Waiting;
 use super::{Outcome, interrupt};
 use crate::adapt::forecast::most_in_memory;
 use crate::adapt::{self, Adapted, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
-use crate::decomposition::{self, Common, Shelf, Sizes};
 use crate::geometry::classify::keeps_references;
 use crate::memory;
 use crate::metric::Field;
+use crate::ranks;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, simulation_told, stage, threads_to_simulate};
 use files::Targets;
 use input::{Given, Input, InputArguments};
@@ -64,12 +66,8 @@ pub struct Arguments {
     /// is memory for]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     max_vertices: Option<u32>,
-    /// Adapts the mesh part by part within this memory: 4GiB, 500MB
-    #[arg(long, value_name = "SIZE", value_parser = bytes)]
-    memory: Option<u64>,
-    /// Vertices of a part, with --memory [default: up to 300000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..), allow_negative_numbers = true)]
-    part_vertices: Option<u32>,
+    #[command(flatten, next_help_heading = "Part by part: within little memory, or under mpirun on several processes")]
+    parts: by_parts::PartArguments,
     /// How the threads share the work
     #[arg(long, value_enum, default_value_t = Scheduler::default())]
     scheduler: Scheduler,
@@ -93,26 +91,6 @@ fn deviation(text: &str) -> Result<f64, String> {
     if (0.1..=89.0).contains(&angle) { Ok(angle) } else { Err("an angle from 0.1 to 89 degrees".into()) }
 }
 
-/// An amount of memory, in bytes.
-fn bytes(text: &str) -> Result<u64, String> {
-    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let number: f64 = digits.trim().parse().map_err(|_| "not an amount like 4GiB or 500MB".to_owned())?;
-    let factor = match text[digits.len()..].to_ascii_lowercase().as_str() {
-        "" | "b" => 1.0,
-        "k" | "kb" => 1e3,
-        "m" | "mb" => 1e6,
-        "g" | "gb" => 1e9,
-        "t" | "tb" => 1e12,
-        "kib" => 1024.0,
-        "mib" => 1024.0 * 1024.0,
-        "gib" => 1024.0 * 1024.0 * 1024.0,
-        "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
-        unit => return Err(format!("{unit} is no unit of memory: KiB, MiB, GiB, TiB, KB, MB, GB or TB")),
-    };
-    let bytes = number * factor;
-    if bytes >= 1e6 && bytes.is_finite() { Ok(bytes as u64) } else { Err("at least a megabyte, as in 4GiB".into()) }
-}
-
 /// A distance from the model.
 fn chord(text: &str) -> Result<f64, String> {
     let distance: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
@@ -121,6 +99,10 @@ fn chord(text: &str) -> Result<f64, String> {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
+    let ranks = ranks::start()?;
+    if arguments.parts.memory.is_some() || ranks.count() > 1 {
+        return by_parts::run(arguments, &*ranks);
+    }
     let start = Instant::now();
     let targets = Targets::of(&mut arguments.input.files(), &arguments.output, &arguments.figures, &[])?;
     if arguments.cycles > 1 && !arguments.input.field.field.is_empty() {
@@ -151,7 +133,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let adapted = arguments.adapted(team, (&pool, plan), &mut input, (&progress, is_last))?;
         let finished = start.elapsed();
         let line = Waiting::for_what("measuring and writing");
-        let report = Report::new(team, &asked, &input, adapted, progress.forecast());
+        let report = Report::new(team, &asked, &input, adapted, (progress.forecast(), None));
         stage("report");
         let (mut report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
         drop(line);
@@ -202,30 +184,6 @@ impl Arguments {
         progress.tell_forecasts(options.max_vertices, &self.output);
         if !is_last && !options.freeze.surfaces.is_empty() {
             self.check_references(input).map_err(named)?;
-        }
-        if self.memory.is_some() {
-            let Input { mesh, place, model, source, .. } = input;
-            let shelf = Shelf::in_memory();
-            let common = Common {
-                model,
-                options: &options,
-                sizes: self.part_vertices.map_or_else(Sizes::default, |vertices| Sizes::of(f64::from(vertices))),
-                pool,
-                ranks: &crate::ranks::Alone,
-                shelf: &shelf,
-                memory: self.memory,
-                observer: progress,
-            };
-            let adapted = decomposition::adapt(common, mesh, place, source);
-            let adapted = adapted.and_then(|adapted| {
-                if std::env::var_os("GEO_ADAPT_STAGES").is_some() {
-                    adapted.told().iter().for_each(|told| eprintln!("{told:?}"));
-                }
-                adapted.into_memory(team)
-            });
-            progress.finish();
-            progress.has_room()?;
-            return adapted.map_err(|error| named(error.to_string()).into());
         }
         let adapt = |input: &Input| {
             let Input { mesh, place, model, source, .. } = input;

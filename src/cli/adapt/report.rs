@@ -105,7 +105,7 @@ pub struct Report {
     vertices_wanted: Option<Meeting>,
     input_vertices: usize,
     input_tets: usize,
-    statistics: Statistics,
+    pub(super) statistics: Statistics,
     fidelity: Fidelity,
     /// Boundary vertices, from 0 and in JSON from 1, that found no room on the model: their tetrahedra would be inverted at its closest point.
     #[serde(serialize_with = "from_one")]
@@ -136,9 +136,16 @@ pub struct Report {
 }
 
 impl Report {
-    /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it.
-    pub fn new(team: Team<'_>, asked: &Asked, input: &Input, adapted: Adapted, forecast: Option<Forecast>) -> Self {
-        let extracted = adapted.extracted;
+    /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it. What was forecast may be
+    /// known, and its statistics, where they come from elsewhere.
+    pub fn new(
+        team: Team<'_>,
+        asked: &Asked,
+        input: &Input,
+        adapted: Adapted,
+        known: (Option<Forecast>, Option<Statistics>),
+    ) -> Self {
+        let (extracted, (forecast, statistics)) = (adapted.extracted, known);
         let (mut mesh, model) = (extracted.mesh, &input.model);
         let names = match model {
             Model::Discrete(surface) => {
@@ -162,7 +169,7 @@ impl Report {
             vertices_wanted: input.meeting,
             input_vertices: input.mesh.vertices.len(),
             input_tets: input.mesh.tets.len(),
-            statistics: Statistics::in_metric(team, &mesh, &extracted.metrics),
+            statistics: statistics.unwrap_or_else(|| Statistics::in_metric(team, &mesh, &extracted.metrics)),
             fidelity,
             off_model: extracted.off_model,
             overgrown: adapted.growth_end.is_some(),

@@ -197,7 +197,7 @@ impl Refined {
             raw: None,
             meeting: None,
         };
-        let report = Report::new(team, asked, &input, self.adapted, None);
+        let report = Report::new(team, asked, &input, self.adapted, (None, None));
         let [prepared, finished] = self.times;
         let (report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
         lost.iter().for_each(crate::cli::note);

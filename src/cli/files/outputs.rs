@@ -1,10 +1,12 @@
 //! Writing the files of a result: all or none.
 use super::Target;
 use super::reading::{Fields, METRIC};
+use crate::decomposition;
 use crate::formats::{self, Dataset, Format, Options};
 use crate::geometry::{Names, names};
-use crate::mesh::TetMesh;
-use crate::mesh::io::{self, Batch};
+use crate::mesh::io::slices::{MeshWriter, MetricWriter};
+use crate::mesh::io::{self, Batch, MeshCounts, Slice};
+use crate::mesh::{Association, TetMesh};
 use crate::metric::{Field, Sym3};
 use crate::tasks::Team;
 use crate::view::{self, Scene, picture};
@@ -45,6 +47,23 @@ impl Outputs {
         io::add_mesh(&mut self.batch, team, &to.path, &data.mesh)?;
         names::add(&mut self.batch, &to.path, &data.names, &[])?;
         Ok(Vec::new())
+    }
+
+    /// A mesh (.meshb) of these counts with its names, and its metric beside it (.solb), which are written by slices.
+    pub fn slices(
+        &mut self,
+        mesh: &Target,
+        metric: &Target,
+        counts: &MeshCounts,
+        called: &Names,
+    ) -> Result<Slices, io::Error> {
+        let file = self.batch.open(&mesh.path, true)?;
+        names::add(&mut self.batch, &mesh.path, called, &[])?;
+        let of_metric = self.batch.open(&metric.path, false)?;
+        Ok(Slices {
+            mesh: MeshWriter::create(file, &mesh.path, counts)?,
+            metric: MetricWriter::create(of_metric, &metric.path, counts.vertices)?,
+        })
     }
 
     /// A mesh with all that belongs to it, in the format that its ending tells. Returns what that cannot carry.
@@ -130,5 +149,47 @@ impl Outputs {
     /// Gives the files their names.
     pub fn commit(self) -> Done {
         Ok(self.batch.commit()?)
+    }
+}
+
+/// A mesh and its metric that are being written by slices.
+pub struct Slices {
+    mesh: MeshWriter,
+    metric: MetricWriter,
+}
+
+impl Slices {
+    /// What a mesh without tetrahedra lists: its vertices are the first ones, with these metrics.
+    pub fn put_listed(&self, team: Team<'_>, mesh: &TetMesh, metrics: &[Sym3]) -> Done {
+        let Association { vertices, edges, faces } = &mesh.association;
+        let lists = [
+            Slice::Vertices(&mesh.vertices, &mesh.vertex_refs),
+            Slice::Edges(&mesh.edges.nodes, &mesh.edges.refs),
+            Slice::Triangles(&mesh.triangles.nodes, &mesh.triangles.refs),
+            Slice::Corners(&mesh.corners),
+            Slice::Ridges(&mesh.ridges),
+            Slice::RequiredVertices(&mesh.required_vertices),
+            Slice::RequiredEdges(&mesh.required_edges),
+            Slice::RequiredTriangles(&mesh.required_triangles),
+            Slice::OnVertices(vertices),
+            Slice::OnEdges(edges),
+            Slice::OnFaces(faces),
+        ];
+        lists.into_iter().try_for_each(|list| self.mesh.put(team, 0, list))?;
+        Ok(Field::put(team, &self.metric, 0, metrics)?)
+    }
+
+    /// A slice of an adapted mesh.
+    pub fn put(&self, slice: &decomposition::Slice) -> Done {
+        let team = Team::alone();
+        self.mesh.put(team, slice.first, Slice::Vertices(&slice.vertices, &slice.vertex_refs))?;
+        self.mesh.put(team, slice.first_tet, Slice::Tets(&slice.tets.nodes, &slice.tets.refs))?;
+        Ok(Field::put(team, &self.metric, slice.first, &slice.metrics)?)
+    }
+
+    /// All is written.
+    pub fn finish(self) -> Done {
+        self.mesh.finish()?;
+        Ok(self.metric.finish()?)
     }
 }

@@ -19,6 +19,15 @@ pub fn lacking(path: &Path, vertices: f64) -> Option<String> {
     })
 }
 
+/// Why so many bytes cannot be written to a folder.
+pub fn lacking_bytes(folder: &Path, needed: f64) -> Option<String> {
+    let free = free(folder)?;
+    (free < needed).then(|| {
+        let [free, needed] = [free, needed].map(|bytes| bytes / 1e6);
+        format!("{}: its disk has {free:.1} MB free, and {needed:.1} MB are wanted", folder.display())
+    })
+}
+
 /// Bytes that we may write to the disk of a folder, as far as the system tells: some network disks say that they have no blocks at all.
 fn free(folder: &Path) -> Option<f64> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };

@@ -1,0 +1,68 @@
+//! What is known after a round, beside the pieces: enough to go on from there when the run is killed.
+use super::Error;
+use super::bytes::{put, take};
+use super::cuts::Sample;
+use super::part::Done;
+use super::rounds::{Became, Told};
+use super::shelf::{self, Key, Shelf};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The file in the scratch folder that says how far the run is.
+pub const JOURNAL: &str = "journal.json";
+
+/// What is known after a round.
+#[derive(Serialize, Deserialize)]
+pub struct Journal {
+    /// Of what is adapted, and how: another run's pieces are of no use.
+    pub run: u64,
+    /// The round.
+    pub round: u32,
+    /// How many steps of the plan are done.
+    pub steps: usize,
+    /// The first id that is free.
+    pub next_id: u64,
+    /// The finished pieces.
+    pub finished: Vec<Key>,
+    /// What came of all parts.
+    pub done: Done,
+    /// What each round did.
+    pub told: Vec<Told>,
+}
+
+/// The file with what parts became and the samples of their tetrahedra.
+fn parts(folder: &Path, round: u32) -> PathBuf {
+    folder.join(format!("r{round:02}.parts"))
+}
+
+impl Journal {
+    /// Writes it, after all pieces that it speaks of.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn write(&self, folder: &Path, pieces: &[Became], samples: &[Sample]) -> Result<(), Error> {
+        let mut bytes = Vec::new();
+        put(&mut bytes, pieces);
+        put(&mut bytes, samples);
+        shelf::write(&parts(folder, self.round), &bytes)?;
+        let text = serde_json::to_vec(self).map_err(|_| Error::Message)?;
+        shelf::write(&folder.join(JOURNAL), &text)?;
+        if let Some(before) = self.round.checked_sub(1) {
+            drop(fs::remove_file(parts(folder, before)));
+        }
+        Ok(())
+    }
+
+    /// The journal of a run in its scratch folder; none where there is none, or another run's.
+    pub fn read(shelf: &Shelf, run: u64) -> Option<(Self, Vec<Became>, Vec<Sample>)> {
+        let Shelf::Disk(folder) = shelf else { return None };
+        let journal: Self = serde_json::from_slice(&fs::read(folder.join(JOURNAL)).ok()?).ok()?;
+        if journal.run != run {
+            return None;
+        }
+        let bytes = fs::read(parts(folder, journal.round)).ok()?;
+        let mut from = &bytes[..];
+        Some((journal, take(&mut from)?, take(&mut from)?))
+    }
+}
