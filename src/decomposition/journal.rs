@@ -4,13 +4,10 @@ use super::bytes::{put, take};
 use super::cuts::Sample;
 use super::part::Done;
 use super::rounds::{Became, Told};
-use super::shelf::{self, Key, Shelf};
+use super::shelf::{self, JOURNAL, Key, Shelf};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// The file in the scratch folder that says how far the run is.
-pub const JOURNAL: &str = "journal.json";
 
 /// What is known after a round.
 #[derive(Serialize, Deserialize)]
@@ -65,4 +62,43 @@ impl Journal {
         let mut from = &bytes[..];
         Some((journal, take(&mut from)?, take(&mut from)?))
     }
+}
+
+/// Writes what a part became in a round, after its pieces: a run that goes on need not adapt it again.
+///
+/// # Errors
+/// When the disk refuses.
+pub fn write_done(shelf: &Shelf, round: u32, done: &PartDone) -> Result<(), Error> {
+    let Shelf::Disk(folder) = shelf else { return Ok(()) };
+    Ok(shelf::write(&folder.join(format!("r{round:02}-p{:05}.done", done.0.part)), &encoded(done)?)?)
+}
+
+/// What a part became in a round, if that is done.
+pub fn read_done(shelf: &Shelf, round: u32, part: u32) -> Option<PartDone> {
+    let Shelf::Disk(folder) = shelf else { return None };
+    let bytes = fs::read(folder.join(format!("r{round:02}-p{part:05}.done"))).ok()?;
+    decoded(&mut &bytes[..])
+}
+
+/// What a part became, samples of its tetrahedra, and what came of it beside.
+pub type PartDone = (Became, Vec<Sample>, Done);
+
+/// As bytes.
+///
+/// # Errors
+/// None that is known.
+pub fn encoded((became, samples, done): &PartDone) -> Result<Vec<u8>, Error> {
+    let mut bytes = Vec::new();
+    put(&mut bytes, &[*became]);
+    put(&mut bytes, samples);
+    put(&mut bytes, &serde_json::to_vec(done).map_err(|_| Error::Message)?);
+    Ok(bytes)
+}
+
+/// From the front of some bytes.
+pub fn decoded(from: &mut &[u8]) -> Option<PartDone> {
+    let [became]: [Became; 1] = take(from)?.try_into().ok()?;
+    let samples = take(from)?;
+    let done = serde_json::from_slice(&take::<u8>(from)?).ok()?;
+    Some((became, samples, done))
 }

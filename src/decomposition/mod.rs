@@ -19,10 +19,9 @@ mod shelf;
 mod split;
 mod zones;
 
-pub use journal::JOURNAL;
 pub use rounds::{Common, Sizes, Told, wanted_vertices};
 pub use run::{Adapted, Measured, Slice, adapt};
-pub use shelf::Shelf;
+pub use shelf::{JOURNAL, Shelf};
 
 /// A run by parts that failed.
 #[derive(Debug, thiserror::Error)]

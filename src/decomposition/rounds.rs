@@ -6,7 +6,7 @@ use super::Error;
 use super::bytes::{decoded, encoded, put, take};
 use super::cuts::{Cuts, Sample, samples};
 use super::join::join;
-use super::journal::Journal;
+use super::journal::{self, Journal, PartDone, read_done, write_done};
 use super::outline::{Numbering, Outline};
 use super::part::{Done, Round, Tools, adapt_piece};
 use super::piece::Piece;
@@ -41,6 +41,9 @@ const OF_ONE_THREAD: usize = 4;
 
 /// Most rounds around former cuts.
 const MOST_ZONES: usize = 8;
+
+/// The owner of a part that is done.
+const NOBODY: u32 = u32::MAX;
 
 /// Memory for a vertex that is being adapted, bytes.
 const BYTES_A_VERTEX: f64 = 1_200.0;
@@ -112,7 +115,9 @@ pub struct Told {
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Became {
-    part: u32,
+    /// Its number in the round.
+    pub part: u32,
+    /// The rank that has it.
     rank: u32,
     /// Tetrahedra and vertices that are not finished.
     tets: u64,
@@ -199,12 +204,15 @@ impl<'a> Rounds<'a> {
             return Ok(rounds);
         }
         let list = Shared::default();
-        let put = match common.ranks.rank() {
-            0 => rounds.put_away(0, 0, [whole(), Piece::default()], &list),
-            _ => Ok(()),
-        };
+        let mut put = Ok(());
+        if common.ranks.rank() == 0 {
+            // What is there is of another run.
+            common.shelf.clear();
+            put = rounds.put_away(0, 0, [whole(), Piece::default()], Done::default(), &list);
+        }
         rounds.agreed(put)?;
         rounds.become_active(0, list)?;
+        rounds.note()?;
         Ok(rounds)
     }
 
@@ -331,8 +339,8 @@ impl<'a> Rounds<'a> {
         let tets = self.active.pieces.iter().map(|piece| piece.tets as usize).sum();
         self.common.observer.begin(crate::adapt::Kind::Split, self.told.len(), parts);
         let owners = self.owners(parts, &cuts.work);
+        let (owners, list) = self.without_done(round, owners);
         let mine = self.deal(round, &cuts, log_factor, &owners)?;
-        let list = Shared::default();
         let adapted = self.adapt_parts(round, source, (parts, &mine), (is_zone, divides), &list);
         self.agreed(adapted)?;
         self.next_id += (parts as u64) << 33;
@@ -365,6 +373,20 @@ impl<'a> Rounds<'a> {
         owners
     }
 
+    /// The owners of the parts that are not done yet, and what a run that was ended has left of the others: those of this rank.
+    fn without_done(&self, round: u32, mut owners: Vec<u32>) -> (Vec<u32>, Shared<PartDone>) {
+        let (list, own) = (Shared::default(), self.common.ranks.rank() as u32);
+        for (owner, part) in owners.iter_mut().zip(0..) {
+            if let Some((became, samples, done)) = read_done(self.common.shelf, round, part) {
+                if *owner == own {
+                    add(&list, (Became { rank: own, ..became }, samples, done));
+                }
+                *owner = NOBODY;
+            }
+        }
+        (owners, list)
+    }
+
     /// Gives each part its share of each active piece. Returns the parts of this rank, each with the pieces that it has a share of.
     fn deal(&self, round: u32, cuts: &Cuts, log_factor: f64, owners: &[u32]) -> Result<Vec<(u32, Vec<u32>)>, Error> {
         let Common { shelf, ranks, .. } = self.common;
@@ -380,6 +402,7 @@ impl<'a> Rounds<'a> {
             let shares = if parts == 1 { vec![piece] } else { split(&piece, &cuts.owners(&piece), parts, |_, _| true) };
             for (share, part) in shares.into_iter().zip(0..).filter(|(share, _)| share.len() > 0) {
                 match owners[part as usize] {
+                    NOBODY => {}
                     rank if rank == own => {
                         shelf.put(Key::Share { round, part, of }, share)?;
                         add(&kept, (part, of));
@@ -421,7 +444,7 @@ impl<'a> Rounds<'a> {
         source: &Source,
         (parts, mine): (usize, &[(u32, Vec<u32>)]),
         (is_zone, divides): (bool, bool),
-        list: &Shared<(Became, Vec<Sample>, Done)>,
+        list: &Shared<PartDone>,
     ) -> Result<(), Error> {
         let Common { model, options, pool, shelf, observer, sizes, .. } = self.common;
         let is_shared = parts < OF_ONE_THREAD;
@@ -438,12 +461,7 @@ impl<'a> Rounds<'a> {
             let (piece, done) = adapt_piece(tools, piece, Round { is_zone, is_alone: parts == 1 }, first_id)?;
             of.iter().for_each(|&of| shelf.forget(Key::Share { round, part, of }));
             let pieces = if divides { divide(&piece) } else { [piece, Piece::default()] };
-            self.put_away(round, part, pieces, list)?;
-            if let Some((.., known)) =
-                list.lock().unwrap_or_else(PoisonError::into_inner).iter_mut().find(|(became, ..)| became.part == part)
-            {
-                *known = done;
-            }
+            self.put_away(round, part, pieces, done, list)?;
             observer.advance(1);
             Ok(())
         };
@@ -461,7 +479,8 @@ impl<'a> Rounds<'a> {
         round: u32,
         part: u32,
         [active, finished]: [Piece; 2],
-        list: &Shared<(Became, Vec<Sample>, Done)>,
+        done: Done,
+        list: &Shared<PartDone>,
     ) -> Result<(), Error> {
         let Common { shelf, ranks, .. } = self.common;
         let most = (SAMPLES / self.active.pieces.len().max(1)).max(LEAST_SAMPLES);
@@ -472,33 +491,29 @@ impl<'a> Rounds<'a> {
             vertices: active.ids.len() as u64,
             all: (active.ids.len() + finished.ids.len()) as u64,
         };
-        add(list, (became, samples(&active, most), Done::default()));
+        let told = (became, samples(&active, most), done);
         if active.len() > 0 {
             shelf.put(Key::Active { round, part }, active)?;
         }
         if finished.len() > 0 {
             shelf.put(Key::Finished { round, part }, finished)?;
         }
+        write_done(shelf, round, &told)?;
+        add(list, told);
         Ok(())
     }
 
     /// All ranks tell what their parts became.
-    fn become_active(&mut self, round: u32, list: Shared<(Became, Vec<Sample>, Done)>) -> Result<(), Error> {
+    fn become_active(&mut self, round: u32, list: Shared<PartDone>) -> Result<(), Error> {
         let mut bytes = Vec::new();
-        for (became, samples, done) in sorted(list, |(became, ..)| became.part) {
-            put(&mut bytes, &[became]);
-            put(&mut bytes, &samples);
-            put(&mut bytes, &serde_json::to_vec(&done).map_err(|_| Error::Message)?);
+        for told in sorted(list, |(became, ..)| became.part) {
+            bytes.append(&mut journal::encoded(&told)?);
         }
         let mut all = Vec::new();
         for from in self.common.ranks.gather(&bytes) {
             let mut from = &from[..];
             while !from.is_empty() {
-                let [became]: [Became; 1] =
-                    take(&mut from).and_then(|one| one.try_into().ok()).ok_or(Error::Message)?;
-                let samples: Vec<Sample> = take(&mut from).ok_or(Error::Message)?;
-                let done = take::<u8>(&mut from).ok_or(Error::Message)?;
-                all.push((became, samples, serde_json::from_slice::<Done>(&done).map_err(|_| Error::Message)?));
+                all.push(journal::decoded(&mut from).ok_or(Error::Message)?);
             }
         }
         all.sort_by_key(|(became, ..)| became.part);

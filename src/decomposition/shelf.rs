@@ -7,6 +7,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+/// The file in the scratch folder that says how far the run is.
+pub const JOURNAL: &str = "journal.json";
+
+/// How the names of all other files there end.
+const ENDINGS: [&str; 6] = [".active", ".finished", ".share", ".done", ".parts", ".part"];
+
 /// What a piece is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum Key {
@@ -98,6 +104,23 @@ impl Shelf {
     pub fn give_back(&self, key: Key, piece: Piece) {
         if let Self::Memory(pieces) = self {
             pieces.lock().unwrap_or_else(PoisonError::into_inner).insert(key, piece);
+        }
+    }
+
+    /// Removes all pieces and what is known of them. That a file stays does no harm.
+    pub fn clear(&self) {
+        match self {
+            Self::Memory(pieces) => pieces.lock().unwrap_or_else(PoisonError::into_inner).clear(),
+            Self::Disk(folder) => {
+                // The journal first: without it nothing else counts.
+                drop(fs::remove_file(folder.join(JOURNAL)));
+                for file in fs::read_dir(folder).into_iter().flatten().flatten() {
+                    let name = file.file_name();
+                    if name.to_str().is_some_and(|name| ENDINGS.iter().any(|ending| name.ends_with(ending))) {
+                        drop(fs::remove_file(file.path()));
+                    }
+                }
+            }
         }
     }
 

@@ -101,7 +101,7 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
         memory: arguments.parts.memory,
         observer: &progress,
     };
-    let goes_on = |rounds| note(format_args!("a run that was ended before goes on after {rounds} rounds"));
+    let goes_on = |rounds| note(format_args!("a run that was ended before goes on after round {rounds}"));
     let adapted = decomposition::adapt(common, (&input.mesh, &input.place), &mut input.source, run, goes_on);
     progress.finish();
     progress.has_room()?;

@@ -62,16 +62,8 @@ impl Scratch {
 
     /// Removes what is in it, and the folder. What others have put there stays.
     pub fn remove(self) {
-        let is_ours = |name: &str| {
-            let endings = [".active", ".finished", ".share", ".part", ".parts"];
-            name == OURS || name == JOURNAL || (name.starts_with('r') && endings.iter().any(|end| name.ends_with(end)))
-        };
-        let Ok(files) = fs::read_dir(&self.folder) else { return };
-        for file in files.flatten() {
-            if file.file_name().to_str().is_some_and(is_ours) {
-                drop(fs::remove_file(file.path()));
-            }
-        }
+        self.shelf().clear();
+        drop(fs::remove_file(self.folder.join(OURS)));
         if let Err(error) = fs::remove_dir(&self.folder)
             && error.kind() != ErrorKind::NotFound
         {
