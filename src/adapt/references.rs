@@ -27,11 +27,9 @@ impl References {
         }
     }
 
-    /// The numbers of the entities, and all triangles outwards.
-    pub fn of_numbers(model: &Model) -> Self {
-        let [faces, edges] = [model.topology().faces.len(), model.topology().edges.len()];
-        let numbers = |count: usize| (1..=count as i32).collect();
-        Self { faces: numbers(faces), inward: vec![false; faces], edges: numbers(edges) }
+    /// The same, with all triangles outwards.
+    pub fn outwards(&self) -> Self {
+        Self { inward: vec![false; self.inward.len()], ..self.clone() }
     }
 }
 

@@ -101,6 +101,8 @@ pub struct Part<'a> {
     pub held: &'a [u32],
     /// Triangles that must stay, since another part has them too.
     pub triangles: &'a [u32],
+    /// The references of the whole mesh, with all triangles outwards.
+    pub refs: &'a References,
     /// Whether what is bad beside them may wait.
     pub cuts_will_move: bool,
 }
@@ -176,7 +178,7 @@ fn run(
     context.store.trim();
     stage("passes");
     let refs = match part {
-        Some(_) => References::of_numbers(model),
+        Some(part) => part.refs.clone(),
         None => References::of(team, mesh, place, model),
     };
     let mut extracted = extract::extract(team, &context, mesh, &refs, &unprojected);

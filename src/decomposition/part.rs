@@ -3,7 +3,7 @@ use super::join::join;
 use super::manifold::{open_faces, resting};
 use super::piece::{Piece, SHARED, WAITING};
 use super::split::split;
-use crate::adapt::{self, Adapted, Error, Extracted, KINDS, Observer, Options, Work};
+use crate::adapt::{self, Adapted, Error, Extracted, KINDS, Observer, Options, References, Work};
 use crate::geometry::Model;
 use crate::mesh::adjacency::{MatchedFaces, TriangleIndex, sorted3};
 use crate::metric::Source;
@@ -54,6 +54,8 @@ pub struct Tools<'a> {
     pub model: &'a Model,
     /// Where new vertices take their metric from.
     pub source: &'a Source,
+    /// The references of the whole mesh, with all triangles outwards.
+    pub refs: &'a References,
     /// How to adapt.
     pub options: &'a Options,
     /// The threads of one part.
@@ -146,13 +148,14 @@ fn adapt_manifold(
     round: Round,
     first_id: u64,
 ) -> Result<(Piece, Done), Error> {
-    let Tools { model, source, options, pool, observer } = tools;
+    let Tools { model, source, refs, options, pool, observer } = tools;
     let held = Held::of(&piece, &faces);
     drop(faces);
     let part = adapt::Part {
         logs: &piece.logs,
         held: &held.vertices,
         triangles: &held.triangles,
+        refs,
         cuts_will_move: !round.is_zone && !round.is_alone,
     };
     let adapted = adapt::adapt_part(&piece.mesh, &piece.place, part, model, source, options, pool, observer)?;

@@ -13,7 +13,7 @@ use super::piece::Piece;
 use super::shelf::{Key, Shelf};
 use super::split::split;
 use super::zones::divide;
-use crate::adapt::{Observer, Options, Scheduler};
+use crate::adapt::{Observer, Options, References, Scheduler};
 use crate::geometry::Model;
 use crate::metric::Source;
 use crate::metric::field::complexity_factor;
@@ -38,6 +38,9 @@ const LEAST_SAMPLES: usize = 1 << 10;
 
 /// From so many parts on, each is one thread's; fewer are adapted by all threads, one after the other.
 const OF_ONE_THREAD: usize = 4;
+
+/// From a round around former cuts to the next there are fewer parts by this factor at least.
+const FEWER: usize = 3;
 
 /// Most rounds around former cuts.
 const MOST_ZONES: usize = 8;
@@ -149,6 +152,8 @@ pub struct Rounds<'a> {
     steps: usize,
     /// What the run is known by.
     run: u64,
+    /// The references of the mesh, with all triangles outwards.
+    refs: References,
     /// Vertices of the finished pieces.
     finished_vertices: u64,
 }
@@ -195,11 +200,11 @@ impl<'a> Rounds<'a> {
     ///
     /// # Errors
     /// Where it cannot be put away.
-    pub fn new(common: Common<'a>, run: u64, whole: impl FnOnce() -> Piece) -> Result<Self, Error> {
+    pub fn new(common: Common<'a>, run: u64, refs: References, whole: impl FnOnce() -> Piece) -> Result<Self, Error> {
         let active = Active::default();
         let (done, told, finished) = (Done::default(), Vec::new(), Vec::new());
         let mut rounds =
-            Self { common, done, told, finished, active, next_id: 1 << 40, steps: 0, run, finished_vertices: 0 };
+            Self { common, done, told, finished, active, next_id: 1 << 40, steps: 0, run, refs, finished_vertices: 0 };
         if rounds.goes_on() {
             return Ok(rounds);
         }
@@ -289,7 +294,9 @@ impl<'a> Rounds<'a> {
             if vertices == 0 || self.is_stopped() {
                 break;
             }
-            self.round(source, sizes.parts(vertices as f64), 0.0, true, true)?;
+            // Fewer and fewer, so that none is left to cut.
+            let most = self.told.last().map_or(1, |told| told.parts.div_ceil(FEWER));
+            self.round(source, sizes.parts(vertices as f64).min(most), 0.0, true, true)?;
         }
         self.finish_all();
         Ok(())
@@ -456,7 +463,7 @@ impl<'a> Rounds<'a> {
             let part = *part;
             let share = |&of: &u32| shelf.take(Key::Share { round, part, of });
             let piece = join(of.iter().map(share).collect::<Result<Vec<_>, _>>()?);
-            let tools = Tools { model, source, options: &options, pool, observer: &quiet };
+            let tools = Tools { model, source, refs: &self.refs, options: &options, pool, observer: &quiet };
             let first_id = self.next_id + (u64::from(part) << 33);
             let (piece, done) = adapt_piece(tools, piece, Round { is_zone, is_alone: parts == 1 }, first_id)?;
             of.iter().for_each(|&of| shelf.forget(Key::Share { round, part, of }));

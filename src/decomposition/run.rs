@@ -46,7 +46,7 @@ pub fn adapt<'a>(
     source.check(team, mesh).map_err(crate::adapt::Error::from)?;
     let complexity = source.complexity(team, mesh);
     let refs = References::of(team, mesh, place, common.model);
-    let mut rounds = Rounds::new(common, run, || {
+    let mut rounds = Rounds::new(common, run, refs.outwards(), || {
         let logs = match source.logs_on(mesh) {
             Some(logs) => logs.to_vec(),
             None => team.map(GRAIN, mesh.vertices.len(), |v| source.log_at(mesh.vertices[v], &mut 0)),

@@ -1,6 +1,7 @@
 //! What can differ with OpenCASCADE and without it: tests/run runs these both ways, and all others once.
 #![cfg(feature = "cli")]
 mod adapt_sizes;
+mod by_parts;
 #[path = "../common/mod.rs"]
 mod common;
 mod deterministic;

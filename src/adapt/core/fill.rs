@@ -242,11 +242,13 @@ impl Filling<'_> {
                 _ => self.store.set_corner(v, at_vertex.iter().map(|&(_, b, curve)| (b, curve)).collect()),
             }
         }
-        // Corners without a ridge (a required vertex on a face) still need their empty list.
-        let corners = self.place.entities.iter().zip(&self.order.vertex_ids);
-        for (_, &v) in corners.filter(|(entity, _)| matches!(entity, Entity::Vertex(_))) {
-            if ends.binary_search_by_key(&v, |end| end.0).is_err() {
-                self.store.set_corner(v, Vec::new());
+        // What is without a ridge (a required vertex on a face, a vertex of a part that has its ridges elsewhere) must not know any either.
+        let known = |v: VertexId| ends.binary_search_by_key(&v, |end| end.0).is_ok();
+        for (entity, &v) in self.place.entities.iter().zip(&self.order.vertex_ids) {
+            match entity {
+                Entity::Vertex(_) if !known(v) => self.store.set_corner(v, Vec::new()),
+                Entity::Edge(_) if !known(v) => self.store.set_ridge(v, [VertexId::NONE; 2]),
+                _ => {}
             }
         }
     }

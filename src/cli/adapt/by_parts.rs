@@ -84,6 +84,9 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     let prepared = start.elapsed();
     let named = |error: String| -> Error { format!("{}: {error}", arguments.input.mesh.display()).into() };
     let freeze = parts::frozen(&arguments.freeze, &input.mesh, &input.names).map_err(named)?;
+    if !freeze.surfaces.is_empty() {
+        arguments.check_references(&input).map_err(named)?;
+    }
     let options = arguments.options(plan, freeze);
     let vertices = wanted_vertices(input.source.complexity(team, &input.mesh)).max(input.mesh.vertices.len() as f64);
     let place = agreed(ranks, arguments.parts.place(&arguments.output, vertices, threads, ranks))?;

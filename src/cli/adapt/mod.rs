@@ -195,14 +195,14 @@ impl Arguments {
         meet::adapted(&self.input, team, input, adapt, || progress.interrupted())
     }
 
-    /// Refuses references that the next cycle would not find again: on a CAD model they become the numbers of its faces where they do
+    /// Refuses references that the next cycle or round would not find again: on a CAD model they become the numbers of its faces where they do
     /// not stand for one face each.
     fn check_references(&self, input: &Input) -> Result<(), String> {
         if self.input.cad.is_none() || keeps_references(&input.mesh, &input.place) {
             return Ok(());
         }
-        Err("its references do not stand for one face each, so the first cycle replaces them by the numbers of the faces, and --freeze would \
-             name other surfaces after it; give it the references of `geo-adapt classify`, or one cycle"
+        Err("its references do not stand for one face each, so the first cycle or part replaces them by others, and --freeze would name other \
+             surfaces after it; give it the references of `geo-adapt classify`, or one cycle without --memory"
             .into())
     }
 
