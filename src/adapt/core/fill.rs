@@ -242,11 +242,14 @@ impl Filling<'_> {
                 _ => self.store.set_corner(v, at_vertex.iter().map(|&(_, b, curve)| (b, curve)).collect()),
             }
         }
-        // Corners without a ridge (a required vertex on a face) still need their empty list.
-        let corners = self.place.entities.iter().zip(&self.order.vertex_ids);
-        for (_, &v) in corners.filter(|(entity, _)| matches!(entity, Entity::Vertex(_))) {
-            if ends.binary_search_by_key(&v, |end| end.0).is_err() {
-                self.store.set_corner(v, Vec::new());
+        // A corner without a ridge (a required vertex on a face) still needs its empty list. A part of a larger mesh may have a vertex on a
+        // model edge and none of the ridges at it.
+        for (entity, &v) in self.place.entities.iter().zip(&self.order.vertex_ids) {
+            let is_alone = || ends.binary_search_by_key(&v, |end| end.0).is_err();
+            match entity {
+                Entity::Vertex(_) if is_alone() => self.store.set_corner(v, Vec::new()),
+                Entity::Edge(_) if is_alone() => self.store.set_ridge(v, [VertexId::NONE; 2]),
+                _ => {}
             }
         }
     }
