@@ -9,6 +9,7 @@ mod bytes;
 mod cuts;
 mod join;
 mod manifold;
+mod maps;
 mod outline;
 mod part;
 mod piece;
@@ -16,6 +17,8 @@ mod rounds;
 mod run;
 mod shelf;
 mod split;
+#[cfg(test)]
+mod tests;
 mod zones;
 
 pub use rounds::{Common, Sizes, Told};

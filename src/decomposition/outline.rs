@@ -2,18 +2,15 @@
 //! vertices it has inside.
 use super::bytes::{decoded, encoded, put, take};
 use super::join::Joined;
+use super::maps::Map;
 use super::piece::{Piece, SHARED};
 use super::split::split_vertices;
 use crate::geometry::Entity;
-use crate::mesh::adjacency::TriangleIndex;
-use crate::tasks::Team;
-use std::collections::HashMap;
 
 /// A piece's outline.
 #[derive(Default)]
 pub struct Outline {
-    /// Its listed vertices, those on the model or required, with its triangles, ridges and required entities, and no tetrahedra. The reference of
-    /// a triangle that another piece has too is the region behind it.
+    /// Its listed vertices, those on the model or required, with its triangles, ridges and required entities, and no tetrahedra.
     pub skin: Piece,
     /// Its other vertices that are shared, in their order.
     pub shared: Vec<u64>,
@@ -36,16 +33,7 @@ impl Outline {
     /// Of a piece.
     pub fn of(piece: &Piece) -> Self {
         let listed = listed(piece);
-        let mut skin = split_vertices(piece, &listed);
-        if piece.halves.contains(&true) {
-            let mesh = &piece.mesh;
-            let index = TriangleIndex::new(Team::alone(), &mesh.triangles.nodes, mesh.vertices.len());
-            for side in index.sides(Team::alone(), &mesh.tets.nodes) {
-                if piece.halves[side.triangle as usize] {
-                    skin.mesh.triangles.refs[side.triangle as usize] = mesh.tets.refs[side.tet as usize];
-                }
-            }
-        }
+        let skin = split_vertices(piece, &listed);
         let inner = || (0..piece.ids.len()).filter(|&v| !listed[v]);
         let is_shared = |v: &usize| piece.marks[*v] & SHARED != 0;
         let shared: Vec<u64> = inner().filter(is_shared).map(|v| piece.ids[v]).collect();
@@ -78,8 +66,8 @@ pub struct Numbering {
     pub skin: Piece,
     /// For each piece the numbers of its listed vertices.
     listed: Vec<Vec<u32>>,
-    /// The numbers of the other shared vertices.
-    shared: HashMap<u64, u32>,
+    /// The numbers of all shared vertices.
+    shared: Map<u64, u32>,
     /// For each piece its first number inside, and its first tetrahedron; and behind the last.
     first: Vec<[u64; 2]>,
 }
@@ -101,8 +89,10 @@ impl Numbering {
     pub fn of(outlines: Vec<Outline>) -> Self {
         let mut skin = Joined::default();
         let listed: Vec<Vec<u32>> = outlines.iter().map(|outline| skin.add(&outline.skin)).collect();
-        let mut next = [skin.whole.ids.len() as u64, 0];
-        let (mut shared, mut first) = (HashMap::new(), vec![next]);
+        // A vertex may be listed in one piece, as an end of a required edge, and not in another, which has only this end of the edge.
+        let (skin, mut shared) = skin.finish();
+        let mut next = [skin.ids.len() as u64, 0];
+        let mut first = vec![next];
         for Outline { shared: ids, own, tets, .. } in outlines {
             next[0] += own;
             for id in ids {
@@ -114,7 +104,7 @@ impl Numbering {
             next[1] += tets;
             first.push(next);
         }
-        Self { skin: skin.whole, listed, shared, first }
+        Self { skin, listed, shared, first }
     }
 
     /// Vertices of the whole mesh.
