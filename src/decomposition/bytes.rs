@@ -7,6 +7,9 @@ use bytemuck::Pod;
 /// The first bytes of every piece.
 const MAGIC: u64 = u64::from_le_bytes(*b"geopiec1");
 
+/// An odd number with well mixed bits.
+const FACTOR: u64 = 0x9E37_79B9_7F4A_7C15;
+
 /// The kinds of entities, in the two highest bits of their numbers.
 const KIND: u32 = 30;
 
@@ -40,12 +43,17 @@ pub fn encoded(piece: &Piece) -> Vec<u8> {
     put(&mut bytes, &mesh.required_edges);
     put(&mut bytes, &mesh.required_triangles);
     put(&mut bytes, &place.ridges.iter().map(|&([a, b], curve)| [a, b, curve]).collect::<Vec<_>>());
+    let sum = checksum(&bytes);
+    bytes.extend_from_slice(&sum.to_ne_bytes());
     bytes
 }
 
 /// The piece of these bytes; none where they are not those of a piece.
 pub fn decoded(bytes: &[u8]) -> Option<Piece> {
-    let mut rest = bytes;
+    let (mut rest, sum) = bytes.split_last_chunk()?;
+    if checksum(rest) != u64::from_ne_bytes(*sum) {
+        return None;
+    }
     let from = &mut rest;
     if take::<u64>(from)? != [MAGIC] {
         return None;
@@ -72,7 +80,51 @@ pub fn decoded(bytes: &[u8]) -> Option<Piece> {
     piece.mesh.required_edges = take(from)?;
     piece.mesh.required_triangles = take(from)?;
     piece.place.ridges = take::<[u32; 3]>(from)?.into_iter().map(|[a, b, curve]| ([a, b], curve)).collect();
-    rest.is_empty().then_some(piece)
+    (rest.is_empty() && is_sound(&piece)).then_some(piece)
+}
+
+/// Whether all lists of a piece fit together.
+fn is_sound(Piece { mesh, place, logs, ids, marks, halves, cuts }: &Piece) -> bool {
+    fn are_below<'a>(numbers: impl IntoIterator<Item = &'a u32>, end: usize) -> bool {
+        numbers.into_iter().max().is_none_or(|&greatest| (greatest as usize) < end)
+    }
+    let (vertices, triangles) = (ids.len(), mesh.triangles.nodes.len());
+    let of_vertices = [
+        mesh.vertices.len(),
+        mesh.vertex_refs.len(),
+        place.entities.len(),
+        place.parameters.len(),
+        logs.len(),
+        marks.len(),
+    ];
+    let of_triangles = [mesh.triangles.refs.len(), place.faces.len(), halves.len()];
+    let ridges = || place.ridges.iter().flat_map(|(nodes, _)| nodes);
+    of_vertices.iter().all(|&length| length == vertices)
+        && of_triangles.iter().all(|&length| length == triangles)
+        && mesh.tets.refs.len() == mesh.tets.nodes.len()
+        && mesh.edges.refs.len() == mesh.edges.nodes.len()
+        && are_below(mesh.tets.nodes.as_flattened(), vertices)
+        && are_below(mesh.triangles.nodes.as_flattened(), vertices)
+        && are_below(mesh.edges.nodes.as_flattened(), vertices)
+        && are_below(cuts.as_flattened(), vertices)
+        && are_below(ridges(), vertices)
+        && are_below(&mesh.required_vertices, vertices)
+        && are_below(&mesh.required_edges, mesh.edges.nodes.len())
+        && are_below(&mesh.required_triangles, triangles)
+}
+
+/// A sum that changes when any of the bytes does. A disk may return something else than was written.
+fn checksum(bytes: &[u8]) -> u64 {
+    let mix = |sum: u64, word: u64| (sum.rotate_left(5) ^ word).wrapping_mul(FACTOR);
+    // Four sums at a time, as each step of one waits for the last.
+    let mut sums = [1, 2, 3, bytes.len() as u64];
+    let (blocks, rest) = bytes.as_chunks::<32>();
+    for block in blocks {
+        let (words, _) = block.as_chunks::<8>();
+        sums.iter_mut().zip(words).for_each(|(sum, word)| *sum = mix(*sum, u64::from_ne_bytes(*word)));
+    }
+    let sum = rest.iter().fold(0, |sum, &byte| mix(sum, u64::from(byte)));
+    sums.into_iter().fold(sum, mix)
 }
 
 /// Appends the length of a list in bytes, and the list.

@@ -79,9 +79,10 @@ enum Tree {
 }
 
 impl Cuts {
-    /// Into so many parts.
+    /// Into so many parts. Where the samples leave no choice, some parts have nothing.
     pub fn of(mut samples: Vec<Sample>, parts: usize) -> Self {
-        let tree = Tree::of(&mut samples, 0, parts.max(1) as u32);
+        let parts = parts.max(1);
+        let tree = Tree::of(&mut samples, 0, parts as u32);
         let mut work = vec![0.0; parts];
         samples.iter().for_each(|sample| work[tree.part_at(sample.centre) as usize] += sample.work);
         Self { tree, work }
@@ -100,7 +101,7 @@ impl Tree {
         else {
             return Self::Part(first);
         };
-        samples.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
+        samples.sort_by_key(|sample| sample.centre[axis] >= at);
         let middle = samples.partition_point(|sample| sample.centre[axis] < at);
         let (below, above) = samples.split_at_mut(middle);
         let sides = [Self::of(below, first, half), Self::of(above, first + half, parts - half)];
@@ -118,29 +119,69 @@ impl Tree {
     }
 }
 
-/// The plane that crosses the fewest tetrahedra of those that leave about this share of the work below; none where there is no such plane.
-fn best_cut(samples: &mut [Sample], share: f64) -> Option<(usize, f64)> {
-    let all: f64 = samples.iter().map(|sample| sample.work).sum();
-    let mut best: Option<(f64, usize, f64)> = None;
+/// The plane that crosses the fewest tetrahedra of those that leave about this share of the work below, or where there is none such the
+/// nearest to that share; none where all samples are at one place.
+fn best_cut(samples: &[Sample], share: f64) -> Option<(usize, f64)> {
+    let mut best: Option<([f64; 2], (usize, f64))> = None;
+    let mut order = Vec::with_capacity(samples.len());
     for axis in 0..3 {
-        samples.sort_by(|a, b| a.centre[axis].total_cmp(&b.centre[axis]));
-        let mut below = 0.0;
-        let mut window = Vec::new();
-        for sample in samples.iter() {
-            if (below / all - share).abs() <= SLACK {
-                window.push(sample.centre[axis]);
-            }
-            below += sample.work;
-        }
-        let step = window.len().div_ceil(PLACES).max(1);
-        for &at in window.iter().skip(step / 2).step_by(step) {
-            let crossed = samples.iter().filter(|sample| sample.low[axis] < at && at < sample.high[axis]);
-            let cost: f64 = crossed.map(|sample| sample.count * if sample.waits == 1 { FORMER_CUT } else { 1.0 }).sum();
-            let is_cut = samples.first().is_some_and(|first| first.centre[axis] < at);
-            if is_cut && best.is_none_or(|(least, ..)| cost < least) {
-                best = Some((cost, axis, at));
+        order.clear();
+        order.extend(samples.iter().map(|sample| (sample.centre[axis], sample.work)));
+        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let (excess, places) = places(&order, share);
+        for (at, crossed) in places.iter().zip(crossed(samples, axis, &places)) {
+            let cost = [excess, crossed];
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, (axis, *at)));
             }
         }
     }
-    best.map(|(_, axis, at)| (axis, at))
+    best.map(|(_, cut)| cut)
+}
+
+/// Places for a cut, ascending, and how much farther they are from the share than they should be. `order` has the places and the work of the
+/// samples, ascending.
+fn places(order: &[(f64, f64)], share: f64) -> (f64, Vec<f64>) {
+    let all: f64 = order.iter().map(|sample| sample.1).sum();
+    let (mut below, mut last) = (0.0, order.first().map_or(0.0, |first| first.0));
+    let (mut window, mut nearest) = (Vec::new(), None);
+    for &(at, work) in order {
+        // What has its centre at the cut lies above.
+        if at > last {
+            let off = f64::abs(below / all - share);
+            if off <= SLACK {
+                window.push(at);
+            } else if nearest.is_none_or(|(least, _)| off < least) {
+                nearest = Some((off, at));
+            }
+            last = at;
+        }
+        below += work;
+    }
+    if window.is_empty() {
+        return nearest.map_or((0.0, Vec::new()), |(off, at)| (off - SLACK, vec![at]));
+    }
+    let step = window.len().div_ceil(PLACES);
+    (0.0, window.into_iter().skip(step / 2).step_by(step).collect())
+}
+
+/// What a cut at each of these places, which ascend, would cross.
+fn crossed(samples: &[Sample], axis: usize, places: &[f64]) -> Vec<f64> {
+    // What begins and ends to be crossed, from place to place. All are whole numbers, so the sums are exact.
+    let mut change = vec![0.0; places.len() + 1];
+    for sample in samples {
+        let first = places.partition_point(|&at| at <= sample.low[axis]);
+        let end = places.partition_point(|&at| at < sample.high[axis]);
+        if first < end {
+            let cost = sample.count * if sample.waits == 1 { FORMER_CUT } else { 1.0 };
+            change[first] += cost;
+            change[end] -= cost;
+        }
+    }
+    let mut sum = 0.0;
+    let sums = change.iter().take(places.len()).map(|change| {
+        sum += change;
+        sum
+    });
+    sums.collect()
 }

@@ -1,10 +1,9 @@
 //! From several pieces to one.
+use super::maps::{Map, Set};
 use super::piece::{Piece, SHARED};
 use crate::mesh::adjacency::{sorted2, sorted3};
-use std::collections::{HashMap, HashSet};
 
-/// Joins pieces where they share vertices. Of what several have, the first piece's counts; of a triangle between regions the one of the
-/// lesser reference.
+/// Joins pieces where they share vertices. Of what several have, the first piece's counts.
 pub fn join(pieces: impl IntoIterator<Item = Piece>) -> Piece {
     let mut pieces = pieces.into_iter().filter(|piece| piece.len() > 0);
     let Some(first) = pieces.next() else { return Piece::default() };
@@ -13,21 +12,20 @@ pub fn join(pieces: impl IntoIterator<Item = Piece>) -> Piece {
     joined.add(&second);
     drop(second);
     pieces.for_each(|piece| drop(joined.add(&piece)));
-    joined.whole
+    joined.finish().0
 }
 
 /// What has been joined so far.
 #[derive(Default)]
 pub struct Joined {
-    /// As one piece.
-    pub whole: Piece,
+    whole: Piece,
     /// The shared vertices by their ids.
-    vertices: HashMap<u64, u32>,
+    vertices: Map<u64, u32>,
     /// Triangles that another piece has too, by their nodes.
-    halves: HashMap<[u32; 3], u32>,
+    halves: Map<[u32; 3], u32>,
     /// Ridges and required edges between shared vertices.
-    ridges: HashSet<[u32; 2]>,
-    edges: HashSet<[u32; 2]>,
+    ridges: Set<[u32; 2]>,
+    edges: Set<[u32; 2]>,
 }
 
 impl Joined {
@@ -43,59 +41,74 @@ impl Joined {
         Self { whole, vertices, halves, ridges, edges }
     }
 
+    /// As one piece, and the shared vertices by their ids.
+    pub fn finish(self) -> (Piece, Map<u64, u32>) {
+        let Self { mut whole, vertices, .. } = self;
+        for required in [&mut whole.mesh.required_vertices, &mut whole.mesh.required_triangles] {
+            required.sort_unstable();
+            required.dedup();
+        }
+        (whole, vertices)
+    }
+
     /// Adds a piece. Returns the numbers of its vertices in the whole.
     pub fn add(&mut self, piece: &Piece) -> Vec<u32> {
         let numbers = self.add_vertices(piece);
         let number = |v: u32| numbers[v as usize];
-        let Self { whole, halves, ridges, edges, .. } = self;
-        for (nodes, region) in piece.mesh.tets.iter() {
-            whole.mesh.tets.push(nodes.map(number), region);
-        }
+        let tets = &mut self.whole.mesh.tets;
+        tets.nodes.extend(piece.mesh.tets.nodes.iter().map(|nodes| nodes.map(number)));
+        tets.refs.extend_from_slice(&piece.mesh.tets.refs);
+        self.add_triangles(piece, number);
+        self.add_lines(piece, number);
+        let whole = &mut self.whole;
+        whole.cuts.extend(piece.cuts.iter().map(|&nodes| sorted3(nodes.map(number))));
+        whole.mesh.required_vertices.extend(piece.mesh.required_vertices.iter().map(|&v| number(v)));
+        numbers
+    }
+
+    fn add_triangles(&mut self, piece: &Piece, number: impl Fn(u32) -> u32) {
+        let Self { whole, halves, .. } = self;
         let mut new_triangle = Vec::with_capacity(piece.halves.len());
         for (t, (nodes, reference)) in piece.mesh.triangles.iter().enumerate() {
-            let (nodes, is_half) = (nodes.map(number), piece.halves[t]);
-            let known = if is_half { halves.remove(&sorted3(nodes)) } else { None };
-            new_triangle.push(known.unwrap_or(whole.mesh.triangles.len() as u32));
-            if let Some(known) = known.map(|known| known as usize) {
-                whole.halves[known] = false;
-                if reference < whole.mesh.triangles.refs[known] {
-                    (whole.mesh.triangles.nodes[known], whole.mesh.triangles.refs[known]) = (nodes, reference);
-                }
+            let (nodes, is_half) = (nodes.map(&number), piece.halves[t]);
+            if is_half && let Some(known) = halves.remove(&sorted3(nodes)) {
+                whole.halves[known as usize] = false;
+                new_triangle.push(known);
                 continue;
             }
+            let next = whole.mesh.triangles.len() as u32;
             if is_half {
-                halves.insert(sorted3(nodes), whole.mesh.triangles.len() as u32);
+                halves.insert(sorted3(nodes), next);
             }
+            new_triangle.push(next);
             whole.mesh.triangles.push(nodes, reference);
             whole.place.faces.push(piece.place.faces[t]);
             whole.halves.push(is_half);
         }
         whole.mesh.required_triangles.extend(piece.mesh.required_triangles.iter().map(|&t| new_triangle[t as usize]));
-        whole.mesh.required_triangles.sort_unstable();
-        whole.mesh.required_triangles.dedup();
+    }
+
+    /// Adds ridges and required edges.
+    fn add_lines(&mut self, piece: &Piece, number: impl Fn(u32) -> u32) {
+        let Self { whole, ridges, edges, .. } = self;
         let marks = &whole.marks;
-        let is_new = |known: &mut HashSet<[u32; 2]>, nodes: [u32; 2]| {
+        let is_new = |known: &mut Set<[u32; 2]>, nodes: [u32; 2]| {
             let is_shared = nodes.iter().all(|&v| marks[v as usize] & SHARED != 0);
             !is_shared || known.insert(sorted2(nodes))
         };
         for &(nodes, curve) in &piece.place.ridges {
-            let nodes = nodes.map(number);
+            let nodes = nodes.map(&number);
             if is_new(ridges, nodes) {
                 whole.place.ridges.push((nodes, curve));
             }
         }
         for (nodes, reference) in piece.mesh.edges.iter() {
-            let nodes = nodes.map(number);
+            let nodes = nodes.map(&number);
             if is_new(edges, nodes) {
                 whole.mesh.required_edges.push(whole.mesh.edges.len() as u32);
                 whole.mesh.edges.push(nodes, reference);
             }
         }
-        whole.cuts.extend(piece.cuts.iter().map(|&nodes| sorted3(nodes.map(number))));
-        whole.mesh.required_vertices.extend(piece.mesh.required_vertices.iter().map(|&v| number(v)));
-        whole.mesh.required_vertices.sort_unstable();
-        whole.mesh.required_vertices.dedup();
-        numbers
     }
 
     /// The vertices' numbers in the whole.

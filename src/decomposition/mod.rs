@@ -10,6 +10,7 @@ mod cuts;
 mod join;
 mod journal;
 mod manifold;
+mod maps;
 mod outline;
 mod part;
 mod piece;
@@ -17,6 +18,8 @@ mod rounds;
 mod run;
 mod shelf;
 mod split;
+#[cfg(test)]
+mod tests;
 mod zones;
 
 pub use rounds::{Common, Sizes, Told, wanted_vertices};

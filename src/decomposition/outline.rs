@@ -2,18 +2,18 @@
 //! vertices it has inside.
 use super::bytes::{decoded, encoded, put, take};
 use super::join::Joined;
+use super::maps::Map;
 use super::piece::{Piece, SHARED};
 use super::split::split_vertices;
 use crate::geometry::Entity;
 use crate::mesh::adjacency::{TriangleIndex, sorted3};
 use crate::tasks::Team;
-use std::collections::HashMap;
 
 /// A piece's outline.
 #[derive(Default)]
 pub struct Outline {
-    /// Its listed vertices, those on the model or required, with its triangles, ridges and required entities, and no tetrahedra. The reference of
-    /// a triangle that another piece has too is the region behind it, and its cuts are the triangles with tetrahedra on both sides.
+    /// Its listed vertices, those on the model or required, with its triangles, ridges and required entities, and no tetrahedra. Its cuts are
+    /// the triangles with tetrahedra on both sides.
     pub skin: Piece,
     /// Its other vertices that are shared, in their order.
     pub shared: Vec<u64>,
@@ -40,13 +40,7 @@ impl Outline {
         let mesh = &piece.mesh;
         let index = TriangleIndex::new(Team::alone(), &mesh.triangles.nodes, mesh.vertices.len());
         let mut sides = vec![0u8; mesh.triangles.len()];
-        for side in index.sides(Team::alone(), &mesh.tets.nodes) {
-            let triangle = side.triangle as usize;
-            sides[triangle] += 1;
-            if piece.halves[triangle] {
-                skin.mesh.triangles.refs[triangle] = mesh.tets.refs[side.tet as usize];
-            }
-        }
+        index.sides(Team::alone(), &mesh.tets.nodes).iter().for_each(|side| sides[side.triangle as usize] += 1);
         let inner = (0..sides.len()).filter(|&t| sides[t] > 1 || piece.halves[t]);
         skin.cuts = inner.map(|t| sorted3(skin.mesh.triangles.nodes[t])).collect();
         let inner = || (0..piece.ids.len()).filter(|&v| !listed[v]);
@@ -81,8 +75,8 @@ pub struct Numbering {
     pub skin: Piece,
     /// For each piece the numbers of its listed vertices.
     listed: Vec<Vec<u32>>,
-    /// The numbers of the other shared vertices.
-    shared: HashMap<u64, u32>,
+    /// The numbers of all shared vertices.
+    shared: Map<u64, u32>,
     /// For each piece its first number inside, and its first tetrahedron; and behind the last.
     first: Vec<[u64; 2]>,
 }
@@ -104,8 +98,10 @@ impl Numbering {
     pub fn of(outlines: Vec<Outline>) -> Self {
         let mut skin = Joined::default();
         let listed: Vec<Vec<u32>> = outlines.iter().map(|outline| skin.add(&outline.skin)).collect();
-        let mut next = [skin.whole.ids.len() as u64, 0];
-        let (mut shared, mut first) = (HashMap::new(), vec![next]);
+        // A vertex may be listed in one piece, as an end of a required edge, and not in another, which has only this end of the edge.
+        let (skin, mut shared) = skin.finish();
+        let mut next = [skin.ids.len() as u64, 0];
+        let mut first = vec![next];
         for Outline { shared: ids, own, tets, .. } in outlines {
             next[0] += own;
             for id in ids {
@@ -117,7 +113,7 @@ impl Numbering {
             next[1] += tets;
             first.push(next);
         }
-        Self { skin: skin.whole, listed, shared, first }
+        Self { skin, listed, shared, first }
     }
 
     /// Vertices of the whole mesh.

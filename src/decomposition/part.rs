@@ -5,10 +5,10 @@ use super::piece::{Piece, SHARED, WAITING};
 use super::split::split;
 use crate::adapt::{self, Adapted, Error, Extracted, KINDS, Observer, Options, References, Work};
 use crate::geometry::Model;
+use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{MatchedFaces, TriangleIndex, sorted3};
 use crate::metric::Source;
 use crate::tasks::{Pool, Team};
-use std::collections::HashSet;
 use std::time::Duration;
 
 /// What came of a part, beside its mesh.
@@ -102,13 +102,14 @@ pub fn adapt_piece(tools: Tools<'_>, mut piece: Piece, round: Round, first_id: u
 
 /// Of the cuts those stay that have one tetrahedron here. Their vertices wait.
 fn drop_closed_cuts(piece: &mut Piece, faces: &MatchedFaces) {
-    let known: HashSet<[u32; 3]> = piece.cuts.drain(..).collect();
+    let mut known = std::mem::take(&mut piece.cuts);
+    known.sort_unstable();
     piece.marks.iter_mut().for_each(|mark| *mark &= !WAITING);
     if known.is_empty() {
         return;
     }
     for face in open_faces(&piece.mesh.tets.nodes, &faces.neighbours, |_, _| false).map(sorted3) {
-        if known.contains(&face) {
+        if known.binary_search(&face).is_ok() {
             face.iter().for_each(|&v| piece.marks[v as usize] |= WAITING);
             piece.cuts.push(face);
         }
@@ -165,7 +166,7 @@ fn adapt_manifold(
 
 /// The adapted part as a piece: what was held is called as before.
 fn put_back(before: &Piece, held: &Held, extracted: Extracted, first_id: u64) -> Piece {
-    let Extracted { mesh, classification: mut place, part, .. } = extracted;
+    let Extracted { mut mesh, classification: mut place, part, .. } = extracted;
     let (logs, number) = part.map(|joint| (joint.logs, joint.held)).unwrap_or_default();
     let mut ids: Vec<u64> = (first_id..).take(logs.len()).collect();
     let mut marks = vec![0; logs.len()];
@@ -179,12 +180,38 @@ fn put_back(before: &Piece, held: &Held, extracted: Extracted, first_id: u64) ->
     let number_of = |v: u32| held.vertices.binary_search(&v).ok().map(|at| number[at]);
     let numbered = |nodes: [u32; 3]| {
         let [a, b, c] = nodes.map(number_of);
-        Some(sorted3([a?, b?, c?]))
+        Some([a?, b?, c?])
     };
-    let halves = held.triangles.iter().filter_map(|&t| numbered(before.mesh.triangles.nodes[t as usize]));
-    let halves: HashSet<[u32; 3]> = halves.collect();
-    let halves = mesh.triangles.nodes.iter().map(|&nodes| halves.contains(&sorted3(nodes))).collect();
+    let halves = restore_halves(before, held, &mut mesh, numbered);
+    keep_required_edges(&mut mesh);
     // A cut between the active and the resting tetrahedra of a part has held vertices too.
-    let cuts = before.cuts.iter().filter_map(|&nodes| numbered(nodes)).collect();
+    let cuts = before.cuts.iter().filter_map(|&nodes| numbered(nodes)).map(sorted3).collect();
     Piece { mesh, place, logs, ids, marks, halves, cuts }
+}
+
+/// Finds the triangles that another part has too. They turn as before: the kernel, which knows one side, may have turned them.
+fn restore_halves(
+    before: &Piece,
+    held: &Held,
+    mesh: &mut TetMesh,
+    numbered: impl Fn([u32; 3]) -> Option<[u32; 3]>,
+) -> Vec<bool> {
+    let halves = held.triangles.iter().filter_map(|&t| numbered(before.mesh.triangles.nodes[t as usize]));
+    let mut halves: Vec<([u32; 3], [u32; 3])> = halves.map(|nodes| (sorted3(nodes), nodes)).collect();
+    halves.sort_unstable();
+    let restore = |nodes: &mut [u32; 3]| {
+        let known = halves.binary_search_by_key(&sorted3(*nodes), |half| half.0);
+        known.map(|at| *nodes = halves[at].1).is_ok()
+    };
+    mesh.triangles.nodes.iter_mut().map(restore).collect()
+}
+
+/// Drops the edges that are listed because they are ridges.
+fn keep_required_edges(mesh: &mut TetMesh) {
+    let all = std::mem::take(&mut mesh.edges);
+    for e in &mut mesh.required_edges {
+        let old = *e as usize;
+        *e = mesh.edges.len() as u32;
+        mesh.edges.push(all.nodes[old], all.refs[old]);
+    }
 }

@@ -28,7 +28,7 @@ pub struct Piece {
     pub ids: Vec<u64>,
     /// What is known of each vertex.
     pub marks: Vec<Marks>,
-    /// For each triangle whether another piece has it too, since it lies between regions.
+    /// For each triangle whether another piece has it too, since it lies between regions. Both have its nodes in the same order.
     pub halves: Vec<bool>,
     /// Faces that are cuts, by their nodes, ascending: behind each is a tetrahedron of another piece that is not finished either. There may be
     /// faces among them that have both of their tetrahedra here again.

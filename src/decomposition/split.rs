@@ -1,9 +1,8 @@
 //! From a piece to smaller ones.
 use super::piece::{Piece, SHARED, WAITING};
 use crate::geometry::Entity;
-use crate::mesh::adjacency::{self, EDGES, FACES, MatchedFaces, TriangleIndex, sorted2, sorted3};
+use crate::mesh::adjacency::{EDGES, FACES, TriangleIndex, sorted2, sorted3};
 use crate::tasks::{Rows, Team};
-use std::collections::HashSet;
 
 /// A vertex of several owners.
 const SEVERAL: u32 = u32::MAX - 1;
@@ -25,10 +24,10 @@ pub fn split(piece: &Piece, owner: &[u32], owners: usize, is_cut: impl Fn(usize,
     marks.iter_mut().zip(&of_vertex).filter(|(_, owner)| **owner == SEVERAL).for_each(|(mark, _)| *mark |= SHARED);
     let tets = Rows::by_key::<1>(Team::alone(), owners, owner.len(), |t| [owner[t]]);
     let triangles = triangles_of(piece, owner, owners);
-    let cuts = cuts_of(piece, owner, owners, is_cut);
+    let cuts = cuts_of(piece, owner, owners, &of_vertex, is_cut);
     cuts.iter().flatten().flatten().for_each(|&v| marks[v as usize] |= WAITING);
     let mut number = vec![NONE; marks.len()];
-    let cut = Cut { piece, marks: &marks, of_vertex: &of_vertex, is_whole: owners == 1 };
+    let cut = Cut::new(piece, &marks, &of_vertex);
     (0..owners).map(|own| cut.take(tets.row(own), &triangles[own], &cuts[own], &mut number)).collect()
 }
 
@@ -37,7 +36,7 @@ pub fn split_vertices(piece: &Piece, wanted: &[bool]) -> Piece {
     let vertices: Vec<u32> = (0..).zip(wanted).filter(|(_, wanted)| **wanted).map(|(v, _)| v).collect();
     let mut number = vec![NONE; piece.ids.len()];
     vertices.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
-    let cut = Cut { piece, marks: &piece.marks, of_vertex: &[], is_whole: true };
+    let cut = Cut::new(piece, &piece.marks, &[]);
     let triangles: Vec<(u32, bool)> = (0..).zip(piece.halves.iter().copied()).collect();
     let mut part = Piece::default();
     cut.take_vertices(&mut part, &vertices);
@@ -67,20 +66,36 @@ fn triangles_of(piece: &Piece, owner: &[u32], owners: usize) -> Vec<Vec<(u32, bo
 }
 
 /// For each owner the faces that are cuts: those that were cuts before and are open still, and those between owners.
-fn cuts_of(piece: &Piece, owner: &[u32], owners: usize, is_cut: impl Fn(usize, usize) -> bool) -> Vec<Vec<[u32; 3]>> {
-    let known: HashSet<[u32; 3]> = piece.cuts.iter().copied().collect();
-    let faces = MatchedFaces::of(Team::alone(), &piece.mesh.tets.nodes);
+fn cuts_of(
+    piece: &Piece,
+    owner: &[u32],
+    owners: usize,
+    of_vertex: &[u32],
+    is_cut: impl Fn(usize, usize) -> bool,
+) -> Vec<Vec<[u32; 3]>> {
+    let mut known = piece.cuts.clone();
+    known.sort_unstable();
+    // A face between owners has vertices of several, one that was a cut has vertices that wait: most faces are neither.
+    let waits = |v: u32| !known.is_empty() && piece.marks[v as usize] & WAITING != 0;
+    let mut faces: Vec<([u32; 3], u32)> = Vec::new();
+    for (t, nodes) in piece.mesh.tets.nodes.iter().enumerate() {
+        let [several, waiting] = [nodes.map(|v| of_vertex[v as usize] == SEVERAL), nodes.map(waits)];
+        let may_be = |face: &&[usize; 3]| face.iter().all(|&k| several[k]) || face.iter().all(|&k| waiting[k]);
+        faces.extend(FACES.iter().filter(may_be).map(|face| (sorted3(face.map(|k| nodes[k])), t as u32)));
+    }
+    faces.sort_unstable();
     let mut of = vec![Vec::new(); owners];
-    for (t, (nodes, neighbours)) in piece.mesh.tets.nodes.iter().zip(&faces.neighbours).enumerate() {
-        for (face, &n) in FACES.iter().zip(neighbours) {
-            let nodes = || sorted3(face.map(|k| nodes[k]));
-            let is_cut = match n {
-                adjacency::NONE => !known.is_empty() && known.contains(&nodes()),
-                n => owner[n as usize] != owner[t] && is_cut(t, n as usize),
-            };
-            if is_cut {
-                of[owner[t] as usize].push(nodes());
+    for same in faces.chunk_by(|a, b| a.0 == b.0) {
+        match *same {
+            [(nodes, t)] if known.binary_search(&nodes).is_ok() => of[owner[t as usize] as usize].push(nodes),
+            [(nodes, t), (_, n)] => {
+                let [t, n] = [t, n].map(|t| t as usize);
+                if owner[t] != owner[n] && is_cut(t, n) {
+                    of[owner[t] as usize].push(nodes);
+                    of[owner[n] as usize].push(nodes);
+                }
             }
+            _ => {}
         }
     }
     of
@@ -90,16 +105,30 @@ fn cuts_of(piece: &Piece, owner: &[u32], owners: usize, is_cut: impl Fn(usize, u
 struct Cut<'p> {
     piece: &'p Piece,
     marks: &'p [u8],
+    /// The owner of each vertex; empty where there is one owner.
     of_vertex: &'p [u32],
-    is_whole: bool,
+    /// For each triangle whether it is required; empty where none is.
+    is_required: Vec<bool>,
 }
 
-impl Cut<'_> {
+impl<'p> Cut<'p> {
+    fn new(piece: &'p Piece, marks: &'p [u8], of_vertex: &'p [u32]) -> Self {
+        let required = &piece.mesh.required_triangles;
+        let mut is_required = vec![false; if required.is_empty() { 0 } else { piece.mesh.triangles.len() }];
+        required.iter().for_each(|&t| is_required[t as usize] = true);
+        Self { piece, marks, of_vertex, is_required }
+    }
+
     /// The piece of these tetrahedra, triangles and cuts. `number` has a place for each vertex, and is left as it was.
     fn take(&self, tets: &[u32], triangles: &[(u32, bool)], cuts: &[[u32; 3]], number: &mut [u32]) -> Piece {
         let from = &self.piece.mesh;
         let mut piece = Piece::default();
+        if tets.is_empty() {
+            return piece;
+        }
         let mut vertices = Vec::new();
+        piece.mesh.tets.nodes.reserve_exact(tets.len());
+        piece.mesh.tets.refs.reserve_exact(tets.len());
         for &t in tets {
             let nodes = from.tets.nodes[t as usize].map(|v| {
                 if number[v as usize] == NONE {
@@ -133,10 +162,9 @@ impl Cut<'_> {
 
     fn take_triangles(&self, piece: &mut Piece, triangles: &[(u32, bool)], number: &[u32]) {
         let from = &self.piece.mesh;
-        let required: HashSet<u32> = from.required_triangles.iter().copied().collect();
         for &(triangle, is_half) in triangles {
             let old = triangle as usize;
-            if required.contains(&triangle) {
+            if self.is_required.get(old) == Some(&true) {
                 piece.mesh.required_triangles.push(piece.mesh.triangles.len() as u32);
             }
             let nodes = from.triangles.nodes[old].map(|v| number[v as usize]);
@@ -162,8 +190,7 @@ impl Cut<'_> {
             }
         }
         // Where both ends are shared, the edge itself may be another piece's.
-        let is_doubtful =
-            |[a, b]: [u32; 2]| !self.is_whole && [a, b].iter().all(|&v| self.of_vertex[v as usize] == SEVERAL);
+        let is_doubtful = |nodes: [u32; 2]| nodes.iter().all(|&v| self.of_vertex.get(v as usize) == Some(&SEVERAL));
         let mut doubtful = Vec::new();
         for &(nodes, curve) in &self.piece.place.ridges {
             match numbered(nodes) {
@@ -174,22 +201,24 @@ impl Cut<'_> {
         }
         if !doubtful.is_empty() {
             let edges = edges_on_lines(piece);
-            piece.place.ridges.extend(doubtful.into_iter().filter(|(nodes, _)| edges.contains(&sorted2(*nodes))));
+            let is_edge = |nodes: [u32; 2]| edges.binary_search(&sorted2(nodes)).is_ok();
+            piece.place.ridges.extend(doubtful.into_iter().filter(|(nodes, _)| is_edge(*nodes)));
         }
     }
 }
 
-/// The edges of tetrahedra whose ends both lie on edges or vertices of the model and are shared.
-fn edges_on_lines(piece: &Piece) -> HashSet<[u32; 2]> {
+/// The edges of tetrahedra whose ends both lie on edges or vertices of the model and are shared, ascending; some come twice.
+fn edges_on_lines(piece: &Piece) -> Vec<[u32; 2]> {
     let may_end = |v: u32| {
         piece.marks[v as usize] & SHARED != 0
             && matches!(piece.place.entities[v as usize], Entity::Edge(_) | Entity::Vertex(_))
     };
-    let mut edges = HashSet::new();
+    let mut edges = Vec::new();
     for nodes in &piece.mesh.tets.nodes {
         let ends = nodes.map(may_end);
         let among = EDGES.iter().filter(|[i, j]| ends[*i] && ends[*j]);
         edges.extend(among.map(|&[i, j]| sorted2([nodes[i], nodes[j]])));
     }
+    edges.sort_unstable();
     edges
 }

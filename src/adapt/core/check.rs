@@ -22,6 +22,14 @@ macro_rules! ensure {
 
 /// Checks tetrahedra, neighbours, tags, vertices, surface, ridges and locks; says the first thing that is wrong.
 pub fn check(context: &Context<'_>) -> Result<(), String> {
+    if let Some((t, i)) = open_faces(&context.store).next() {
+        return Err(format!("{t:?} face {i} is on the boundary without a tag"));
+    }
+    check_part(context)
+}
+
+/// The same of a part of a larger mesh, which has faces to other parts, without a tag.
+pub fn check_part(context: &Context<'_>) -> Result<(), String> {
     let store = &context.store;
     for t in store.live_tets() {
         check_tet(store, t)?;
@@ -39,6 +47,12 @@ pub fn check(context: &Context<'_>) -> Result<(), String> {
     }
     check_ridges(store)?;
     check_surface(context)
+}
+
+/// The faces with neither a tetrahedron behind them nor a tag.
+pub fn open_faces(store: &Store) -> impl Iterator<Item = (TetId, usize)> + '_ {
+    let sides = store.live_tets().flat_map(|t| (0..4).map(move |i| (t, i)));
+    sides.filter(|&(t, i)| !store.neighbour(t, i).is_some() && store.tags(t)[i] == 0)
 }
 
 fn check_tet(store: &Store, t: TetId) -> Result<(), String> {
@@ -69,7 +83,6 @@ fn check_face(context: &Context<'_>, t: TetId, i: usize) -> Result<(), String> {
         "{t:?} face {i}: there is no model face of tag {tag}"
     );
     if !n.is_some() {
-        ensure!(tag != 0, "{t:?} face {i} is on the boundary without a tag");
         return Ok(());
     }
     ensure!(n.index() < store.tet_bound() && store.is_tet(n), "{t:?} face {i}: the neighbour {n:?} is dead");
@@ -132,7 +145,11 @@ fn check_vertex(store: &Store, v: VertexId, ball: &[TetId]) -> Result<(), String
 fn ridges_of(store: &Store, v: VertexId) -> Vec<(VertexId, u32)> {
     match store.entity(v) {
         Entity::Vertex(_) => store.corner_ridges(v).collect(),
-        Entity::Edge(curve) => store.ridge(v).into_iter().map(|other| (other, curve)).collect(),
+        Entity::Edge(curve) => {
+            // A ridge may go on in another part of the mesh.
+            let here = store.ridge(v).into_iter().filter(|other| other.is_some());
+            here.map(|other| (other, curve)).collect()
+        }
         _ => Vec::new(),
     }
 }
@@ -160,6 +177,12 @@ fn check_ridges(store: &Store) -> Result<(), String> {
 /// The triangles at a surface edge fit to the model: there are two on one face, or the edge is a ridge. Their vertices lie on entities of these.
 fn check_surface(context: &Context<'_>) -> Result<(), String> {
     let store = &context.store;
+    // At faces to other parts the surface goes on there.
+    let mut open: BTreeSet<[VertexId; 2]> = BTreeSet::new();
+    for (t, i) in open_faces(store) {
+        let [a, b, c] = sorted(store, t, i);
+        open.extend([[a, b], [a, c], [b, c], [a, a], [b, b], [c, c]]);
+    }
     let mut tags: BTreeMap<[VertexId; 2], Vec<u32>> = BTreeMap::new();
     let mut on_surface: BTreeSet<VertexId> = BTreeSet::new();
     for t in store.live_tets() {
@@ -188,14 +211,20 @@ fn check_surface(context: &Context<'_>) -> Result<(), String> {
                 ensure!(beside, "curve {curve} does not bound all of the triangles' tags {tags:?} at {a:?}–{b:?}");
             }
             None => {
-                let smooth = tags.len() == 2 && tags[0] == tags[1];
+                let smooth = (tags.len() == 2 && tags[0] == tags[1]) || (tags.len() == 1 && open.contains(&[*a, *b]));
                 ensure!(smooth, "{a:?}–{b:?} has triangles of tags {tags:?} and is no ridge");
             }
         }
     }
     for v in store.live_vertices() {
         let wanted = store.entity(v) != Entity::Interior;
-        ensure!(wanted == on_surface.contains(&v), "{v:?} lies on {:?}: in a triangle is {}", store.entity(v), !wanted);
+        let is_elsewhere = wanted && open.contains(&[v, v]);
+        ensure!(
+            wanted == on_surface.contains(&v) || is_elsewhere,
+            "{v:?} lies on {:?}: in a triangle is {}",
+            store.entity(v),
+            !wanted
+        );
     }
     Ok(())
 }

@@ -242,12 +242,13 @@ impl Filling<'_> {
                 _ => self.store.set_corner(v, at_vertex.iter().map(|&(_, b, curve)| (b, curve)).collect()),
             }
         }
-        // What is without a ridge (a required vertex on a face, a vertex of a part that has its ridges elsewhere) must not know any either.
-        let known = |v: VertexId| ends.binary_search_by_key(&v, |end| end.0).is_ok();
+        // A corner without a ridge (a required vertex on a face) still needs its empty list. A part of a larger mesh may have a vertex on a
+        // model edge and none of the ridges at it.
         for (entity, &v) in self.place.entities.iter().zip(&self.order.vertex_ids) {
+            let is_alone = || ends.binary_search_by_key(&v, |end| end.0).is_err();
             match entity {
-                Entity::Vertex(_) if !known(v) => self.store.set_corner(v, Vec::new()),
-                Entity::Edge(_) if !known(v) => self.store.set_ridge(v, [VertexId::NONE; 2]),
+                Entity::Vertex(_) if is_alone() => self.store.set_corner(v, Vec::new()),
+                Entity::Edge(_) if is_alone() => self.store.set_ridge(v, [VertexId::NONE; 2]),
                 _ => {}
             }
         }

@@ -1,10 +1,11 @@
 //! What the kernel's tests work on: small meshes with a model and a metric, and sweeps over all of their items in random order.
-use crate::adapt::core::check::check;
+use crate::adapt::core::check::{check, check_part, open_faces};
 use crate::adapt::core::context::{Context, Limits};
 use crate::adapt::core::edge_list::EdgeItem;
-use crate::adapt::core::fill::{self, Filled};
-use crate::adapt::core::ids::{EDGE, TetId, VertexId};
+use crate::adapt::core::fill::{self, Filled, Known};
+use crate::adapt::core::ids::{EDGE, FACE, TetId, VertexId};
 use crate::adapt::core::refusal::Counts;
+use crate::adapt::core::required::{Freeze, Required};
 use crate::adapt::core::worker::State;
 use crate::adapt::operations::collapse::onto_end::Collapse;
 use crate::adapt::operations::collapse::thinning::Thin;
@@ -20,9 +21,11 @@ use crate::geometry::classify::Classification;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary, samples};
 use crate::geometry::{Discrete, Model};
 use crate::mesh::TetMesh;
+use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, TriangleIndex, sorted2};
 use crate::mesh::vector::{Vec3, lerp, norm, volume6};
 use crate::metric::{Background, Source, Sym3};
 use crate::tasks::{Plan, Pool, Team};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Numbers that repeat from run to run (splitmix64).
 pub struct Random(pub u64);
@@ -64,6 +67,53 @@ pub struct Sample {
     pub place: Classification,
     pub model: Model,
     pub source: Source,
+    /// Of a part of a larger mesh, the vertices and the triangles that must stay.
+    pub held: Option<[Vec<u32>; 2]>,
+    /// The volume, if its surface is plane.
+    volume: f64,
+}
+
+impl Sample {
+    /// A part of it: the tetrahedra that are wanted, by their vertices.
+    pub fn part(mut self, is_wanted: impl Fn(&[u32; 4]) -> bool) -> Self {
+        let mesh = &mut self.mesh;
+        let (whole, all) = (mesh.tets.clone(), mesh.triangles.clone());
+        mesh.tets = Default::default();
+        for (nodes, region) in whole.iter().filter(|(nodes, _)| is_wanted(nodes)) {
+            mesh.tets.push(nodes, region);
+        }
+        self.volume = mesh.tets.len() as f64 / whole.len() as f64;
+        // Triangles and ridges of what is there.
+        let index = TriangleIndex::new(Team::alone(), &all.nodes, mesh.vertices.len());
+        let sides = |tets: &[[u32; 4]]| {
+            let mut sides = vec![0; all.len()];
+            index.sides(Team::alone(), tets).iter().for_each(|side| sides[side.triangle as usize] += 1);
+            sides
+        };
+        let [before, now] = [sides(&whole.nodes), sides(&mesh.tets.nodes)];
+        mesh.triangles = Default::default();
+        let (faces, mut halves) = (std::mem::take(&mut self.place.faces), Vec::new());
+        for t in (0..all.len()).filter(|&t| now[t] > 0) {
+            if now[t] < before[t] {
+                halves.push(mesh.triangles.len() as u32);
+            }
+            mesh.triangles.push(all.nodes[t], all.refs[t]);
+            self.place.faces.push(faces[t]);
+        }
+        let edges: BTreeSet<[u32; 2]> =
+            mesh.tets.nodes.iter().flat_map(|tet| EDGE.map(|[i, j]| sorted2([tet[i], tet[j]]))).collect();
+        self.place.ridges.retain(|(nodes, _)| edges.contains(&sorted2(*nodes)));
+        // What is held: open faces without a triangle, and triangles with a tetrahedron elsewhere.
+        let index = TriangleIndex::new(Team::alone(), &mesh.triangles.nodes, mesh.vertices.len());
+        let faces = MatchedFaces::of(Team::alone(), &mesh.tets.nodes);
+        let mut held: BTreeSet<u32> = halves.iter().flat_map(|&t| mesh.triangles.nodes[t as usize]).collect();
+        for (tet, around) in mesh.tets.nodes.iter().zip(&faces.neighbours) {
+            let open = (0..4).filter(|&i| around[i] == NONE).map(|i| FACES[i].map(|k| tet[k]));
+            held.extend(open.filter(|&face| index.find(face).next().is_none()).flatten());
+        }
+        self.held = Some([held.into_iter().collect(), halves]);
+        self
+    }
 }
 
 /// Half way to the ball about the cube's centre.
@@ -98,7 +148,14 @@ pub fn sample(shape: Shape, n: u32, size: f64) -> Sample {
         Sym3::diagonal(wide, wide, wide).plus(Sym3::outer(direction, narrow - wide)).ln()
     });
     let background = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs.collect());
-    Sample { source: Source::Background(background), model: Model::Discrete(model), mesh, place }
+    Sample {
+        source: Source::Background(background),
+        model: Model::Discrete(model),
+        mesh,
+        place,
+        held: None,
+        volume: 1.0,
+    }
 }
 
 /// What a sweep does.
@@ -139,16 +196,28 @@ pub struct Bench<'m> {
     pub random: Random,
     volume: f64,
     exact: bool,
+    /// Of a part what must stay.
+    held: Option<Held>,
 }
+
+/// The faces to other parts, and the vertices that are held with their positions to the bit.
+type Held = (BTreeSet<[VertexId; 3]>, BTreeMap<VertexId, [u64; 3]>);
 
 impl<'m> Bench<'m> {
     /// A bench with so many threads. Limits are lax, so that much is done: edges of any length are split and collapsed, even if bad
     /// elements come of that.
     pub fn new(sample: &'m Sample, threads: usize, seed: u64) -> Self {
-        let Filled { store, unprojected, .. } =
-            fill::fill(Team::alone(), &sample.mesh, &sample.place, &sample.source).unwrap();
+        let Sample { mesh, place, source, .. } = sample;
+        let known = Known { logs: source.logs_on(mesh), hints: None, is_part: sample.held.is_some() };
+        let Filled { store, unprojected, ids } = fill::fill_known(Team::alone(), mesh, place, source, known).unwrap();
         assert!(unprojected.is_empty(), "the samples lie on their models");
-        let mut context = Context::new(store, &sample.source, &sample.model);
+        let mut context = Context::new(store, source, &sample.model);
+        if let Some([held, halves]) = &sample.held {
+            let mut required = Required::of(mesh, &Freeze::default());
+            required.hold(mesh.vertices.len(), held, halves.iter().map(|&t| mesh.triangles.nodes[t as usize]));
+            required.renumber(&ids);
+            context.required = required;
+        }
         context.limits = Limits { insert_floor: 0.02, collapse_floor: 0.02, ..Limits::default() };
         let pool = Pool::new(threads).unwrap();
         let states = (0..threads).map(|_| State::new(&context)).collect();
@@ -162,10 +231,12 @@ impl<'m> Bench<'m> {
             random: Random(seed),
             volume: 0.0,
             exact: true,
+            held: None,
         };
+        bench.held = sample.held.as_ref().map(|_| bench.held());
         bench.volume = bench.measure();
         // A plane surface keeps its volume, a curved one does not quite.
-        bench.exact = (bench.volume - 1.0).abs() < 1e-12;
+        bench.exact = (bench.volume - sample.volume).abs() < 1e-12;
         bench.check("as built");
         bench
     }
@@ -186,10 +257,26 @@ impl<'m> Bench<'m> {
         store.live_tets().map(volume).sum()
     }
 
+    /// What must stay as it is of a part.
+    fn held(&self) -> Held {
+        let store = &self.context.store;
+        let face = |(t, i): (TetId, usize)| {
+            let mut face = FACE[i].map(|k| store.vertices(t)[k]);
+            face.sort_unstable();
+            face
+        };
+        let vertices = self.context.required.frozen().map(|v| (v, store.position(v).map(f64::to_bits)));
+        (open_faces(store).map(face).collect(), vertices.collect())
+    }
+
     /// The whole store, and its volume.
     pub fn check(&self, after: &str) {
-        if let Err(what) = check(&self.context) {
+        let checked = if self.held.is_some() { check_part(&self.context) } else { check(&self.context) };
+        if let Err(what) = checked {
             panic!("after {after}: {what}");
+        }
+        if let Some(held) = &self.held {
+            assert!(*held == self.held(), "after {after}: a face to another part is not as it was");
         }
         let (volume, slack) = (self.measure(), if self.exact { 1e-9 } else { 0.5 });
         assert!((volume / self.volume - 1.0).abs() < slack, "after {after}: the volume {} is {volume}", self.volume);
@@ -265,7 +352,8 @@ impl<'m> Bench<'m> {
     /// Moves the boundary vertices that [`Bench::on_vertices`] takes a little towards a neighbour, if all stays positive.
     fn push_off_the_model(&mut self) {
         let store = &self.context.store;
-        let wanted = |v: &VertexId| matches!(store.dimension(*v), 1 | 2) && v.0.is_multiple_of(5);
+        let may_move = |v: VertexId| matches!(store.dimension(v), 1 | 2) && !self.context.is_frozen(v);
+        let wanted = |v: &VertexId| may_move(*v) && v.0.is_multiple_of(5);
         let shift = 0.1 + 1e-3 * self.random.below(100) as f64;
         for v in store.live_vertices().filter(wanted) {
             let tets: Vec<TetId> = store.live_tets().filter(|&t| store.vertices(t).contains(&v)).collect();

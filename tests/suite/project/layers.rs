@@ -15,6 +15,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "view",
             "formats",
             "decomposition",
+            "ranks",
             "adapt",
             "image",
             "surface",
