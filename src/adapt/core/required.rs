@@ -22,9 +22,10 @@ pub struct Freeze {
     pub regions: Vec<i32>,
 }
 
-/// The vertices of a mesh that must neither move nor go, ascending: those that it requires, and of what is frozen.
+/// The vertices of a mesh that must neither move nor go, ascending: those that it requires, and of what is frozen. It may be the boundary of a
+/// mesh alone, without tetrahedra.
 pub fn held_vertices(mesh: &TetMesh, freeze: &Freeze) -> Vec<u32> {
-    Required::of(mesh, freeze).frozen().map(|v| v.0).collect()
+    Required::listed(mesh, freeze).frozen().map(|v| v.0).collect()
 }
 
 /// Vertices, edges and regions that stay.
@@ -41,6 +42,18 @@ impl Required {
     /// What a mesh requires, and what is frozen of it; its vertices have their indices as ids. Vertices of no tetrahedron do not count:
     /// they do not last.
     pub fn of(mesh: &TetMesh, freeze: &Freeze) -> Self {
+        let mut required = Self::listed(mesh, freeze);
+        if required.frozen.contains(&true) {
+            required.forget_unused(&mesh.tets.nodes);
+        }
+        if !required.frozen.contains(&true) {
+            required.frozen.clear();
+        }
+        required
+    }
+
+    /// The same with vertices of no tetrahedron.
+    fn listed(mesh: &TetMesh, freeze: &Freeze) -> Self {
         let regions = freeze.regions.iter().map(|&region| region as u32).collect();
         let mut required = Self { frozen: vec![false; mesh.vertices.len()], edges: HashSet::new(), regions };
         let edges = mesh.required_edges.iter().map(|&e| mesh.edges.nodes[e as usize]);
@@ -55,12 +68,6 @@ impl Required {
         mesh.required_vertices.iter().for_each(|&v| required.frozen[v as usize] = true);
         for (nodes, _) in mesh.tets.iter().filter(|(_, region)| freeze.regions.contains(region)) {
             nodes.iter().for_each(|&v| required.frozen[v as usize] = true);
-        }
-        if required.frozen.contains(&true) {
-            required.forget_unused(&mesh.tets.nodes);
-        }
-        if !required.frozen.contains(&true) {
-            required.frozen.clear();
         }
         required
     }

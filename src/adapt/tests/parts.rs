@@ -5,6 +5,7 @@ use crate::adapt::core::check::{check, check_part, open_faces};
 use crate::adapt::core::fill::{self, Known};
 use crate::adapt::core::ids::{EDGE, VertexId};
 use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::required::{Freeze, held_vertices};
 use crate::adapt::core::worker::Worker;
 use crate::adapt::operations::insertion::edge_split::Split;
 use crate::adapt::operations::reconnection::criteria::Criterion;
@@ -170,4 +171,15 @@ fn a_tetrahedron_at_a_face_to_another_part_stays() {
         worker.access.release(worker.store);
     }
     bench.check("refusals");
+}
+
+#[test]
+fn what_is_held_of_a_boundary_alone_is_held() {
+    let mut mesh = sample(Shape::Cube, 2, 0.5).mesh;
+    mesh.required_vertices = vec![3];
+    let freeze = Freeze { surfaces: vec![mesh.triangles.refs[0]], regions: Vec::new() };
+    let held = held_vertices(&mesh, &freeze);
+    assert!(held.len() >= 9 && held.contains(&3) && held.is_sorted());
+    mesh.tets = Default::default();
+    assert_eq!(held_vertices(&mesh, &freeze), held);
 }

@@ -145,7 +145,7 @@ fn in_rounds(n: u32, size: f64) -> (Piece, Piece) {
     let second = round(dealt.into_iter().map(join).collect(), FIRST);
     check_whole(&join(second.clone()));
     let (active, mut finished): (Vec<Piece>, Vec<Piece>) =
-        second.iter().map(|piece| divide(piece)).map(|[active, finished]| (active, finished)).unzip();
+        second.iter().map(divide).map(|[active, finished]| (active, finished)).unzip();
     assert!(active.iter().all(|piece| piece.len() > 0));
     let third = round(vec![join(active)], ZONE);
     finished.extend(third);
