@@ -8,6 +8,7 @@ use terminal::{note, print, say, tell};
 use waiting::Waiting;
 
 mod adapt;
+mod amount;
 mod bootstrap;
 mod child;
 mod classify;

@@ -9,6 +9,7 @@ pub mod progress;
 pub mod report;
 mod source;
 
+use super::amount::bytes;
 use super::figures::FigureArguments;
 use super::waiting::Waiting;
 use super::{Outcome, interrupt};
@@ -91,26 +92,6 @@ pub struct Arguments {
 fn deviation(text: &str) -> Result<f64, String> {
     let angle: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if (0.1..=89.0).contains(&angle) { Ok(angle) } else { Err("an angle from 0.1 to 89 degrees".into()) }
-}
-
-/// An amount of memory, in bytes.
-fn bytes(text: &str) -> Result<u64, String> {
-    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let number: f64 = digits.trim().parse().map_err(|_| "not an amount like 4GiB or 500MB".to_owned())?;
-    let factor = match text[digits.len()..].to_ascii_lowercase().as_str() {
-        "" | "b" => 1.0,
-        "k" | "kb" => 1e3,
-        "m" | "mb" => 1e6,
-        "g" | "gb" => 1e9,
-        "t" | "tb" => 1e12,
-        "kib" => 1024.0,
-        "mib" => 1024.0 * 1024.0,
-        "gib" => 1024.0 * 1024.0 * 1024.0,
-        "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
-        unit => return Err(format!("{unit} is no unit of memory: KiB, MiB, GiB, TiB, KB, MB, GB or TB")),
-    };
-    let bytes = number * factor;
-    if bytes >= 1e6 && bytes.is_finite() { Ok(bytes as u64) } else { Err("at least a megabyte, as in 4GiB".into()) }
 }
 
 /// A distance from the model.
