@@ -11,7 +11,7 @@ pub enum Error {
     Metric(#[from] crate::metric::Error),
     /// The boundary is held as a whole, and does not fit.
     #[error(
-        "{} MB of memory are too few for a boundary of {triangles} triangles, which is held as a whole: give --memory {}MB or more",
+        "{} MB of memory are too few for this mesh, with a boundary of {triangles} triangles that is held as a whole: give --memory {}MB or more",
         .memory / 1_000_000, .needed.div_ceil(1_000_000)
     )]
     Memory {
