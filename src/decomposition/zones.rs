@@ -7,7 +7,7 @@ const RINGS: usize = 4;
 
 /// Takes a piece apart into what cuts have left to be done, and what is finished.
 pub fn divide(piece: &Piece) -> [Piece; 2] {
-    let owner = finished(&piece);
+    let owner = finished(piece);
     split(piece, &owner, 2, |_, _| false).try_into().unwrap_or_default()
 }
 

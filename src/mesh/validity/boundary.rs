@@ -2,7 +2,7 @@
 use super::super::adjacency::{NONE, sorted2};
 use super::super::vector::Vec3;
 use super::super::{Flaw, FlawKind, Offender, crossing};
-use super::{Found, NAMED};
+use super::{Found, Keyed, NAMED};
 use crate::tasks::{GRAIN, Team};
 
 /// A face of one tetrahedron.
@@ -16,7 +16,7 @@ pub struct BoundaryFace {
 
 /// The boundary of the tetrahedra is a surface: two faces at every edge. More may meet on a tagged edge, where bodies touch. Interior
 /// surfaces may end anywhere and meet in any number, so they do not count.
-pub(super) fn check_edges(team: Team<'_>, found: &mut Found, boundary: &[BoundaryFace], tagged: &[([u32; 2], u32)]) {
+pub(super) fn check_edges(team: Team<'_>, found: &mut Found, boundary: &[BoundaryFace], tagged: &[Keyed<2>]) {
     let mut edges = Vec::with_capacity(3 * boundary.len());
     edges.extend(
         boundary.iter().flat_map(|&BoundaryFace { nodes: [a, b, c], .. }| [[a, b], [b, c], [a, c]].map(sorted2)),

@@ -65,12 +65,15 @@ pub fn check_on(team: Team<'_>, mesh: &TetMesh) -> Validity {
     }
 }
 
+/// Sorted nodes of an element, and its index.
+pub type Keyed<const N: usize> = ([u32; N], u32);
+
 /// Triangles and tagged edges of a mesh by their sorted nodes, in ascending order.
 pub struct Tagged {
-    /// Sorted nodes of each triangle, and its index.
-    pub triangles: Vec<([u32; 3], u32)>,
-    /// The same of the edges.
-    pub edges: Vec<([u32; 2], u32)>,
+    /// The triangles.
+    pub triangles: Vec<Keyed<3>>,
+    /// The tagged edges.
+    pub edges: Vec<Keyed<2>>,
 }
 
 impl Tagged {
@@ -131,7 +134,7 @@ pub fn conclude<E>(
 }
 
 /// Triangles by themselves and against each other: all equal ones but the first of each are too many.
-fn check_triangles(found: &mut Found, triangles: &[[u32; 3]], sorted: &[([u32; 3], u32)]) {
+fn check_triangles(found: &mut Found, triangles: &[[u32; 3]], sorted: &[Keyed<3>]) {
     for (t, nodes) in triangles.iter().enumerate() {
         if repeats(nodes) {
             found.add(FlawKind::RepeatedNodes, Some(t), nodes);

@@ -2,7 +2,7 @@
 //! such as a face, is told at the least of them, so the order is that of the sorted nodes.
 use super::super::adjacency::{FACES, NONE, sorted2};
 use super::super::{FlawKind, TetMesh};
-use super::{BoundaryFace, Found, Tagged};
+use super::{BoundaryFace, Found, Keyed, Tagged};
 use crate::tasks::{Rows, Team};
 use std::ops::Range;
 
@@ -120,8 +120,8 @@ impl<'m> Stars<'m> {
 /// What is tagged, by its least node, from a vertex on.
 struct TaggedFrom<'t> {
     v: u32,
-    triangles: &'t [([u32; 3], u32)],
-    edges: &'t [([u32; 2], u32)],
+    triangles: &'t [Keyed<3>],
+    edges: &'t [Keyed<2>],
 }
 
 impl<'t> TaggedFrom<'t> {
@@ -132,7 +132,7 @@ impl<'t> TaggedFrom<'t> {
     }
 
     /// The triangles and edges of the next vertex.
-    fn next(&mut self) -> (&'t [([u32; 3], u32)], &'t [([u32; 2], u32)]) {
+    fn next(&mut self) -> (&'t [Keyed<3>], &'t [Keyed<2>]) {
         let v = self.v;
         let triangles = self.triangles.iter().take_while(|(nodes, _)| nodes[0] == v).count();
         let edges = self.edges.iter().take_while(|(nodes, _)| nodes[0] == v).count();
@@ -223,7 +223,7 @@ impl Star {
     }
 
     /// Faces of the tetrahedra against each other and against the triangles, and which corners they join.
-    fn check_faces(&mut self, stars: &Stars<'_>, triangles: &[([u32; 3], u32)], found: &mut OfStars) {
+    fn check_faces(&mut self, stars: &Stars<'_>, triangles: &[Keyed<3>], found: &mut OfStars) {
         let (v, above) = (self.v, &mut self.above);
         let mut next = 0;
         for same in self.halves.chunk_by(|a, b| a.key == b.key) {
@@ -261,7 +261,7 @@ impl Star {
         }
     }
 
-    fn check_edges(&self, stars: &Stars<'_>, edges: &[([u32; 2], u32)], found: &mut Found) {
+    fn check_edges(&self, stars: &Stars<'_>, edges: &[Keyed<2>], found: &mut Found) {
         for ([low, high], index) in edges {
             if self.upper.binary_search_by_key(high, |&v| stars.number(v)).is_err() {
                 found.add(FlawKind::LooseEdge, Some(*index as usize), &[*low, *high]);
