@@ -89,6 +89,9 @@ pub mod geometry;
 #[cfg(feature = "image")]
 #[doc(hidden)]
 pub mod image;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod inspection;
 #[doc(hidden)]
 pub mod memory;
 #[doc(hidden)]

@@ -1,6 +1,9 @@
 //! Amounts of memory on the command line.
 
 /// An amount of memory, in bytes.
+///
+/// # Errors
+/// What is wrong with it.
 pub fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let number: f64 = digits.trim().parse().map_err(|_| "not an amount like 4GiB or 500MB".to_owned())?;
@@ -22,15 +25,13 @@ pub fn bytes(text: &str) -> Result<u64, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::bytes;
+    use super::*;
 
     #[test]
-    fn amounts_have_units() {
-        assert_eq!(bytes("4GiB"), Ok(4 << 30));
-        assert_eq!(bytes("1.5 GB"), Ok(1_500_000_000));
-        assert_eq!(bytes("2000000"), Ok(2_000_000));
-        assert_eq!(bytes("500mb"), Ok(500_000_000));
-        for wrong in ["", "GiB", "4 GiBs", "-1GB", "nan GB", "12", "1e400GB"] {
+    fn units_of_a_thousand_and_of_1024() {
+        let amounts = ["4GiB", "500MB", "1.5 gb", "2000000", "1024kib"].map(|text| bytes(text).unwrap());
+        assert_eq!(amounts, [4 << 30, 500_000_000, 1_500_000_000, 2_000_000, 1 << 20]);
+        for wrong in ["", "GiB", "4 stones", "-1GB", "nan", "10KB", "1e999TB"] {
             assert!(bytes(wrong).is_err(), "{wrong}");
         }
     }

@@ -62,7 +62,14 @@ const EXAMPLES: [(&str, &[&str]); 31] = [
             "geo-adapt image-mesh grey.nrrd -o a.meshb --size 2 --isovalue 90",
         ],
     ),
-    ("inspect", &["geo-adapt inspect a.meshb", "geo-adapt inspect a.meshb --metric a.solb --cad wing.step"]),
+    (
+        "inspect",
+        &[
+            "geo-adapt inspect a.meshb",
+            "geo-adapt inspect a.meshb --metric a.solb --cad wing.step",
+            "geo-adapt inspect large.meshb --metric large.solb --memory 2GiB",
+        ],
+    ),
     ("man", &["geo-adapt man ~/.local/share/man/man1"]),
     ("metric", &["geo-adapt metric multiscale a.meshb mach.solb --complexity 50000 -o m.solb"]),
     ("metric from-image", &["geo-adapt metric from-image scan.nrrd --mesh a.meshb --complexity 20000 -o m.solb"]),

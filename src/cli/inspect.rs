@@ -1,15 +1,18 @@
 //! `geo-adapt inspect`.
 use super::Outcome;
+use super::amount::bytes;
 use super::figures::FigureArguments;
 use super::files::reading::{self, Carrier};
 use super::files::{Files, JSON, Outputs};
 use super::surface::SurfaceArguments;
 use super::table::{Table, place};
-use crate::formats::Dataset;
+use crate::formats::{Dataset, Format};
 use crate::geometry::fidelity::{self, Fidelity};
-use crate::geometry::{Model, classify};
+use crate::geometry::{Model, classify, names};
+use crate::inspection::{self, Inspected, Metrics};
 use crate::mesh::TetMesh;
 use crate::mesh::io::Read;
+use crate::mesh::io::slices::MeshReader;
 use crate::mesh::numbers::from_one;
 use crate::mesh::validity::{self, Validity};
 use crate::mesh::vector::{Vec3, add, scale};
@@ -33,6 +36,10 @@ pub struct Arguments {
     /// The CAD model the mesh lies on: .step, .stp, .iges, .igs, .brep or .egads
     #[arg(long, value_name = "MODEL")]
     cad: Option<PathBuf>,
+    /// Checks and measures the mesh from its file within this memory: 500MB, 4GiB. For .meshb with a metric in .solb, without a model; all else
+    /// is checked as without it. The boundary must fit
+    #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with_all = ["cad", "surface"])]
+    memory: Option<u64>,
     #[command(flatten)]
     surface: SurfaceArguments,
     #[command(flatten)]
@@ -79,6 +86,19 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let json = arguments.figures.target(&mut { files }, JSON)?;
     let pool = super::pool()?;
     let team = Team::new(&pool, Plan::default());
+    let inspection = match arguments.memory {
+        Some(memory) => of_file(team, arguments, memory)?,
+        None => in_memory(team, arguments)?,
+    };
+    let mut outputs = Outputs::new();
+    outputs.json(json.as_ref(), &inspection)?;
+    outputs.commit()?;
+    arguments.figures.print(&inspection, || describe(&inspection))?;
+    Ok(if inspection.valid { ExitCode::SUCCESS } else { ExitCode::from(super::INVALID) })
+}
+
+/// Reads all, checks and measures.
+fn in_memory(team: Team<'_>, arguments: &Arguments) -> Result<Inspection, Box<dyn std::error::Error>> {
     let data = read(team, &arguments.mesh)?;
     let mesh = &data.mesh;
     let model = arguments.surface.model_or(team, arguments.cad.as_deref())?;
@@ -90,22 +110,49 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let cad = model.map(|model| on_model(team, mesh, &model));
     let valid = validity.is_valid() && !matches!(cad, Some(Cad::Off { .. }));
     let worst_tet = worst(mesh, &statistics);
-    let inspection = Inspection { valid, validity, statistics, worst_tet, cad };
-    let mut outputs = Outputs::new();
-    outputs.json(json.as_ref(), &inspection)?;
-    outputs.commit()?;
-    arguments.figures.print(&inspection, || describe(&inspection))?;
-    Ok(if valid { ExitCode::SUCCESS } else { ExitCode::from(super::INVALID) })
+    Ok(Inspection { valid, validity, statistics, worst_tet, cad })
+}
+
+/// Checks and measures from the file, within so many bytes.
+fn of_file(team: Team<'_>, arguments: &Arguments, memory: u64) -> Result<Inspection, Box<dyn std::error::Error>> {
+    let path = &arguments.mesh;
+    if Format::of_file(path)? != Format::Libmeshb {
+        let remedy = "bring it into .meshb by `geo-adapt convert`, or leave --memory out";
+        return Err(format!("{}: with --memory only .meshb is read: {remedy}", path.display()).into());
+    }
+    let mesh = MeshReader::open(path)?;
+    names::read(path)?;
+    show(mesh.notices());
+    has_tets(path, mesh.counts().tets)?;
+    let file = match &arguments.metric {
+        Some(path) => Some(Field::open(path, mesh.counts().vertices)?),
+        None => None,
+    };
+    file.iter().for_each(|file| show(file.notices()));
+    let metrics = match (&file, arguments.analytic) {
+        (Some(file), _) => Metrics::File(file),
+        (None, Some(field)) => Metrics::Analytic(field),
+        (None, None) => Metrics::None,
+    };
+    let named = |error: inspection::Error| match error {
+        inspection::Error::Mesh(_) | inspection::Error::Metric(_) => error.to_string(),
+        error => format!("{}: {error}", path.display()),
+    };
+    let Inspected { validity, statistics, worst } = inspection::inspect(team, &mesh, metrics, memory).map_err(named)?;
+    let worst_tet = worst.map(|corners| WorstTet::of(&statistics, corners));
+    Ok(Inspection { valid: validity.is_valid(), validity, statistics, worst_tet, cad: None })
 }
 
 /// Reads the mesh and shows the notices.
 fn read(team: Team<'_>, path: &Path) -> Result<Dataset, Box<dyn std::error::Error>> {
     let read = reading::mesh(team, path)?;
     show(&read.notices);
-    if read.content.mesh.tets.is_empty() {
-        return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
-    }
+    has_tets(path, read.content.mesh.tets.len())?;
     Ok(read.content)
+}
+
+fn has_tets(path: &Path, tets: usize) -> Result<(), String> {
+    if tets == 0 { Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display())) } else { Ok(()) }
 }
 
 fn show(notices: &[String]) {
@@ -139,10 +186,17 @@ fn on_model(team: Team<'_>, mesh: &TetMesh, model: &Model) -> Cad {
 }
 
 fn worst(mesh: &TetMesh, statistics: &Statistics) -> Option<WorstTet> {
-    let index = statistics.mean_ratios.argmin;
-    let nodes = mesh.tets.nodes.get(index)?;
-    let sum = nodes.iter().fold([0.0; 3], |sum, &v| add(sum, mesh.vertices[v as usize]));
-    Some(WorstTet { index, mean_ratio: statistics.mean_ratios.min, at: scale(sum, 0.25) })
+    let nodes = mesh.tets.nodes.get(statistics.mean_ratios.argmin)?;
+    Some(WorstTet::of(statistics, nodes.map(|v| mesh.vertices[v as usize])))
+}
+
+impl WorstTet {
+    /// By its corners.
+    fn of(statistics: &Statistics, corners: [Vec3; 4]) -> Self {
+        let sum = corners.into_iter().fold([0.0; 3], add);
+        let ratios = &statistics.mean_ratios;
+        Self { index: ratios.argmin, mean_ratio: ratios.min, at: scale(sum, 0.25) }
+    }
 }
 
 /// The text for people.

@@ -45,6 +45,9 @@ const FEWER: usize = 3;
 /// Most rounds around former cuts.
 const MOST_ZONES: usize = 8;
 
+/// Bytes behind a piece that say which one it is.
+const KEY: usize = 16;
+
 /// The owner of a part that is done.
 const NOBODY: u32 = u32::MAX;
 
@@ -425,7 +428,7 @@ impl<'a> Rounds<'a> {
             (rank as usize, bytes)
         });
         let received = ranks.exchange(messages.collect()).into_iter().try_for_each(|(_, bytes)| {
-            let (share, key) = bytes.split_at(bytes.len() - 16);
+            let (share, key) = bytes.split_at_checked(bytes.len().wrapping_sub(KEY)).ok_or(Error::Message)?;
             let [part, of]: [u32; 2] = take(&mut &*key).and_then(|key| key.try_into().ok()).ok_or(Error::Message)?;
             shelf.put(Key::Share { round, part, of }, decoded(share).ok_or(Error::Message)?)?;
             add(&kept, (part, of));
@@ -596,9 +599,9 @@ impl<'a> Rounds<'a> {
             };
             let received = ranks.exchange(own.into_iter().map(message).collect());
             let done = received.into_iter().try_for_each(|(_, bytes)| {
-                let (piece, at) = bytes.split_at(bytes.len() - 16);
-                let at: Vec<u64> = take(&mut &*at).ok_or(Error::Message)?;
-                f(at[0] as usize, decoded(piece).ok_or(Error::Message)?)
+                let (piece, at) = bytes.split_at_checked(bytes.len().wrapping_sub(KEY)).ok_or(Error::Message)?;
+                let [at]: [u64; 1] = take(&mut &*at).and_then(|at| at.try_into().ok()).ok_or(Error::Message)?;
+                f(at as usize, decoded(piece).ok_or(Error::Message)?)
             });
             self.agreed(done)?;
         }

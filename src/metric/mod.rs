@@ -49,5 +49,5 @@ pub use ratios::mean_ratios;
 pub use restriction::restrict;
 pub use scalar::Scalar;
 pub use source::Source;
-pub use statistics::{Distribution, Figures, Statistics};
+pub use statistics::{Distribution, Figures, Lengths, Statistics};
 pub use tensor::Sym3;

@@ -190,6 +190,33 @@ impl<'m> Part<'m> {
     }
 }
 
+/// The lengths of edges that come one by one.
+#[derive(Clone, Debug)]
+pub struct Lengths(Accumulator<'static>);
+
+impl Lengths {
+    /// Of no edge yet; to be measured in the metric ([`edge_length`]).
+    pub fn in_metric() -> Self {
+        Self(Accumulator::new(&LENGTH_CLASSES, false))
+    }
+
+    /// Of no edge yet; to be measured in space.
+    pub fn in_space() -> Self {
+        Self(Accumulator::new(&[], false))
+    }
+
+    /// Takes in an edge of this length.
+    pub fn add(&mut self, length: f64) {
+        self.0.add(length);
+    }
+
+    /// These and then others, measured in the same way.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self(self.0.and(other.0))
+    }
+}
+
 /// The figures of some parts of a mesh, from which [`Statistics`] follow when all are there.
 ///
 /// Sums are rounded in the order in which the parts are joined, so join them in an order of their own, not in that in which they are
@@ -198,7 +225,7 @@ impl<'m> Part<'m> {
 pub struct Figures {
     /// Those that only add up; the others are empty.
     sums: Statistics,
-    lengths: Accumulator<'static>,
+    lengths: Lengths,
     ratios: Accumulator<'static>,
     complexity: Option<f64>,
 }
@@ -212,39 +239,42 @@ impl Figures {
         metrics: &[Sym3],
         counts: impl Fn([u32; 2]) -> bool + Sync,
     ) -> Self {
-        let logs = team.map(GRAIN, metrics.len(), |v| metrics[v].ln());
         let length = |[a, b]: [u32; 2]| {
             let v = sub(part.vertices[b as usize], part.vertices[a as usize]);
             edge_length(v, &metrics[a as usize], &metrics[b as usize])
         };
-        let mut figures = Self::of(team, part, counts, length, &LENGTH_CLASSES, |v| logs[v as usize]);
-        figures.complexity = Some(field::complexity_of_tets(team, part.vertices, &part.tets.nodes, &logs));
-        figures
+        let lengths = lengths(team, &part.tets.nodes, counts, length, Lengths::in_metric());
+        Self::without_edges_in_metric(team, part, metrics).with(lengths)
     }
 
     /// Of a part alone: lengths and mean ratios in space. Edges as in [`Figures::in_metric`].
     pub fn in_space(team: Team<'_>, part: Part<'_>, counts: impl Fn([u32; 2]) -> bool + Sync) -> Self {
         let length = |[a, b]: [u32; 2]| distance(part.vertices[a as usize], part.vertices[b as usize]);
-        Self::of(team, part, counts, length, &[], |_| Sym3::ZERO)
+        let lengths = lengths(team, &part.tets.nodes, counts, length, Lengths::in_space());
+        Self::without_edges_in_space(team, part).with(lengths)
     }
 
-    fn of(
-        team: Team<'_>,
-        part: Part<'_>,
-        counts: impl Fn([u32; 2]) -> bool + Sync,
-        length: impl Fn([u32; 2]) -> f64 + Sync,
-        length_classes: &'static [f64],
-        log: impl Fn(u32) -> Sym3 + Sync,
-    ) -> Self {
-        let edges = Edges::of(team, &part.tets.nodes);
-        let lengths = gathered(team, edges.nodes(), Accumulator::new(length_classes, false), |range, lengths| {
-            edges.for_each(range, |edge| {
-                if counts(edge) {
-                    lengths.add(length(edge));
-                }
-            });
-        });
-        drop(edges);
+    /// As [`Figures::in_metric`], without the edges of the tetrahedra: their lengths come otherwise ([`Figures::with`]).
+    pub fn without_edges_in_metric(team: Team<'_>, part: Part<'_>, metrics: &[Sym3]) -> Self {
+        let logs = team.map(GRAIN, metrics.len(), |v| metrics[v].ln());
+        let mut figures = Self::of(team, part, Lengths::in_metric(), |v| logs[v as usize]);
+        figures.complexity = Some(field::complexity_of_tets(team, part.vertices, &part.tets.nodes, &logs));
+        figures
+    }
+
+    /// As [`Figures::in_space`], without the edges.
+    pub fn without_edges_in_space(team: Team<'_>, part: Part<'_>) -> Self {
+        Self::of(team, part, Lengths::in_space(), |_| Sym3::ZERO)
+    }
+
+    /// With the lengths of further edges, measured in the same way.
+    #[must_use]
+    pub fn with(mut self, lengths: Lengths) -> Self {
+        self.lengths = self.lengths.and(lengths);
+        self
+    }
+
+    fn of(team: Team<'_>, part: Part<'_>, lengths: Lengths, log: impl Fn(u32) -> Sym3 + Sync) -> Self {
         let points = |tet: &[u32; 4]| tet.map(|v| part.vertices[v as usize]);
         let tets = &part.tets.nodes;
         let ratios = gathered(team, tets.len(), Accumulator::new(&RATIO_CLASSES, true), |range, ratios| {
@@ -298,7 +328,7 @@ impl Figures {
     /// The statistics of what has been joined. Places of least values ([`Distribution::argmin`]) count through the parts, one after the other.
     pub fn statistics(self) -> Statistics {
         let Self { sums, lengths, ratios, complexity } = self;
-        let (edge_lengths, mean_ratios) = (lengths.distribution(), ratios.distribution());
+        let (edge_lengths, mean_ratios) = (lengths.0.distribution(), ratios.distribution());
         let is_unit = |class: &&Class| class.low == Some(FRAC_1_SQRT_2) || class.high == Some(SQRT_2);
         let unit: usize = edge_lengths.classes.iter().filter(is_unit).map(|class| class.count).sum();
         let metric = complexity.map(|complexity| MetricFigures {
@@ -308,6 +338,24 @@ impl Figures {
         });
         Statistics { edge_lengths, mean_ratios, metric, ..sums }
     }
+}
+
+/// The lengths of the edges of tetrahedra that are counted, each once; `none` are those of no edge.
+fn lengths(
+    team: Team<'_>,
+    tets: &[[u32; 4]],
+    counts: impl Fn([u32; 2]) -> bool + Sync,
+    length: impl Fn([u32; 2]) -> f64 + Sync,
+    Lengths(none): Lengths,
+) -> Lengths {
+    let edges = Edges::of(team, tets);
+    Lengths(gathered(team, edges.nodes(), none, |range, lengths| {
+        edges.for_each(range, |edge| {
+            if counts(edge) {
+                lengths.add(length(edge));
+            }
+        });
+    }))
 }
 
 /// What `add` sees of chunks of so many items, one after the other.

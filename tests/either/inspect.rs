@@ -216,3 +216,55 @@ fn on_the_model() {
     assert!(found["cad"]["error"].as_str().unwrap().contains("1000"), "{}", found["cad"]);
     assert!(refusal(&mesh, &["--cad", mesh.to_str().unwrap()]).contains("cube-cylinder.meshb"));
 }
+
+/// A mesh in pieces is the mesh: the same answer but for the rounding of sums, and the same exit code.
+#[test]
+fn within_some_memory_it_says_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let alike = |path: &Path, arguments: &[&str], code: i32| {
+        let whole = inspect_json(path, arguments, code);
+        let pieces = inspect_json(path, &[arguments, &["--memory", "300MB"]].concat(), code);
+        assert_alike(&whole, &pieces);
+        pieces
+    };
+    let mut mesh = octahedron();
+    let path = save(folder.path(), &mesh);
+    let metric = save_metric(folder.path(), [4.0, 0.0, 4.0, 0.0, 0.0, 16.0].repeat(6));
+    let metric = metric.to_str().unwrap();
+    for arguments in [&[][..], &["--metric", metric], &["--analytic", "linear"]] {
+        assert_eq!(alike(&path, arguments, 0)["valid"], true);
+    }
+    mesh.tets.nodes[1].swap(0, 1);
+    mesh.triangles.nodes.pop();
+    mesh.triangles.refs.pop();
+    let path = save(folder.path(), &mesh);
+    let found = alike(&path, &["--metric", metric], 1);
+    let kinds: Vec<&Value> = found["flaws"].as_array().unwrap().iter().map(|flaw| &flaw["kind"]).collect();
+    assert_eq!(kinds, ["inverted-tet", "open-boundary", "folded-face"]);
+    // What it cannot do it says.
+    let text = folder.path().join("mesh.mesh");
+    write_mesh(&text, &octahedron()).unwrap();
+    assert!(refusal(&text, &["--memory", "300MB"]).contains("give .meshb or .solb"));
+    let other = folder.path().join("mesh.su2");
+    std::fs::write(&other, "NDIME= 3\n").unwrap();
+    assert!(refusal(&other, &["--memory", "300MB"]).contains("with --memory only .meshb is read"));
+    assert!(refusal(&path, &["--memory", "300MB", "--cad", "a.step"]).contains("cannot be used with"));
+    assert!(refusal(&path, &["--memory", "20MB"]).contains("give --memory"));
+    assert!(refusal(&path, &["--memory", "lots"]).contains("an amount like 4GiB"));
+}
+
+/// Equal, but for the last digits of numbers.
+fn assert_alike(a: &Value, b: &Value) {
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) => {
+            assert!(a.keys().eq(b.keys()));
+            a.values().zip(b.values()).for_each(|(a, b)| assert_alike(a, b));
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            assert_eq!(a.len(), b.len());
+            a.iter().zip(b).for_each(|(a, b)| assert_alike(a, b));
+        }
+        (Value::Number(a), Value::Number(_)) if a.is_f64() => close(b, a.as_f64().unwrap()),
+        _ => assert_eq!(a, b),
+    }
+}

@@ -29,6 +29,17 @@ impl Field {
         of_vertices(team, file.path(), &solution, start, checked_log)
     }
 
+    /// M, shape (n,), at these vertices, as [`Field::read`] has it and with the checks of [`Field::logs_in`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn metrics_in(team: Team<'_>, file: &SolutionReader, range: Range<usize>) -> Result<Vec<Sym3>, Error> {
+        only_metric(file.path(), file.kinds())?;
+        let start = range.start;
+        let solution = file.fields(team, range)?;
+        of_vertices(team, file.path(), &solution, start, |m| m.is_spd().then_some(m))
+    }
+
     /// Writes metrics, shape (n,), from vertex `start` (from 0) on.
     ///
     /// # Errors
@@ -73,6 +84,7 @@ mod tests {
         let whole = Field::read_logs(Team::alone(), &path("a.solb"), 9).unwrap().content;
         let file = Field::open(&path("a.solb"), 9).unwrap();
         assert_eq!(Field::logs_in(Team::alone(), &file, 2..7).unwrap(), whole[2..7]);
+        assert_eq!(Field::metrics_in(Team::alone(), &file, 2..7).unwrap(), metrics[2..7]);
         let message = Field::open(&path("a.solb"), 8).unwrap_err().to_string();
         assert!(message.contains("metric at 9 vertices, but the mesh has 8"), "{message}");
     }

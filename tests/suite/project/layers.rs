@@ -1,4 +1,4 @@
-//! Imports go one way, as [`ALLOWED`] says: { cli → cycle, api } → { adapt, sizing, view, formats, image } → { metric → transfer, geometry }
+//! Imports go one way, as [`ALLOWED`] says: { cli → cycle, api } → { adapt, sizing, inspection, view, formats, image } → { metric → transfer, geometry }
 //! → mesh → tasks. In the rooms of [`ROOMS`] no files name each other in a circle.
 
 use super::imports::{Graph, Module};
@@ -16,6 +16,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "formats",
             "decomposition",
             "ranks",
+            "inspection",
             "adapt",
             "image",
             "surface",
@@ -38,6 +39,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("formats", &["geometry", "mesh", "tasks"]),
     ("adapt", &["sizing", "metric", "geometry", "tasks", "mesh", "memory"]),
     ("decomposition", &["adapt", "metric", "geometry", "ranks", "tasks", "mesh"]),
+    ("inspection", &["metric", "mesh", "tasks"]),
     ("sizing", &["metric", "geometry", "tasks", "mesh"]),
     ("image", &["tasks", "mesh"]),
     ("surface", &["geometry", "mesh", "tasks"]),

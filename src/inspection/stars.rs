@@ -1,0 +1,131 @@
+//! What has to do with neighbours: range by range of the vertices, with all tetrahedra at them.
+use super::blocks::Blocks;
+use super::numbering::Numbering;
+use super::points::{Source, length};
+use super::{Error, Sizes};
+use crate::mesh::validity::{OfStars, Stars, Tagged};
+use crate::metric::Lengths;
+use crate::tasks::{GRAIN, Team};
+use std::ops::Range;
+
+/// A tetrahedron with its number, and its entries in the rows of the vertices.
+const OF_TET: usize = 20 + 16;
+
+/// A vertex: number, coordinates and metric, and where its row begins, for each of two threads too.
+const OF_VERTEX: usize = 4 + 24 + 48 + 12;
+
+/// A vertex of another range while it is numbered: in the list, in the table, and while that grows.
+const OF_OTHER: usize = 4 + 24;
+
+/// Tetrahedra that are read by a task.
+const READ: usize = 1 << 14;
+
+/// Tasks a thread whose tetrahedra wait to be joined.
+const AT_ONCE: usize = 4;
+
+/// Vertices a tetrahedron, about: what a first range is guessed by.
+const PER_TET: usize = 5;
+
+/// Checks all vertices with their tetrahedra. Returns what is found, and the lengths of all edges.
+pub(super) fn check(
+    team: Team<'_>,
+    source: &Source<'_>,
+    sizes: &Sizes,
+    blocks: &Blocks,
+    tagged: &Tagged,
+) -> Result<(OfStars, Lengths), Error> {
+    let vertices = source.mesh.counts().vertices;
+    let (mut found, mut lengths) = (OfStars::default(), source.lengths());
+    let mut size = (sizes.range / (2 * (OF_TET * PER_TET + OF_VERTEX))).clamp(1, vertices.max(1));
+    let mut begin = 0;
+    while begin < vertices {
+        let room = sizes.range.saturating_sub(size_of_val(&found.boundary[..]));
+        let own = begin..vertices.min(begin + size);
+        let Some(star) = Ranged::read(team, source, blocks, &own, room)? else {
+            // One vertex is checked whatever it takes.
+            size = own.len().div_ceil(2);
+            continue;
+        };
+        let (stars, parts) = star.check(team, source, tagged)?;
+        found.extend(stars);
+        lengths = parts.into_iter().fold(lengths, Lengths::and);
+        begin = own.end;
+    }
+    Ok((found, lengths))
+}
+
+/// A range of vertices with all tetrahedra at them.
+struct Ranged {
+    /// With the numbers of `numbers`.
+    tets: Vec<[u32; 4]>,
+    tet_numbers: Vec<u32>,
+    /// Of all their vertices.
+    numbers: Vec<u32>,
+    /// Places in `numbers` of the vertices of the range.
+    own: Range<u32>,
+}
+
+impl Ranged {
+    /// Reads the tetrahedra; none when they do not fit into so many bytes.
+    fn read(
+        team: Team<'_>,
+        source: &Source<'_>,
+        blocks: &Blocks,
+        own: &Range<usize>,
+        room: usize,
+    ) -> Result<Option<Self>, Error> {
+        let fits = |tets: usize, vertices: usize, others: usize| {
+            own.len() == 1 || OF_TET * tets + OF_VERTEX * vertices + OF_OTHER * others <= room
+        };
+        let is_own = |v: u32| own.contains(&(v as usize));
+        let (mut tets, mut tet_numbers) = (Vec::new(), Vec::new());
+        for ranges in blocks.with(own, READ.max(blocks.size)).chunks(AT_ONCE * team.threads()) {
+            let parts = team.chunks(1, ranges.len(), |index| -> Result<_, Error> {
+                let range = ranges[index.start].clone();
+                let read = source.mesh.tets(Team::alone(), range.clone())?.nodes;
+                let at = (range.start as u32..).zip(read).filter(|(_, nodes)| nodes.iter().any(|&v| is_own(v)));
+                Ok(at.unzip::<u32, [u32; 4], Vec<_>, Vec<_>>())
+            });
+            for part in parts {
+                let (part_numbers, part) = part?;
+                tet_numbers.extend(part_numbers);
+                tets.extend(part);
+            }
+            if !fits(tets.len(), own.len(), 0) {
+                return Ok(None);
+            }
+        }
+        let others = tets.as_flattened().iter().copied().filter(|&v| !is_own(v));
+        let Some(others) = Numbering::of_at_most(others, |others| fits(tets.len(), own.len() + others, others)) else {
+            return Ok(None);
+        };
+        let below = others.numbers.partition_point(|&v| (v as usize) < own.start) as u32;
+        let count = own.len() as u32;
+        team.fill(GRAIN, tets.as_flattened_mut(), |_, nodes| {
+            for v in nodes {
+                *v = match *v {
+                    v if is_own(v) => v - own.start as u32 + below,
+                    v => {
+                        let place = others.place(v);
+                        if place < below { place } else { place + count }
+                    }
+                };
+            }
+        });
+        let others = others.into_numbers();
+        let (before, after) = others.split_at(below as usize);
+        let numbers = before.iter().copied().chain(own.start as u32..own.end as u32).chain(after.iter().copied());
+        let numbers = numbers.collect();
+        Ok(Some(Self { tets, tet_numbers, numbers, own: below..below + count }))
+    }
+
+    fn check(&self, team: Team<'_>, source: &Source<'_>, tagged: &Tagged) -> Result<(OfStars, Vec<Lengths>), Error> {
+        let Self { tets, tet_numbers, numbers, own } = self;
+        let points = source.points(team, numbers)?;
+        let metrics = source.metrics(team, numbers, &points)?;
+        let stars = Stars { tets, tet_numbers: Some(tet_numbers), numbers: Some(numbers), own: own.clone() };
+        Ok(stars.check(team, tagged, &source.lengths(), |lengths, edge| {
+            lengths.add(length(edge, &points, metrics.as_deref()));
+        }))
+    }
+}
