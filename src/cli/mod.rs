@@ -1,6 +1,6 @@
 //! The command line: one file a subcommand. Parsing, progress and printing; no algorithm lives here.
 use crate::tasks::{self, Pool};
-use crate::{geometry, memory};
+use crate::{geometry, memory, ranks};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -140,6 +140,12 @@ pub fn main() -> ExitCode {
     arguments.how.set();
     notices.iter().for_each(note);
     interrupt::listen();
+    if !matches!(arguments.command, Command::Adapt(_)) && ranks::is_one_of_several() {
+        terminal::error(
+            "several processes were started, and each would do all of the work: `adapt` alone shares it (start this one without mpirun or srun)",
+        );
+        return ExitCode::from(BAD_INPUT);
+    }
     let line = arguments.command.line();
     let outcome = match arguments.command {
         Command::Adapt(arguments) => adapt::run(&arguments),

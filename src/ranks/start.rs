@@ -62,6 +62,11 @@ fn start_several(launched: &Launched, _: usize) -> Result<Box<dyn Ranks>, String
     ))
 }
 
+/// Whether a launcher has started this process as one of several. Says nothing to the others.
+pub fn is_one_of_several() -> bool {
+    launched(|name| std::env::var(name).ok()).is_some()
+}
+
 /// What the environment says of several processes.
 fn launched(variable: impl Fn(&str) -> Option<String>) -> Option<Launched> {
     let number = |name: &'static str| variable(name)?.trim().parse().ok().map(|count| (name, count));

@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 mod adapt_sizes;
 mod by_parts;
+mod by_ranks;
 #[path = "../common/mod.rs"]
 mod common;
 mod deterministic;
