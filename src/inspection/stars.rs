@@ -11,8 +11,14 @@ use std::ops::Range;
 /// A tetrahedron with its number, and its entries in the rows of the vertices.
 const OF_TET: usize = 20 + 16;
 
-/// A vertex: number, coordinates and metric, and where its row begins, for each of two threads too.
-const OF_VERTEX: usize = 4 + 24 + 48 + 12;
+/// A vertex: number, coordinates and metric, and where its row begins.
+const OF_VERTEX: usize = 4 + 24 + 48 + 4;
+
+/// A vertex of the range for each thread, while the rows are made.
+const OF_OWN: usize = 4;
+
+/// Most threads that make rows: each of them has some entries a vertex.
+const MAKERS: usize = 26;
 
 /// A vertex of another range while it is numbered: in the list, in the table, and while that grows.
 const OF_OTHER: usize = 4 + 24;
@@ -20,8 +26,11 @@ const OF_OTHER: usize = 4 + 24;
 /// Tetrahedra that are read by a task.
 const READ: usize = 1 << 14;
 
-/// Tasks a thread whose tetrahedra wait to be joined.
+/// Tasks a thread whose tetrahedra wait to be joined, where there is room for them.
 const AT_ONCE: usize = 4;
+
+/// The share of the room for tetrahedra that wait.
+const WAITING: usize = 8;
 
 /// Vertices a tetrahedron, about: what a first range is guessed by.
 const PER_TET: usize = 5;
@@ -36,7 +45,8 @@ pub(super) fn check(
 ) -> Result<(OfStars, Lengths), Error> {
     let vertices = source.mesh.counts().vertices;
     let (mut found, mut lengths) = (OfStars::default(), source.lengths());
-    let mut size = (sizes.range / (2 * (OF_TET * PER_TET + OF_VERTEX))).clamp(1, vertices.max(1));
+    let most = (sizes.range / (2 * (OF_TET * PER_TET + OF_VERTEX))).clamp(1, vertices.max(1));
+    let mut size = most;
     let mut begin = 0;
     while begin < vertices {
         let room = sizes.range.saturating_sub(size_of_val(&found.boundary[..]));
@@ -50,6 +60,8 @@ pub(super) fn check(
         found.extend(stars);
         lengths = parts.into_iter().fold(lengths, Lengths::and);
         begin = own.end;
+        // What did not fit may have been an exception.
+        size = (size + size.div_ceil(8)).min(most);
     }
     Ok((found, lengths))
 }
@@ -75,11 +87,13 @@ impl Ranged {
         room: usize,
     ) -> Result<Option<Self>, Error> {
         let fits = |tets: usize, vertices: usize, others: usize| {
-            own.len() == 1 || OF_TET * tets + OF_VERTEX * vertices + OF_OTHER * others <= room
+            let of_threads = OF_OWN * own.len() * team.threads().min(MAKERS);
+            own.len() == 1 || of_threads + OF_TET * tets + OF_VERTEX * vertices + OF_OTHER * others <= room
         };
         let is_own = |v: u32| own.contains(&(v as usize));
         let (mut tets, mut tet_numbers) = (Vec::new(), Vec::new());
-        for ranges in blocks.with(own, READ.max(blocks.size)).chunks(AT_ONCE * team.threads()) {
+        let at_once = (room / WAITING / (READ * 20)).clamp(1, AT_ONCE * team.threads());
+        for ranges in blocks.with(own, READ.max(blocks.size)).chunks(at_once) {
             let parts = team.chunks(1, ranges.len(), |index| -> Result<_, Error> {
                 let range = ranges[index.start].clone();
                 let read = source.mesh.tets(Team::alone(), range.clone())?.nodes;
