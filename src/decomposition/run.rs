@@ -198,7 +198,7 @@ impl Measured {
     pub fn statistics(self) -> Statistics {
         let Self { mut figures, mut doubtful } = self;
         figures.sort_by_key(|(at, _)| *at);
-        doubtful.sort_unstable_by(|a, b| a.0.cmp(&b.0));
+        doubtful.sort_unstable_by_key(|edge| edge.0);
         doubtful.dedup_by_key(|(edge, _)| *edge);
         let mut all = figures.into_iter().map(|(_, figures)| figures);
         let first = all.next().expect("the boundary is there");

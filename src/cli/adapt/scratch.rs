@@ -20,7 +20,9 @@ pub struct Scratch {
 impl Scratch {
     /// Beside the output, if no other is asked for.
     pub fn folder(asked: Option<&Path>, output: &Path) -> PathBuf {
-        asked.map_or_else(|| output.with_added_extension("scratch"), Path::to_owned)
+        let mut beside = output.as_os_str().to_owned();
+        beside.push(".scratch");
+        asked.map_or_else(|| beside.into(), Path::to_owned)
     }
 
     /// One that another process has opened.
