@@ -103,6 +103,8 @@ fn regions_and_references_are_kept() {
                 assert!((now[&reference] - value).abs() < 1e-9, "{reference}: {} and {value}", now[&reference]);
             }
         }
+        assert!(whole.report.get("parts").is_none());
+        assert!(parts.report["parts"]["rounds"][0]["parts"].as_u64().unwrap() > 1, "{}", parts.report["parts"]);
         let figures = |run: &Adapted| {
             let statistics = &run.report["statistics"];
             let [least, mean] = ["min", "mean"].map(|name| statistics["mean_ratios"][name].as_f64().unwrap());

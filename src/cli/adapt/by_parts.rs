@@ -6,14 +6,16 @@ use super::scratch::Scratch;
 use super::{Arguments, Targets, parts};
 use crate::adapt::Options;
 use crate::cli::amount::bytes;
+use crate::cli::table::Table;
 use crate::cli::terminal;
 use crate::cli::waiting::Waiting;
 use crate::cli::{BAD_INPUT, INVALID, Outcome, interrupt, note};
-use crate::decomposition::{self, Adapted, Common, Shelf, Sizes, wanted_vertices};
+use crate::decomposition::{self, Adapted, Common, Shelf, Sizes, Told, wanted_vertices};
 use crate::memory;
 use crate::metric::statistics::Statistics;
-use crate::ranks::{Ranks, agree};
+use crate::ranks::{Ranks, Traffic, agree};
 use crate::tasks::{Plan, Pool, Team, stage};
+use serde::Serialize;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -109,7 +111,8 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     progress.finish();
     progress.has_room()?;
     let adapted = adapted.map_err(|error| named(error.to_string()))?;
-    let result = Ending { arguments, team, progress: &progress, threads };
+    let told = Parts::of(&adapted, ranks);
+    let result = Ending { arguments, team, progress: &progress, threads, told };
     let code = match targets {
         Some(targets) if place.is_whole => result.in_memory(&input, adapted, &targets, (start, prepared)),
         Some(targets) => result.by_slices(&input, adapted, &targets, (start, prepared)),
@@ -191,12 +194,58 @@ impl Arguments {
     }
 }
 
+/// What the report says of a run part by part.
+#[derive(Clone, Serialize)]
+pub struct Parts {
+    rounds: Vec<Told>,
+    processes: Vec<Process>,
+}
+
+/// What a process did.
+#[derive(Clone, Copy, Serialize)]
+struct Process {
+    /// Bytes sent to others.
+    sent: u64,
+    /// Time spent in sending, and in waiting for others, s.
+    waited: f64,
+}
+
+impl Parts {
+    /// Of all processes. Collective.
+    fn of(adapted: &Adapted<'_>, ranks: &dyn Ranks) -> Self {
+        let Traffic { sent, waited } = ranks.traffic();
+        let own = [sent.to_le_bytes(), waited.to_le_bytes()].concat();
+        let read = |bytes: Vec<u8>| {
+            let [sent, waited] = [0, 8].map(|at| bytes[at..at + 8].try_into().unwrap_or_default());
+            Process { sent: u64::from_le_bytes(sent), waited: f64::from_le_bytes(waited) }
+        };
+        Self { rounds: adapted.told().to_vec(), processes: ranks.gather(&own).into_iter().map(read).collect() }
+    }
+
+    /// What the table says of it.
+    pub fn rows(&self, table: &mut Table) {
+        let parts: Vec<String> = self.rounds.iter().map(|told| told.parts.to_string()).collect();
+        table.row("parts, round by round", parts.join(", "));
+        if self.processes.len() > 1 {
+            let sent: u64 = self.processes.iter().map(|process| process.sent).sum();
+            let waited = self.processes.iter().map(|process| process.waited).fold(0.0, f64::max);
+            let figures = format_args!(
+                "{}; {:.1} MB sent, {waited:.2} s waited at the most",
+                self.processes.len(),
+                sent as f64 / 1e6
+            );
+            table.row("processes", figures);
+        }
+    }
+}
+
 /// What a run has come to.
 struct Ending<'a> {
     arguments: &'a Arguments,
     team: Team<'a>,
     progress: &'a Progress,
     threads: usize,
+    told: Parts,
 }
 
 impl Ending<'_> {
@@ -206,7 +255,8 @@ impl Ending<'_> {
         let finished = from.0.elapsed();
         let line = Waiting::for_what("measuring and writing");
         let asked = self.arguments.asked(self.threads);
-        let report = Report::new(self.team, &asked, input, adapted, (self.progress.forecast(), None));
+        let mut report = Report::new(self.team, &asked, input, adapted, (self.progress.forecast(), None));
+        report.parts = Some(self.told.clone());
         let times = [from.1, finished, from.0.elapsed()];
         let (report, lost) = targets.write(self.team, report, times)?;
         drop(line);
@@ -226,8 +276,9 @@ impl Ending<'_> {
         let line = Waiting::for_what("measuring and writing");
         let asked = self.arguments.asked(self.threads);
         let skin = adapted.done().clone().with(adapted.take_skin());
-        let report =
+        let mut report =
             Report::new(self.team, &asked, input, skin, (self.progress.forecast(), Some(Statistics::default())));
+        report.parts = Some(self.told.clone());
         let report = targets.write_slices(self.team, report, &adapted, (from.0, [from.1, finished]))?;
         drop(line);
         self.told(&report)

@@ -1,4 +1,5 @@
 //! What was done: the table on the terminal and the JSON.
+use super::by_parts::Parts;
 use super::input::Input;
 use super::meet::Meeting;
 use super::source::Chords;
@@ -103,6 +104,9 @@ pub struct Report {
     /// How a number of vertices was met, with --vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     vertices_wanted: Option<Meeting>,
+    /// The rounds and the processes, part by part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) parts: Option<Parts>,
     input_vertices: usize,
     input_tets: usize,
     pub(super) statistics: Statistics,
@@ -167,6 +171,7 @@ impl Report {
             multiscale: input.how.made.clone(),
             chords: input.how.chords,
             vertices_wanted: input.meeting,
+            parts: None,
             input_vertices: input.mesh.vertices.len(),
             input_tets: input.mesh.tets.len(),
             statistics: statistics.unwrap_or_else(|| Statistics::in_metric(team, &mesh, &extracted.metrics)),
@@ -213,6 +218,9 @@ impl Report {
         }
         if let Some(meeting) = &self.vertices_wanted {
             meeting.row(&mut table);
+        }
+        if let Some(parts) = &self.parts {
+            parts.rows(&mut table);
         }
         table.statistics(&self.statistics);
         table.fidelity(&self.fidelity);
