@@ -220,7 +220,7 @@ fn on_a_model_every_boundary_vertex_lies_on_it() {
     let work = Workplace::new();
     let arguments = [&["--cad", &model, "--analytic", "polar-2", "--complexity", "4000"][..], &PARTS];
     let run = work.adapt(&mesh, &[arguments[0], arguments[1], &MUCH].concat());
-    assert!(run.report["fidelity"]["farthest"]["distance"].as_f64().unwrap() < 1e-9, "{}", run.report["fidelity"]);
+    assert!(run.report["fidelity"]["from_model"]["distance"].as_f64().unwrap() < 1e-9, "{}", run.report["fidelity"]);
     let known = std::fs::read(work.path("out.meshb")).unwrap();
     let run = work.adapt(&mesh, &[arguments[0], arguments[1], &LITTLE].concat());
     assert!(std::fs::read(work.path("out.meshb")).unwrap() == known);
