@@ -7,6 +7,8 @@
 //! memory or on a disk, and go from rank to rank as [`bytes`].
 mod bytes;
 mod cuts;
+mod deal;
+mod finished;
 mod join;
 mod journal;
 mod manifold;
@@ -17,14 +19,17 @@ mod piece;
 mod rounds;
 mod run;
 mod shelf;
+mod sizes;
 mod split;
 #[cfg(test)]
 mod tests;
+mod threads;
 mod zones;
 
-pub use rounds::{Common, Sizes, Told, wanted_vertices};
+pub use rounds::{Common, Told};
 pub use run::{Adapted, Measured, Slice, adapt};
 pub use shelf::{JOURNAL, Shelf};
+pub use sizes::{Sizes, wanted_vertices};
 
 /// A run by parts that failed.
 #[derive(Debug, thiserror::Error)]

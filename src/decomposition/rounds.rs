@@ -3,15 +3,14 @@
 //! Where the cuts lie and what becomes of a part depends on the mesh alone. Which rank does it, how many parts are done at once and
 //! where they lie meanwhile does not matter: every list is in the order of the parts.
 use super::Error;
-use super::bytes::{decoded, encoded, put, take};
 use super::cuts::{Cuts, Sample, samples};
 use super::join::join;
-use super::journal::{self, Journal, PartDone, read_done, write_done};
-use super::outline::{Numbering, Outline};
+use super::journal::{self, Journal, PartDone, write_done};
 use super::part::{Done, Round, Tools, adapt_piece};
 use super::piece::Piece;
 use super::shelf::{Key, Shelf};
-use super::split::split;
+use super::sizes::{Sizes, growth, wanted_vertices};
+use super::threads::{Shared, add, on_threads, sorted};
 use super::zones::divide;
 use crate::adapt::{Observer, Options, References, Scheduler};
 use crate::geometry::Model;
@@ -19,16 +18,7 @@ use crate::metric::Source;
 use crate::metric::field::complexity_factor;
 use crate::ranks::{Ranks, agree};
 use crate::tasks::Pool;
-use std::sync::Mutex;
-use std::sync::PoisonError;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::Instant;
-
-/// From a stage to the next the mesh grows by this factor at most.
-const GROWTH: f64 = 8.0;
-
-/// Vertices for a unit of complexity.
-const VERTICES_PER_COMPLEXITY: f64 = 1.9;
 
 /// Most tetrahedra that are asked where to cut.
 const SAMPLES: usize = 1 << 18;
@@ -45,43 +35,11 @@ const FEWER: usize = 3;
 /// Most rounds around former cuts.
 const MOST_ZONES: usize = 8;
 
-/// Bytes behind a piece that say which one it is.
-const KEY: usize = 16;
-
-/// The owner of a part that is done.
-const NOBODY: u32 = u32::MAX;
+/// Bytes behind a piece that is sent, which say which one it is.
+pub const KEY: usize = 16;
 
 /// Memory for a vertex that is being adapted, bytes.
 const BYTES_A_VERTEX: f64 = 1_200.0;
-
-/// How large parts are.
-#[derive(Clone, Copy, Debug)]
-pub struct Sizes {
-    /// Vertices of a part of a large mesh.
-    pub part: f64,
-    /// Smaller meshes have up to so many parts, which serve as many threads,
-    pub few: f64,
-    /// unless these had fewer vertices than this.
-    pub least: f64,
-}
-
-impl Default for Sizes {
-    fn default() -> Self {
-        Self { part: 300_000.0, few: 16.0, least: 40_000.0 }
-    }
-}
-
-impl Sizes {
-    /// Parts of so many vertices.
-    pub fn of(vertices: f64) -> Self {
-        Self { part: vertices, few: 1.0, least: vertices }
-    }
-
-    /// Into how many parts a mesh of so many vertices is cut.
-    fn parts(&self, vertices: f64) -> usize {
-        (vertices / self.part).max((vertices / self.least).min(self.few)).ceil().max(1.0) as usize
-    }
-}
 
 /// What the parts of a run have in common.
 #[derive(Clone, Copy)]
@@ -124,32 +82,36 @@ pub struct Became {
     /// Its number in the round.
     pub part: u32,
     /// The rank that has it.
-    rank: u32,
-    /// Tetrahedra and vertices that are not finished.
-    tets: u64,
-    vertices: u64,
+    pub rank: u32,
+    /// Tetrahedra that are not finished.
+    pub tets: u64,
+    /// Their vertices.
+    pub vertices: u64,
     /// Vertices with those that are finished.
-    all: u64,
+    pub all: u64,
 }
 
 /// The pieces of a round that are not finished, and samples of their tetrahedra, in the order of the parts.
 #[derive(Default)]
-struct Active {
-    round: u32,
-    pieces: Vec<Became>,
-    samples: Vec<Sample>,
+pub struct Active {
+    /// The round.
+    pub round: u32,
+    /// The pieces.
+    pub pieces: Vec<Became>,
+    /// The samples.
+    pub samples: Vec<Sample>,
 }
 
 /// The rounds so far.
 pub struct Rounds<'a> {
-    common: Common<'a>,
+    pub common: Common<'a>,
     /// What came of them.
     pub done: Done,
     /// Each of them.
     pub told: Vec<Told>,
     /// The finished pieces and the ranks that have them.
     pub finished: Vec<(Key, u32)>,
-    active: Active,
+    pub active: Active,
     next_id: u64,
     /// Steps of the plan that are done.
     steps: usize,
@@ -168,34 +130,6 @@ impl Observer for Quiet<'_> {
     fn stop(&self) -> bool {
         self.0.stop()
     }
-}
-
-/// A list that several threads add to.
-type Shared<T> = Mutex<Vec<T>>;
-
-fn add<T>(list: &Shared<T>, item: T) {
-    list.lock().unwrap_or_else(PoisonError::into_inner).push(item);
-}
-
-/// The list, sorted.
-fn sorted<T, K: Ord>(list: Shared<T>, key: impl Fn(&T) -> K) -> Vec<T> {
-    let mut list = list.into_inner().unwrap_or_else(PoisonError::into_inner);
-    list.sort_by_key(key);
-    list
-}
-
-/// Vertices of a mesh of this complexity, about.
-pub fn wanted_vertices(complexity: f64) -> f64 {
-    VERTICES_PER_COMPLEXITY * complexity
-}
-
-/// The shares of the complexity of the stages, ascending to 1.
-fn growth(wanted: f64, given: f64, sizes: &Sizes) -> Vec<f64> {
-    let mut shares = vec![1.0];
-    while shares[0] * wanted > GROWTH * given && sizes.parts(shares[0] * wanted) > 1 {
-        shares.insert(0, shares[0] / GROWTH);
-    }
-    shares
 }
 
 impl<'a> Rounds<'a> {
@@ -326,7 +260,7 @@ impl<'a> Rounds<'a> {
     }
 
     /// The error of any rank.
-    fn agreed<T>(&self, result: Result<T, Error>) -> Result<T, Error> {
+    pub fn agreed<T>(&self, result: Result<T, Error>) -> Result<T, Error> {
         if self.common.ranks.count() == 1 {
             return result;
         }
@@ -360,6 +294,10 @@ impl<'a> Rounds<'a> {
         let vertices = self.active.pieces.iter().map(|piece| piece.all as usize).sum();
         self.common.observer.vertices(self.vertices());
         self.told.push(Told { parts, tets, vertices, seconds: began.elapsed().as_secs_f64() });
+        // Parts that were ended halfway are good for the mesh that is written now, and not for a run that goes on.
+        if self.is_stopped() {
+            return Ok(());
+        }
         self.note()?;
         // With the journal, what was before is not needed any more.
         let own = self.common.ranks.rank() as u32;
@@ -369,79 +307,8 @@ impl<'a> Rounds<'a> {
         Ok(())
     }
 
-    /// The rank of each part: the heaviest first, each to the rank with the least work so far.
-    fn owners(&self, parts: usize, work: &[f64]) -> Vec<u32> {
-        let mut order: Vec<usize> = (0..parts).collect();
-        order.sort_by(|&a, &b| work[b].total_cmp(&work[a]).then(a.cmp(&b)));
-        let mut load = vec![0.0; self.common.ranks.count()];
-        let mut owners = vec![0; parts];
-        for part in order {
-            let least = (0..load.len()).min_by(|&a, &b| f64::total_cmp(&load[a], &load[b])).unwrap_or(0);
-            load[least] += work[part];
-            owners[part] = least as u32;
-        }
-        owners
-    }
-
-    /// The owners of the parts that are not done yet, and what a run that was ended has left of the others: those of this rank.
-    fn without_done(&self, round: u32, mut owners: Vec<u32>) -> (Vec<u32>, Shared<PartDone>) {
-        let (list, own) = (Shared::default(), self.common.ranks.rank() as u32);
-        for (owner, part) in owners.iter_mut().zip(0..) {
-            if let Some((became, samples, done)) = read_done(self.common.shelf, round, part) {
-                if *owner == own {
-                    add(&list, (Became { rank: own, ..became }, samples, done));
-                }
-                *owner = NOBODY;
-            }
-        }
-        (owners, list)
-    }
-
-    /// Gives each part its share of each active piece. Returns the parts of this rank, each with the pieces that it has a share of.
-    fn deal(&self, round: u32, cuts: &Cuts, log_factor: f64, owners: &[u32]) -> Result<Vec<(u32, Vec<u32>)>, Error> {
-        let Common { shelf, ranks, .. } = self.common;
-        let (own, parts) = (ranks.rank() as u32, owners.len());
-        let (kept, sent) = (Shared::default(), Shared::default());
-        let mine: Vec<Became> =
-            self.active.pieces.iter().copied().filter(|piece| piece.rank == own && piece.tets > 0).collect();
-        let threads = self.at_once(mine.iter().map(|piece| piece.vertices as f64).fold(0.0, f64::max) * 0.4);
-        let dealt = on_threads(threads, mine.len(), |at| {
-            let of = mine[at].part;
-            let mut piece = shelf.take(Key::Active { round: self.active.round, part: of })?;
-            piece.scale(log_factor);
-            let shares = if parts == 1 { vec![piece] } else { split(&piece, &cuts.owners(&piece), parts, |_, _| true) };
-            for (share, part) in shares.into_iter().zip(0..).filter(|(share, _)| share.len() > 0) {
-                match owners[part as usize] {
-                    NOBODY => {}
-                    rank if rank == own => {
-                        shelf.put(Key::Share { round, part, of }, share)?;
-                        add(&kept, (part, of));
-                    }
-                    rank => add(&sent, ((of, part), rank, encoded(&share))),
-                }
-            }
-            Ok(())
-        });
-        self.agreed(dealt)?;
-        let messages = sorted(sent, |(key, ..)| *key).into_iter().map(|((of, part), rank, mut bytes)| {
-            put(&mut bytes, &[part, of]);
-            (rank as usize, bytes)
-        });
-        let received = ranks.exchange(messages.collect()).into_iter().try_for_each(|(_, bytes)| {
-            let (share, key) = bytes.split_at_checked(bytes.len().wrapping_sub(KEY)).ok_or(Error::Message)?;
-            let [part, of]: [u32; 2] = take(&mut &*key).and_then(|key| key.try_into().ok()).ok_or(Error::Message)?;
-            shelf.put(Key::Share { round, part, of }, decoded(share).ok_or(Error::Message)?)?;
-            add(&kept, (part, of));
-            Ok(())
-        });
-        self.agreed(received)?;
-        let kept = sorted(kept, |key| *key);
-        let by_part = kept.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|key| key.1).collect()));
-        Ok(by_part.collect())
-    }
-
     /// How many parts of so many vertices may be in memory at once.
-    fn at_once(&self, vertices: f64) -> usize {
+    pub fn at_once(&self, vertices: f64) -> usize {
         let threads = self.common.pool.threads();
         let Some(memory) = self.common.memory else { return threads };
         ((memory as f64 / (BYTES_A_VERTEX * vertices.max(1.0))) as usize).clamp(1, threads)
@@ -508,7 +375,9 @@ impl<'a> Rounds<'a> {
         if finished.len() > 0 {
             shelf.put(Key::Finished { round, part }, finished)?;
         }
-        write_done(shelf, round, &told)?;
+        if !self.common.observer.stop() {
+            write_done(shelf, round, &told)?;
+        }
         add(list, told);
         Ok(())
     }
@@ -539,92 +408,4 @@ impl<'a> Rounds<'a> {
         }
         Ok(())
     }
-
-    /// The numbers of all vertices in the whole mesh.
-    ///
-    /// # Errors
-    /// Where a piece cannot be read.
-    pub fn numbering(&self) -> Result<Numbering, Error> {
-        let Common { shelf, ranks, .. } = self.common;
-        let own = ranks.rank() as u32;
-        let list = Shared::default();
-        let outlined = on_threads(self.common.pool.threads(), self.finished.len(), |at| {
-            let (key, rank) = self.finished[at];
-            if rank == own {
-                let piece = shelf.take(key)?;
-                add(&list, (at as u64, Outline::of(&piece)));
-                shelf.give_back(key, piece);
-            }
-            Ok(())
-        });
-        self.agreed(outlined)?;
-        let mut bytes = Vec::new();
-        for (at, outline) in sorted(list, |(at, _)| *at) {
-            put(&mut bytes, &[at]);
-            bytes.append(&mut outline.encoded());
-        }
-        let mut outlines = Vec::new();
-        for from in ranks.gather(&bytes) {
-            let mut from = &from[..];
-            while !from.is_empty() {
-                let at = take::<u64>(&mut from).ok_or(Error::Message)?;
-                outlines.push((at, Outline::decoded(&mut from).ok_or(Error::Message)?));
-            }
-        }
-        outlines.sort_by_key(|(at, _)| at[0]);
-        Ok(Numbering::of(outlines.into_iter().map(|(_, outline)| outline).collect()))
-    }
-
-    /// Calls f on rank 0 with each finished piece of all ranks and its place in their order: on all threads where there is one rank, else one
-    /// after the other.
-    ///
-    /// # Errors
-    /// That of f, and where a piece cannot be read.
-    pub fn for_each_finished(&self, f: impl Fn(usize, Piece) -> Result<(), Error> + Sync) -> Result<(), Error> {
-        let Common { shelf, ranks, pool, .. } = self.common;
-        if ranks.count() == 1 {
-            return on_threads(pool.threads(), self.finished.len(), |at| f(at, shelf.take(self.finished[at].0)?));
-        }
-        // One piece of each rank at a time.
-        let mut of_rank = vec![Vec::new(); ranks.count()];
-        self.finished.iter().zip(0..).for_each(|((key, rank), at)| of_rank[*rank as usize].push((*key, at)));
-        let most = of_rank.iter().map(Vec::len).max().unwrap_or(0);
-        for turn in 0..most {
-            let own = of_rank[ranks.rank()].get(turn).map(|&(key, at)| Ok::<_, Error>((at, shelf.take(key)?)));
-            let own = self.agreed(own.transpose())?;
-            let message = |(at, piece): (usize, Piece)| {
-                let mut bytes = encoded(&piece);
-                put(&mut bytes, &[at as u64]);
-                (0, bytes)
-            };
-            let received = ranks.exchange(own.into_iter().map(message).collect());
-            let done = received.into_iter().try_for_each(|(_, bytes)| {
-                let (piece, at) = bytes.split_at_checked(bytes.len().wrapping_sub(KEY)).ok_or(Error::Message)?;
-                let [at]: [u64; 1] = take(&mut &*at).and_then(|at| at.try_into().ok()).ok_or(Error::Message)?;
-                f(at as usize, decoded(piece).ok_or(Error::Message)?)
-            });
-            self.agreed(done)?;
-        }
-        Ok(())
-    }
-}
-
-/// Calls f with 0, 1, … on so many threads. Ends at the first error.
-fn on_threads(threads: usize, items: usize, f: impl Fn(usize) -> Result<(), Error> + Sync) -> Result<(), Error> {
-    let next = AtomicUsize::new(0);
-    let failed = Mutex::new(None);
-    let work = || {
-        while let Some(at) = Some(next.fetch_add(1, Relaxed)).filter(|&at| at < items) {
-            if let Err(error) = f(at) {
-                next.store(items, Relaxed);
-                failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-            }
-        }
-    };
-    if threads <= 1 || items <= 1 {
-        work();
-    } else {
-        std::thread::scope(|scope| (0..threads.min(items)).for_each(|_| drop(scope.spawn(work))));
-    }
-    failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
 }

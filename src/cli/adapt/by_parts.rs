@@ -109,7 +109,7 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     let goes_on = |rounds| note(format_args!("a run that was ended before goes on after round {rounds}"));
     let adapted = decomposition::adapt(common, (&input.mesh, &input.place), &mut input.source, run, goes_on);
     progress.finish();
-    progress.has_room()?;
+    agreed(ranks, progress.has_room().map_err(Error::from))?;
     let adapted = adapted.map_err(|error| named(error.to_string()))?;
     let told = Parts::of(&adapted, ranks);
     let result = Ending { arguments, team, progress: &progress, threads, told };
