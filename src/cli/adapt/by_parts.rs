@@ -279,7 +279,7 @@ impl Ending<'_> {
         let mut report =
             Report::new(self.team, &asked, input, skin, (self.progress.forecast(), Some(Statistics::default())));
         report.parts = Some(self.told.clone());
-        let report = targets.write_slices(self.team, report, &adapted, (from.0, [from.1, finished]))?;
+        let report = targets.by_slices(self.team, report, &adapted, (from.0, [from.1, finished]))?;
         drop(line);
         self.told(&report)
     }

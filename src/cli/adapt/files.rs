@@ -84,7 +84,7 @@ impl Targets {
 
     /// The same of a mesh that is not in memory: the report has its boundary, whose vertices come first, and the rest comes by slices. `times` are
     /// the start, and those since when the work began and when it ended.
-    pub fn write_slices(
+    pub fn by_slices(
         &self,
         team: Team<'_>,
         mut report: Report,
