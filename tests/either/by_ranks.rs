@@ -83,7 +83,7 @@ mod with_mpi {
         to_vtu.args(["adapt", &text(&mesh), "-o", &vtu]).args(FIELD);
         let Some(mut run) = launched(2, &to_vtu) else { return };
         ended_well(&run.output().unwrap());
-        ended_well(&program().args(["convert", &vtu, "-o", &back]).output().unwrap());
+        ended_well(&program().args(["convert", &vtu, &back]).output().unwrap());
         let [known, back] = [work.path("known.meshb"), work.path("back.meshb")];
         fs::write(&known, &bytes[0]).unwrap();
         let [known, back] = [known, back].map(|path| read_mesh(&path).unwrap().content);

@@ -49,11 +49,16 @@ pub fn run(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
         terminal::hush();
     }
     let outcome = adapted(arguments, ranks);
-    match outcome {
-        // Rank 0 tells it.
-        Err(_) if ranks.rank() > 0 => Ok(ExitCode::from(BAD_INPUT)),
-        outcome => outcome,
+    let Err(error) = outcome else { return outcome };
+    if ranks.count() == 1 {
+        return Err(error);
     }
+    // Rank 0 tells it, before mpirun tells that one has ended.
+    if ranks.rank() == 0 {
+        terminal::error(error);
+    }
+    ranks.gather(&[]);
+    Ok(ExitCode::from(BAD_INPUT))
 }
 
 /// The error of any rank.
