@@ -89,7 +89,7 @@ pub fn adapt(
     observer: &dyn Observer,
 ) -> Result<Adapted, fill::Error> {
     source.check(Team::new(pool, options.plan), mesh)?;
-    run(mesh, place, None, model, source, options, pool, observer)
+    adapt_part(mesh, place, None, model, source, options, pool, observer)
 }
 
 /// What is known of a part of a larger mesh, beside the part as a mesh. Its boundary faces without a triangle are faces to other parts.
@@ -107,26 +107,13 @@ pub struct Part<'a> {
     pub cuts_will_move: bool,
 }
 
-/// Adapts a part of a larger mesh: faces to other parts and what is held stay as they are, to the bit.
+/// Adapts a mesh as [`adapt`] does, or a part of a larger one, whose sizes were checked: its faces to other parts and what is held stay as they
+/// are, to the bit.
 ///
 /// # Errors
-/// As [`adapt`], but for the boundary, which need not be closed by triangles.
+/// As [`adapt`], but for the boundary of a part, which need not be closed by triangles.
 #[allow(clippy::too_many_arguments)]
 pub fn adapt_part(
-    mesh: &TetMesh,
-    place: &Classification,
-    part: Part<'_>,
-    model: &Model,
-    source: &Source,
-    options: &Options,
-    pool: &Pool,
-    observer: &dyn Observer,
-) -> Result<Adapted, fill::Error> {
-    run(mesh, place, Some(part), model, source, options, pool, observer)
-}
-
-#[allow(clippy::too_many_arguments)]
-fn run(
     mesh: &TetMesh,
     place: &Classification,
     part: Option<Part<'_>>,

@@ -159,7 +159,7 @@ fn adapt_manifold(
         refs,
         cuts_will_move: !round.is_zone && !round.is_alone,
     };
-    let adapted = adapt::adapt_part(&piece.mesh, &piece.place, part, model, source, options, pool, observer)?;
+    let adapted = adapt::adapt_part(&piece.mesh, &piece.place, Some(part), model, source, options, pool, observer)?;
     let Adapted { extracted, work, growth_end, unrepaired, deviating, geometry } = adapted;
     Ok((put_back(&piece, &held, extracted, first_id), Done { work, growth_end, unrepaired, deviating, geometry }))
 }

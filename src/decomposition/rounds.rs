@@ -104,6 +104,7 @@ pub struct Active {
 
 /// The rounds so far.
 pub struct Rounds<'a> {
+    /// What its parts have in common.
     pub common: Common<'a>,
     /// What came of them.
     pub done: Done,
@@ -111,7 +112,9 @@ pub struct Rounds<'a> {
     pub told: Vec<Told>,
     /// The finished pieces and the ranks that have them.
     pub finished: Vec<(Key, u32)>,
+    /// What is not finished.
     pub active: Active,
+    /// The first id that is free.
     next_id: u64,
     /// Steps of the plan that are done.
     steps: usize,

@@ -31,8 +31,8 @@ pub struct Adapted<'a> {
     skin: Extracted,
 }
 
-/// Adapts a mesh by parts. `source` is as it was afterwards. `run` names what is adapted and how: a scratch folder with a journal of that name is gone
-/// on with, and `told` hears after how many rounds.
+/// Adapts a mesh by parts. `source` is as it was afterwards. `run` names what is adapted and how. If the scratch folder has a journal of that name,
+/// the run goes on from there, and `told` is called with the number of rounds that were done.
 ///
 /// # Errors
 /// Those of [`crate::adapt::adapt`], and where pieces cannot be kept.
