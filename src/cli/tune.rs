@@ -1,6 +1,6 @@
 //! `geo-adapt tune`: which back-end, strategy and grain are the fastest, on the user's case and machine.
 use super::Outcome;
-use super::adapt::input::{Input, InputArguments};
+use super::adapt::input::{Input, InputArguments, OnModel};
 use super::figures::FigureArguments;
 use super::files::{JSON, Outputs};
 use crate::adapt::{self, Grains, Kind, Options, Scheduler, Silent};
@@ -115,7 +115,7 @@ impl Bench<'_> {
         let grain = grains.map(|grains| grains.of(OPERATIONS[0]));
         let Plan { backend, strategy, .. } = plan;
         let mut best = Timing { scheduler, backend, strategy, grain, seconds: [f64::INFINITY; 4], conflicts: u64::MAX };
-        let Input { mesh, place, model, source, .. } = self.input;
+        let Input { on: OnModel { mesh, place, model, .. }, source, .. } = self.input;
         let options = Options { scheduler, plan, grains: grains.unwrap_or_default(), ..Options::default() };
         for _ in 0..self.arguments.repeat {
             let adapted = adapt::adapt(mesh, place, model, source, &options, self.pool, &Silent)

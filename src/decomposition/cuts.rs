@@ -33,6 +33,16 @@ pub struct Sample {
     waits: u64,
 }
 
+impl Sample {
+    /// The box of some.
+    pub fn box_of(samples: &[Self]) -> [Vec3; 2] {
+        let over = |f: fn(f64, f64) -> f64, none: f64, corner: fn(&Self) -> Vec3| {
+            samples.iter().map(corner).fold([none; 3], |a, b| [0, 1, 2].map(|k| f(a[k], b[k])))
+        };
+        [over(f64::min, f64::INFINITY, |sample| sample.low), over(f64::max, f64::NEG_INFINITY, |sample| sample.high)]
+    }
+}
+
 /// At most so many tetrahedra of a piece, evenly spread over its list.
 pub fn samples(piece: &Piece, most: usize) -> Vec<Sample> {
     let step = piece.len().div_ceil(most.max(1)).max(1);
@@ -88,6 +98,13 @@ impl Cuts {
         Self { tree, work }
     }
 
+    /// The box of each part, of what lies in this one.
+    pub fn boxes(&self, whole: [Vec3; 2]) -> Vec<[Vec3; 2]> {
+        let mut boxes = vec![whole; self.work.len()];
+        self.tree.put_boxes(whole, &mut boxes);
+        boxes
+    }
+
     /// The part of each tetrahedron: that in which its centroid lies.
     pub fn owners(&self, piece: &Piece) -> Vec<u32> {
         (0..piece.len()).map(|t| self.tree.part_at(centre(piece, t))).collect()
@@ -106,6 +123,19 @@ impl Tree {
         let (below, above) = samples.split_at_mut(middle);
         let sides = [Self::of(below, first, half), Self::of(above, first + half, parts - half)];
         Self::Plane(axis, at, Box::new(sides))
+    }
+
+    fn put_boxes(&self, own: [Vec3; 2], boxes: &mut [[Vec3; 2]]) {
+        match self {
+            Self::Part(part) => boxes[*part as usize] = own,
+            Self::Plane(axis, at, sides) => {
+                let [mut below, mut above] = [own, own];
+                below[1][*axis] = at.clamp(own[0][*axis], own[1][*axis]);
+                above[0][*axis] = below[1][*axis];
+                sides[0].put_boxes(below, boxes);
+                sides[1].put_boxes(above, boxes);
+            }
+        }
     }
 
     fn part_at(&self, p: Vec3) -> u32 {

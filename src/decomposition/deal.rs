@@ -3,13 +3,21 @@ use super::Error;
 use super::bytes::{decoded, encoded, put, take};
 use super::cuts::Cuts;
 use super::journal::{PartDone, read_done};
-use super::rounds::{Became, Common, KEY, Rounds};
+use super::piece::Piece;
+use super::region::Region;
+use super::rounds::{Became, Common, Rounds};
 use super::shelf::Key;
 use super::split::split;
 use super::threads::{Shared, add, on_threads, sorted};
+use crate::mesh::vector::Vec3;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+/// Bytes behind a share that is sent, which say what it is.
+const KEY: usize = 24;
 
 /// The owner of a part that is done.
-const NOBODY: u32 = u32::MAX;
+pub const NOBODY: u32 = u32::MAX;
 
 impl Rounds<'_> {
     /// The rank of each part: the heaviest first, each to the rank with the least work so far.
@@ -40,17 +48,19 @@ impl Rounds<'_> {
         (owners, list)
     }
 
-    /// Gives each part its share of each active piece. Returns the parts of this rank, each with the pieces that it has a share of.
+    /// Gives each part its share of each active piece. Returns the parts of this rank, each with the pieces that it has a share of; and where the
+    /// shares lie that this rank gave, if the cuts tell in which `boxes` the parts are.
     pub fn deal(
         &self,
         round: u32,
         cuts: &Cuts,
         log_factor: f64,
-        owners: &[u32],
-    ) -> Result<Vec<(u32, Vec<u32>)>, Error> {
+        (owners, boxes): (&[u32], Option<&[[Vec3; 2]]>),
+    ) -> Result<(Vec<(u32, Vec<u32>)>, BTreeMap<u32, Region>), Error> {
         let Common { shelf, ranks, .. } = self.common;
         let (own, parts) = (ranks.rank() as u32, owners.len());
-        let (kept, sent) = (Shared::default(), Shared::default());
+        let shares = Shares::new(self.common, owners);
+        let regions: Mutex<BTreeMap<u32, Region>> = Mutex::default();
         let mine: Vec<Became> =
             self.active.pieces.iter().copied().filter(|piece| piece.rank == own && piece.tets > 0).collect();
         let threads = self.at_once(mine.iter().map(|piece| piece.vertices as f64).fold(0.0, f64::max) * 0.4);
@@ -58,34 +68,72 @@ impl Rounds<'_> {
             let of = mine[at].part;
             let mut piece = shelf.take(Key::Active { round: self.active.round, part: of })?;
             piece.scale(log_factor);
-            let shares = if parts == 1 { vec![piece] } else { split(&piece, &cuts.owners(&piece), parts, |_, _| true) };
-            for (share, part) in shares.into_iter().zip(0..).filter(|(share, _)| share.len() > 0) {
-                match owners[part as usize] {
-                    NOBODY => {}
-                    rank if rank == own => {
-                        shelf.put(Key::Share { round, part, of }, share)?;
-                        add(&kept, (part, of));
-                    }
-                    rank => add(&sent, ((of, part), rank, encoded(&share))),
+            let dealt = if parts == 1 { vec![piece] } else { split(&piece, &cuts.owners(&piece), parts, |_, _| true) };
+            for (share, part) in dealt.into_iter().zip(0..).filter(|(share, _)| share.len() > 0) {
+                if let Some(boxes) = boxes {
+                    let mut regions = regions.lock().unwrap_or_else(PoisonError::into_inner);
+                    regions.entry(part).or_insert_with(|| Region::new(boxes[part as usize])).add(&share);
                 }
+                shares.give(Key::Share { round, part, of }, share)?;
             }
             Ok(())
         });
         self.agreed(dealt)?;
-        let messages = sorted(sent, |(key, ..)| *key).into_iter().map(|((of, part), rank, mut bytes)| {
-            put(&mut bytes, &[part, of]);
+        let kept = self.agreed(shares.exchange())?;
+        let parts = kept.iter().filter_map(|key| match key {
+            Key::Share { part, of, .. } => Some((*part, *of)),
+            _ => None,
+        });
+        let parts: Vec<(u32, u32)> = parts.collect();
+        let by_part = parts.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|key| key.1).collect()));
+        Ok((by_part.collect(), regions.into_inner().unwrap_or_else(PoisonError::into_inner)))
+    }
+}
+
+/// Shares on the way to the parts that they are for.
+pub struct Shares<'a> {
+    common: Common<'a>,
+    /// The rank of each part.
+    owners: &'a [u32],
+    kept: Shared<Key>,
+    sent: Shared<(Key, u32, Vec<u8>)>,
+}
+
+impl<'a> Shares<'a> {
+    /// None yet.
+    pub fn new(common: Common<'a>, owners: &'a [u32]) -> Self {
+        Self { common, owners, kept: Shared::default(), sent: Shared::default() }
+    }
+
+    /// Gives a share to its part, which is not done yet.
+    pub fn give(&self, key: Key, share: Piece) -> Result<(), Error> {
+        let Common { shelf, ranks, .. } = self.common;
+        match self.owners[key.part() as usize] {
+            NOBODY => {}
+            rank if rank as usize == ranks.rank() => {
+                shelf.put(key, share)?;
+                add(&self.kept, key);
+            }
+            rank => add(&self.sent, (key, rank, encoded(&share))),
+        }
+        Ok(())
+    }
+
+    /// Sends what is for others, and puts away what they send. Returns all that has come to this rank, in order. Collective.
+    pub fn exchange(self) -> Result<Vec<Key>, Error> {
+        let Self { common: Common { shelf, ranks, .. }, kept, sent, .. } = self;
+        let message = |(key, rank, mut bytes): (Key, u32, Vec<u8>)| {
+            put(&mut bytes, &key.numbers());
             (rank as usize, bytes)
-        });
-        let received = ranks.exchange(messages.collect()).into_iter().try_for_each(|(_, bytes)| {
+        };
+        let messages = sorted(sent, |(key, ..)| *key).into_iter().map(message).collect();
+        for (_, bytes) in ranks.exchange(messages) {
             let (share, key) = bytes.split_at_checked(bytes.len().wrapping_sub(KEY)).ok_or(Error::Message)?;
-            let [part, of]: [u32; 2] = take(&mut &*key).and_then(|key| key.try_into().ok()).ok_or(Error::Message)?;
-            shelf.put(Key::Share { round, part, of }, decoded(share).ok_or(Error::Message)?)?;
-            add(&kept, (part, of));
-            Ok(())
-        });
-        self.agreed(received)?;
-        let kept = sorted(kept, |key| *key);
-        let by_part = kept.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|key| key.1).collect()));
-        Ok(by_part.collect())
+            let numbers: [u32; 4] = take(&mut &*key).and_then(|key| key.try_into().ok()).ok_or(Error::Message)?;
+            let key = Key::of_numbers(numbers).ok_or(Error::Message)?;
+            shelf.put(key, decoded(share).ok_or(Error::Message)?)?;
+            add(&kept, key);
+        }
+        Ok(sorted(kept, |key| *key))
     }
 }

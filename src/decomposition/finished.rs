@@ -3,8 +3,11 @@ use super::Error;
 use super::bytes::{decoded, encoded, put, take};
 use super::outline::{Numbering, Outline};
 use super::piece::Piece;
-use super::rounds::{Common, KEY, Rounds};
+use super::rounds::{Common, Rounds};
 use super::threads::{Shared, add, on_threads, sorted};
+
+/// Bytes behind a piece that is sent, which say which one it is.
+const KEY: usize = 16;
 
 impl Rounds<'_> {
     /// The numbers of all vertices in the whole mesh.

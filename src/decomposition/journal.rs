@@ -2,6 +2,7 @@
 use super::Error;
 use super::bytes::{put, take};
 use super::cuts::Sample;
+use super::ground::Block;
 use super::part::Done;
 use super::rounds::{Became, Told};
 use super::shelf::{self, JOURNAL, Key, Shelf};
@@ -33,15 +34,30 @@ fn parts(folder: &Path, round: u32) -> PathBuf {
     folder.join(format!("r{round:02}.parts"))
 }
 
+/// The long lists of what is known after a round.
+pub struct Lists {
+    /// What is not finished.
+    pub pieces: Vec<Became>,
+    /// Samples of it.
+    pub samples: Vec<Sample>,
+    /// The blocks of the metric.
+    pub blocks: Vec<Block>,
+}
+
 impl Journal {
     /// Writes it, after all pieces that it speaks of.
     ///
     /// # Errors
     /// When the disk refuses.
-    pub fn write(&self, folder: &Path, pieces: &[Became], samples: &[Sample]) -> Result<(), Error> {
+    pub fn write(
+        &self,
+        folder: &Path,
+        (pieces, samples, blocks): (&[Became], &[Sample], &[Block]),
+    ) -> Result<(), Error> {
         let mut bytes = Vec::new();
         put(&mut bytes, pieces);
         put(&mut bytes, samples);
+        put(&mut bytes, blocks);
         shelf::write(&parts(folder, self.round), &bytes)?;
         let text = serde_json::to_vec(self).map_err(|_| Error::Message)?;
         shelf::write(&folder.join(JOURNAL), &text)?;
@@ -52,7 +68,7 @@ impl Journal {
     }
 
     /// The journal of a run in its scratch folder; none where there is none, or another run's.
-    pub fn read(shelf: &Shelf, run: u64) -> Option<(Self, Vec<Became>, Vec<Sample>)> {
+    pub fn read(shelf: &Shelf, run: u64) -> Option<(Self, Lists)> {
         let Shelf::Disk(folder) = shelf else { return None };
         let journal: Self = serde_json::from_slice(&fs::read(folder.join(JOURNAL)).ok()?).ok()?;
         if journal.run != run {
@@ -60,7 +76,8 @@ impl Journal {
         }
         let bytes = fs::read(parts(folder, journal.round)).ok()?;
         let mut from = &bytes[..];
-        Some((journal, take(&mut from)?, take(&mut from)?))
+        let lists = Lists { pieces: take(&mut from)?, samples: take(&mut from)?, blocks: take(&mut from)? };
+        Some((journal, lists))
     }
 }
 

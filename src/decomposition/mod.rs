@@ -1,14 +1,18 @@
 //! Domain decomposition: a mesh is cut into parts, each part is adapted by the kernel as it is while its faces to other parts stay, and the
 //! cuts move, until no tetrahedron has felt a cut. Where the cuts lie depends on the mesh alone, so the result does too.
 //!
+//! The mesh is read a slice at a time ([`input`]), and its metric lies in blocks where it is larger than a part ([`ground`]).
 //! [`rounds`] says what is done when. A [`piece`] is some of the mesh with all that is known there; vertices of several pieces are known by ids
 //! that last. [`cuts`] finds planes that cross few tetrahedra, [`split`] and [`join`] bring the tetrahedra to their parts, [`part`] adapts
 //! one, [`zones`] finds what the cuts have left to be done, and [`outline`] numbers the vertices as one mesh. Pieces lie on a [`shelf`], in
 //! memory or on a disk, and go from rank to rank as [`bytes`].
+mod begin;
 mod bytes;
 mod cuts;
 mod deal;
 mod finished;
+mod ground;
+mod input;
 mod join;
 mod journal;
 mod manifold;
@@ -16,6 +20,7 @@ mod maps;
 mod outline;
 mod part;
 mod piece;
+mod region;
 mod rounds;
 mod run;
 mod shelf;
@@ -26,8 +31,9 @@ mod tests;
 mod threads;
 mod zones;
 
+pub use input::{Files, InMemory, Input, MetricOf, Shell, Skin, logs_on};
 pub use rounds::{Common, Told};
-pub use run::{Adapted, Measured, Slice, adapt};
+pub use run::{Adapted, Given, Measured, Slice, adapt};
 pub use shelf::{JOURNAL, Shelf};
 pub use sizes::{Sizes, wanted_vertices};
 
@@ -40,6 +46,18 @@ pub enum Error {
     /// A piece could not be kept.
     #[error(transparent)]
     Shelf(#[from] shelf::Error),
+    /// A file cannot be read.
+    #[error(transparent)]
+    File(#[from] crate::mesh::io::Error),
+    /// A file of a metric cannot be read, or holds sizes that cannot be computed with.
+    #[error(transparent)]
+    Metric(#[from] crate::metric::Error),
+    /// Triangles are missing.
+    #[error(
+        "triangles are missing on its boundary or between its regions, which are added where the mesh is read as a whole: leave --memory away, \
+         or adapt a result of geo-adapt"
+    )]
+    Incomplete,
     /// Another rank's error, or one of the caller's.
     #[error("{0}")]
     Told(String),

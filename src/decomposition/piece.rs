@@ -1,9 +1,7 @@
 //! Some of a mesh, with all that is known there.
 use crate::geometry::classify::Classification;
-use crate::geometry::discrete::outward_triangles;
-use crate::mesh::{Elements, TetMesh};
+use crate::mesh::TetMesh;
 use crate::metric::Sym3;
-use crate::tasks::Team;
 
 /// What is known of a vertex of a piece.
 pub type Marks = u8;
@@ -36,34 +34,6 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// A whole mesh on its model.
-    pub fn whole(team: Team<'_>, mesh: &TetMesh, place: &Classification, logs: Vec<Sym3>) -> Self {
-        let required = mesh.required_edges.iter().map(|&e| e as usize);
-        let piece = TetMesh {
-            vertices: mesh.vertices.clone(),
-            vertex_refs: mesh.vertex_refs.clone(),
-            edges: Elements {
-                nodes: required.clone().map(|e| mesh.edges.nodes[e]).collect(),
-                refs: required.map(|e| mesh.edges.refs[e]).collect(),
-            },
-            triangles: Elements { nodes: outward_triangles(team, mesh), refs: mesh.triangles.refs.clone() },
-            tets: mesh.tets.clone(),
-            required_vertices: mesh.required_vertices.clone(),
-            required_edges: (0..mesh.required_edges.len() as u32).collect(),
-            required_triangles: mesh.required_triangles.clone(),
-            ..TetMesh::default()
-        };
-        Self {
-            ids: (0..mesh.vertices.len() as u64).collect(),
-            marks: vec![0; mesh.vertices.len()],
-            halves: vec![false; mesh.triangles.len()],
-            mesh: piece,
-            place: place.clone(),
-            logs,
-            cuts: Vec::new(),
-        }
-    }
-
     /// Tetrahedra.
     pub fn len(&self) -> usize {
         self.mesh.tets.len()

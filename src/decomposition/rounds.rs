@@ -4,8 +4,10 @@
 //! where they lie meanwhile does not matter: every list is in the order of the parts.
 use super::Error;
 use super::cuts::{Cuts, Sample, samples};
+use super::ground::{Around, Block, Ground};
+use super::input::{Input, Skin};
 use super::join::join;
-use super::journal::{self, Journal, PartDone, write_done};
+use super::journal::{self, Journal, Lists, PartDone, write_done};
 use super::part::{Done, Round, Tools, adapt_piece};
 use super::piece::Piece;
 use super::shelf::{Key, Shelf};
@@ -14,7 +16,6 @@ use super::threads::{Shared, add, on_threads, sorted};
 use super::zones::divide;
 use crate::adapt::{Observer, Options, References, Scheduler};
 use crate::geometry::Model;
-use crate::metric::Source;
 use crate::metric::field::complexity_factor;
 use crate::ranks::{Ranks, agree};
 use crate::tasks::Pool;
@@ -35,11 +36,11 @@ const FEWER: usize = 3;
 /// Most rounds around former cuts.
 const MOST_ZONES: usize = 8;
 
-/// Bytes behind a piece that is sent, which say which one it is.
-pub const KEY: usize = 16;
-
 /// Memory for a vertex that is being adapted, bytes.
 const BYTES_A_VERTEX: f64 = 1_200.0;
+
+/// What a part takes of a metric in blocks is so much of its own memory.
+const GROUND: f64 = 0.6;
 
 /// What the parts of a run have in common.
 #[derive(Clone, Copy)]
@@ -136,47 +137,56 @@ impl Observer for Quiet<'_> {
 }
 
 impl<'a> Rounds<'a> {
-    /// Before the first: `whole` makes the piece that is the mesh, on rank 0. Or after those that are in the journal of a run of this name.
+    /// Before the first, of an input and its skin. Or after those that are in the journal of a run of this name. Also the blocks of the metric,
+    /// where it is larger than a part.
     ///
     /// # Errors
-    /// Where it cannot be put away.
-    pub fn new(common: Common<'a>, run: u64, refs: References, whole: impl FnOnce() -> Piece) -> Result<Self, Error> {
+    /// Where the input cannot be read, or put away.
+    pub fn new(
+        common: Common<'a>,
+        run: u64,
+        refs: References,
+        (input, skin): (&dyn Input, &Skin<'_>),
+    ) -> Result<(Self, Vec<Block>), Error> {
         let active = Active::default();
         let (done, told, finished) = (Done::default(), Vec::new(), Vec::new());
         let mut rounds =
             Self { common, done, told, finished, active, next_id: 1 << 40, steps: 0, run, refs, finished_vertices: 0 };
-        if rounds.goes_on() {
-            return Ok(rounds);
+        if let Some(blocks) = rounds.goes_on() {
+            return Ok((rounds, blocks));
         }
-        let list = Shared::default();
-        let mut put = Ok(());
         if common.ranks.rank() == 0 {
             // What is there is of another run.
             common.shelf.clear();
-            put = rounds.put_away(0, 0, [whole(), Piece::default()], Done::default(), &list);
         }
-        rounds.agreed(put)?;
-        rounds.become_active(0, list)?;
-        rounds.note()?;
-        Ok(rounds)
+        rounds.agreed(Ok(()))?;
+        rounds.read(input, skin)?;
+        let blocks = rounds.cut_ground(input.size()[0])?;
+        rounds.note(&blocks)?;
+        Ok((rounds, blocks))
     }
 
-    /// Goes on from the journal, if all ranks find the same one.
-    fn goes_on(&mut self) -> bool {
+    /// A part put together from its shares.
+    pub fn joined(&self, round: u32, part: u32, of: &[u32]) -> Result<Piece, Error> {
+        let share = |&of: &u32| self.common.shelf.take(Key::Share { round, part, of });
+        Ok(join(of.iter().map(share).collect::<Result<Vec<_>, _>>()?))
+    }
+
+    /// Goes on from the journal, if all ranks find the same one: the blocks of the metric.
+    fn goes_on(&mut self) -> Option<Vec<Block>> {
         let found = Journal::read(self.common.shelf, self.run);
         let round = found.as_ref().map_or(u32::MAX, |(journal, ..)| journal.round);
         let rounds = self.common.ranks.gather(&round.to_ne_bytes());
-        let Some((journal, mut pieces, samples)) = found.filter(|_| rounds.iter().all(|other| *other == rounds[0]))
-        else {
-            return false;
-        };
+        let (journal, lists) = found.filter(|_| rounds.iter().all(|other| *other == rounds[0]))?;
+        let Lists { mut pieces, samples, mut blocks } = lists;
         let ranks = self.common.ranks.count() as u32;
         let Journal { round, steps, next_id, finished, done, told, .. } = journal;
         pieces.iter_mut().zip(0..).for_each(|(piece, at)| piece.rank = at % ranks);
         self.finished = finished.into_iter().zip(0..).map(|(key, at)| (key, at % ranks)).collect();
         self.active = Active { round, pieces, samples };
+        blocks.iter_mut().zip(0..).for_each(|(block, at)| block.rank = at % ranks);
         (self.steps, self.next_id, self.done, self.told) = (steps, next_id, done, told);
-        true
+        Some(blocks)
     }
 
     /// How many rounds were done before this run went on.
@@ -185,7 +195,7 @@ impl<'a> Rounds<'a> {
     }
 
     /// Writes the journal.
-    fn note(&self) -> Result<(), Error> {
+    fn note(&self, blocks: &[Block]) -> Result<(), Error> {
         let written = match (self.common.shelf, self.common.ranks.rank()) {
             (Shelf::Disk(folder), 0) => {
                 let journal = Journal {
@@ -197,20 +207,21 @@ impl<'a> Rounds<'a> {
                     done: self.done.clone(),
                     told: self.told.clone(),
                 };
-                journal.write(folder, &self.active.pieces, &self.active.samples)
+                let lists = (&self.active.pieces[..], &self.active.samples[..], blocks);
+                journal.write(folder, lists)
             }
             _ => Ok(()),
         };
         self.agreed(written)
     }
 
-    /// Makes a mesh of this complexity of `given` vertices. On return `source` is as it was.
+    /// Makes a mesh of this complexity of `given` vertices. On return `ground` is as it was.
     ///
     /// # Errors
     /// Those of the kernel, and where pieces cannot be kept.
     pub fn run(
         &mut self,
-        source: &mut Source,
+        ground: &mut Ground,
         team: crate::tasks::Team<'_>,
         complexity: f64,
         given: usize,
@@ -221,11 +232,11 @@ impl<'a> Rounds<'a> {
         let (mut present, mut scaled) = (given, 0.0);
         for (at, &share) in stages.iter().enumerate() {
             let log_factor = complexity_factor(1.0, share).ln();
-            source.scale(team, log_factor - scaled);
+            ground.scale(team, log_factor - scaled);
             if at >= self.steps {
                 let parts = sizes.parts(present.max(share * wanted));
                 let is_last = at + 1 == stages.len();
-                self.round(source, parts, log_factor - scaled, false, is_last)?;
+                self.round(ground, parts, log_factor - scaled, false, is_last)?;
             }
             (present, scaled) = (share * wanted, log_factor);
         }
@@ -236,7 +247,7 @@ impl<'a> Rounds<'a> {
             }
             // Fewer and fewer, so that none is left to cut.
             let most = self.told.last().map_or(1, |told| told.parts.div_ceil(FEWER));
-            self.round(source, sizes.parts(vertices as f64).min(most), 0.0, true, true)?;
+            self.round(ground, sizes.parts(vertices as f64).min(most), 0.0, true, true)?;
         }
         self.finish_all();
         Ok(())
@@ -274,7 +285,7 @@ impl<'a> Rounds<'a> {
     /// no cut has touched is finished.
     fn round(
         &mut self,
-        source: &Source,
+        ground: &Ground,
         parts: usize,
         log_factor: f64,
         is_zone: bool,
@@ -282,13 +293,16 @@ impl<'a> Rounds<'a> {
     ) -> Result<(), Error> {
         let began = Instant::now();
         let round = self.active.round + 1;
+        let whole = Sample::box_of(&self.active.samples);
         let cuts = Cuts::of(std::mem::take(&mut self.active.samples), parts);
         let tets = self.active.pieces.iter().map(|piece| piece.tets as usize).sum();
         self.common.observer.begin(crate::adapt::Kind::Split, self.told.len(), parts);
         let owners = self.owners(parts, &cuts.work);
         let (owners, list) = self.without_done(round, owners);
-        let mine = self.deal(round, &cuts, log_factor, &owners)?;
-        let adapted = self.adapt_parts(round, source, (parts, &mine), (is_zone, divides), &list);
+        let boxes = matches!(ground, Ground::Blocks(..)).then(|| cuts.boxes(whole));
+        let (mine, regions) = self.deal(round, &cuts, log_factor, (&owners, boxes.as_deref()))?;
+        let around = self.deal_ground(round, ground, regions, &owners)?;
+        let adapted = self.adapt_parts(round, (ground, &around), (parts, &mine), (is_zone, divides), &list);
         self.agreed(adapted)?;
         self.next_id += (parts as u64) << 33;
         self.steps += 1;
@@ -301,7 +315,7 @@ impl<'a> Rounds<'a> {
         if self.is_stopped() {
             return Ok(());
         }
-        self.note()?;
+        self.note(ground.blocks())?;
         // With the journal, what was before is not needed any more.
         let own = self.common.ranks.rank() as u32;
         for piece in before.1.iter().filter(|piece| piece.rank == own) {
@@ -321,7 +335,7 @@ impl<'a> Rounds<'a> {
     fn adapt_parts(
         &self,
         round: u32,
-        source: &Source,
+        (ground, around): (&Ground, &Around),
         (parts, mine): (usize, &[(u32, Vec<u32>)]),
         (is_zone, divides): (bool, bool),
         list: &Shared<PartDone>,
@@ -334,36 +348,37 @@ impl<'a> Rounds<'a> {
         let adapt = |at: usize, pool: &Pool| {
             let (part, of) = &mine[at];
             let part = *part;
-            let share = |&of: &u32| shelf.take(Key::Share { round, part, of });
-            let piece = join(of.iter().map(share).collect::<Result<Vec<_>, _>>()?);
+            let piece = self.joined(round, part, of)?;
+            let under = ground.under(shelf, round, part, around)?;
+            let source = under.source();
             let tools = Tools { model, source, refs: &self.refs, options: &options, pool, observer: &quiet };
             let first_id = self.next_id + (u64::from(part) << 33);
             let (piece, done) = adapt_piece(tools, piece, Round { is_zone, is_alone: parts == 1 }, first_id)?;
             of.iter().for_each(|&of| shelf.forget(Key::Share { round, part, of }));
             let pieces = if divides { divide(&piece) } else { [piece, Piece::default()] };
-            self.put_away(round, part, pieces, done, list)?;
+            self.put_away((round, part, self.active.pieces.len()), pieces, done, list)?;
             observer.advance(1);
             Ok(())
         };
         if is_shared {
             return (0..mine.len()).try_for_each(|at| adapt(at, pool));
         }
-        on_threads(self.at_once(sizes.part), mine.len(), |at| {
+        let beside = if ground.blocks().is_empty() { 1.0 } else { 1.0 + GROUND };
+        on_threads(self.at_once(beside * sizes.part), mine.len(), |at| {
             adapt(at, &Pool::new(1).map_err(|error| Error::Told(error.to_string()))?)
         })
     }
 
-    /// Puts away what a part became: what is not finished, and what is.
-    fn put_away(
+    /// Puts away what a part became, one of so many: what is not finished, and what is.
+    pub fn put_away(
         &self,
-        round: u32,
-        part: u32,
+        (round, part, parts): (u32, u32, usize),
         [active, finished]: [Piece; 2],
         done: Done,
         list: &Shared<PartDone>,
     ) -> Result<(), Error> {
         let Common { shelf, ranks, .. } = self.common;
-        let most = (SAMPLES / self.active.pieces.len().max(1)).max(LEAST_SAMPLES);
+        let most = (SAMPLES / parts.max(1)).max(LEAST_SAMPLES);
         let became = Became {
             part,
             rank: ranks.rank() as u32,
@@ -386,7 +401,7 @@ impl<'a> Rounds<'a> {
     }
 
     /// All ranks tell what their parts became.
-    fn become_active(&mut self, round: u32, list: Shared<PartDone>) -> Result<(), Error> {
+    pub fn become_active(&mut self, round: u32, list: Shared<PartDone>) -> Result<(), Error> {
         let mut bytes = Vec::new();
         for told in sorted(list, |(became, ..)| became.part) {
             bytes.append(&mut journal::encoded(&told)?);

@@ -1,5 +1,7 @@
 //! A run by parts, and what it gives back.
 use super::Error;
+use super::ground::{self, Ground};
+use super::input::{Input, Skin};
 use super::outline::{Numbering, Numbers};
 use super::part::Done;
 use super::piece::{Piece, SHARED};
@@ -8,7 +10,6 @@ use super::sizes::wanted_vertices;
 use crate::adapt::forecast::Forecast;
 use crate::adapt::{Extracted, References, held_vertices};
 use crate::geometry::Entity;
-use crate::geometry::classify::Classification;
 use crate::mesh::adjacency::{sorted2, sorted3};
 use crate::mesh::crossing::{self, Crossings};
 use crate::mesh::vector::{Vec3, sub};
@@ -16,7 +17,7 @@ use crate::mesh::{Elements, TetMesh};
 use crate::metric::quality::edge_length;
 use crate::metric::statistics::{Figures, Part, Statistics};
 use crate::metric::{Source, Sym3};
-use crate::tasks::{GRAIN, Team, stage};
+use crate::tasks::{Team, stage};
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
 
@@ -31,37 +32,44 @@ pub struct Adapted<'a> {
     skin: Extracted,
 }
 
-/// Adapts a mesh by parts. `source` is as it was afterwards. `run` names what is adapted and how. If the scratch folder has a journal of that name,
-/// the run goes on from there, and `told` is called with the number of rounds that were done.
+/// What is adapted.
+pub struct Given<'a> {
+    /// The mesh, with its metric.
+    pub input: &'a dyn Input,
+    /// Its boundary on the model.
+    pub skin: &'a Skin<'a>,
+    /// Where new vertices take their metric from. What lies on the vertices is taken from the input, where that is larger than a part.
+    pub source: Option<Source>,
+    /// The complexity of the metric.
+    pub complexity: f64,
+    /// A name for what is adapted and how.
+    pub name: u64,
+}
+
+/// Adapts a mesh by parts. If the scratch folder has a journal of a run of its name, the run goes on from there, and `told` is called with the number
+/// of rounds that were done.
 ///
 /// # Errors
 /// Those of [`crate::adapt::adapt`], and where pieces cannot be kept.
-pub fn adapt<'a>(
-    common: Common<'a>,
-    (mesh, place): (&TetMesh, &Classification),
-    source: &mut Source,
-    run: u64,
-    told: impl FnOnce(usize),
-) -> Result<Adapted<'a>, Error> {
+pub fn adapt<'a>(common: Common<'a>, given: Given<'_>, told: impl FnOnce(usize)) -> Result<Adapted<'a>, Error> {
     let team = Team::new(common.pool, common.options.plan);
-    source.check(team, mesh).map_err(crate::adapt::Error::from)?;
-    let complexity = source.complexity(team, mesh);
-    let refs = References::of(team, mesh, place, common.model);
-    let mut rounds = Rounds::new(common, run, refs.outwards(), || {
-        let logs = match source.logs_on(mesh) {
-            Some(logs) => logs.to_vec(),
-            None => team.map(GRAIN, mesh.vertices.len(), |v| source.log_at(mesh.vertices[v], &mut 0)),
-        };
-        Piece::whole(team, mesh, place, logs)
-    })?;
+    let Given { input, skin, source, complexity, name } = given;
+    let refs = skin.references(team, common.model);
+    let (mut rounds, blocks) = Rounds::new(common, name, refs.outwards(), (input, skin))?;
     if rounds.rounds_before() > 0 {
         told(rounds.rounds_before());
     }
-    common.observer.forecast(&forecast(&common, complexity, mesh.vertices.len()));
-    rounds.run(source, team, complexity, mesh.vertices.len())?;
+    let vertices = input.size()[0];
+    common.observer.forecast(&forecast(&common, complexity, vertices));
+    let mut ground = match source {
+        Some(source) if blocks.is_empty() || matches!(source, Source::Analytic { .. }) => Ground::Whole(source),
+        None if blocks.is_empty() => Ground::Whole(ground::whole(team, input)?),
+        _ => Ground::Blocks(blocks, 0.0),
+    };
+    rounds.run(&mut ground, team, complexity, vertices)?;
     stage("rounds");
     let mut numbering = rounds.numbering()?;
-    let skin = skin(team, &mut numbering, &refs, &common);
+    let skin = outer(team, &mut numbering, &refs, &common);
     stage("vertices numbered");
     Ok(Adapted { rounds, numbering, skin })
 }
@@ -76,7 +84,7 @@ fn forecast(common: &Common<'_>, complexity: f64, given: usize) -> Forecast {
 }
 
 /// The boundary as the kernel gives it, with the references of the input.
-fn skin(team: Team<'_>, numbering: &mut Numbering, refs: &References, common: &Common<'_>) -> Extracted {
+fn outer(team: Team<'_>, numbering: &mut Numbering, refs: &References, common: &Common<'_>) -> Extracted {
     let Piece { mut mesh, place: classification, logs, cuts: inner, .. } = std::mem::take(&mut numbering.skin);
     let crossings = crossings(team, &mesh, inner);
     for (t, &face) in classification.faces.iter().enumerate() {

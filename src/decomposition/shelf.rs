@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 pub const JOURNAL: &str = "journal.json";
 
 /// How the names of all other files there end.
-const ENDINGS: [&str; 6] = [".active", ".finished", ".share", ".done", ".parts", ".part"];
+const ENDINGS: [&str; 8] = [".active", ".finished", ".share", ".ground", ".around", ".done", ".parts", ".part"];
 
 /// What a piece is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -22,6 +22,10 @@ pub enum Key {
     Finished { round: u32, part: u32 },
     /// What a part takes in a round of that which another one became in the round before.
     Share { round: u32, part: u32, of: u32 },
+    /// A block of the metric of the input.
+    Ground { block: u32 },
+    /// What a part takes in a round of a block of the metric.
+    Around { round: u32, part: u32, of: u32 },
 }
 
 impl Key {
@@ -30,7 +34,41 @@ impl Key {
             Self::Active { round, part } => format!("r{round:02}-p{part:05}.active"),
             Self::Finished { round, part } => format!("r{round:02}-p{part:05}.finished"),
             Self::Share { round, part, of } => format!("r{round:02}-p{part:05}-of-{of:05}.share"),
+            Self::Ground { block } => format!("b{block:05}.ground"),
+            Self::Around { round, part, of } => format!("r{round:02}-p{part:05}-of-{of:05}.around"),
         }
+    }
+
+    /// The part, or the block.
+    pub fn part(self) -> u32 {
+        match self {
+            Self::Active { part, .. } | Self::Finished { part, .. } => part,
+            Self::Share { part, .. } | Self::Around { part, .. } => part,
+            Self::Ground { block } => block,
+        }
+    }
+
+    /// As numbers: what it is, and those that say which.
+    pub fn numbers(self) -> [u32; 4] {
+        match self {
+            Self::Active { round, part } => [0, round, part, 0],
+            Self::Finished { round, part } => [1, round, part, 0],
+            Self::Share { round, part, of } => [2, round, part, of],
+            Self::Ground { block } => [3, 0, block, 0],
+            Self::Around { round, part, of } => [4, round, part, of],
+        }
+    }
+
+    /// Of these numbers.
+    pub fn of_numbers([what, round, part, of]: [u32; 4]) -> Option<Self> {
+        Some(match what {
+            0 => Self::Active { round, part },
+            1 => Self::Finished { round, part },
+            2 => Self::Share { round, part, of },
+            3 => Self::Ground { block: part },
+            4 => Self::Around { round, part, of },
+            _ => return None,
+        })
     }
 }
 

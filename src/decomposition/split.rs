@@ -45,6 +45,11 @@ pub fn split_vertices(piece: &Piece, wanted: &[bool]) -> Piece {
     part
 }
 
+/// The tetrahedra of these numbers with their vertices, and nothing else of the piece.
+pub fn split_tets(piece: &Piece, tets: &[u32]) -> Piece {
+    Cut::new(piece, &piece.marks, &[]).take(tets, &[], &[], &mut vec![NONE; piece.ids.len()])
+}
+
 /// For each owner its triangles, and whether another has each too.
 fn triangles_of(piece: &Piece, owner: &[u32], owners: usize) -> Vec<Vec<(u32, bool)>> {
     let mesh = &piece.mesh;
@@ -205,6 +210,16 @@ impl<'p> Cut<'p> {
             piece.place.ridges.extend(doubtful.into_iter().filter(|(nodes, _)| is_edge(*nodes)));
         }
     }
+}
+
+/// Drops the ridges between shared vertices that no tetrahedron of the piece has.
+pub fn keep_ridges_of_tets(piece: &mut Piece) {
+    let edges = edges_on_lines(piece);
+    let marks = &piece.marks;
+    piece.place.ridges.retain(|(nodes, _)| {
+        let is_doubtful = nodes.iter().all(|&v| marks[v as usize] & SHARED != 0);
+        !is_doubtful || edges.binary_search(&sorted2(*nodes)).is_ok()
+    });
 }
 
 /// The edges of tetrahedra whose ends both lie on edges or vertices of the model and are shared, ascending; some come twice.

@@ -30,7 +30,7 @@ mod tags;
 mod text;
 pub mod ugrid;
 mod unsupported;
-mod vtu;
+pub mod vtu;
 mod xdmf;
 
 pub use cells::{cells_to_vertices, vertices_to_cells};

@@ -299,11 +299,16 @@ fn weighted_complexity(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], den
 /// Complexity ∫ √det M of the log-Euclidean interpolant, exactly: √det M = e^ℓ with ℓ = tr(ln M)/2 linear in a tetrahedron. On a
 /// mesh that does not resolve its metric this, and not [`complexity_of_logs`], is what an adapted mesh will have.
 pub fn complexity_between(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 {
+    complexity_terms(team, &mesh.vertices, &mesh.tets.nodes, logs).into_iter().sum()
+}
+
+/// The terms of [`complexity_between`], one for [`GRAIN`] tetrahedra each: of a mesh in slices of multiples of these they are the same.
+pub fn complexity_terms(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], logs: &[Sym3]) -> Vec<f64> {
     let of_tet = |tet: &[u32; 4]| {
-        let [a, b, c, d] = tet.map(|v| mesh.vertices[v as usize]);
+        let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
         volume6(a, b, c, d) / 6.0 * mean_exponential(tet.map(|v| 0.5 * logs[v as usize].trace()))
     };
-    over_tets(team, &mesh.tets.nodes, of_tet)
+    team.chunks(GRAIN, tets.len(), |range| tets[range].iter().map(of_tet).sum())
 }
 
 /// Sum over the tetrahedra.

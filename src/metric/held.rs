@@ -79,7 +79,7 @@ impl Sym3 {
 
     /// ln M; where doubles do not hold M, with sizes cut to [`GREATEST_RATIO`] times the least.
     #[inline]
-    pub(super) fn held_log(self) -> Self {
+    pub fn held_log(self) -> Self {
         if self.is_narrow_log() { self } else { self.cut_log() }
     }
 

@@ -79,9 +79,24 @@ impl Source {
         tets: usize,
         corners: impl Fn(usize) -> Option<[Vec3; 4]> + Sync,
     ) -> f64 {
-        let depth = (SAMPLES / tets.max(1)).max(1).ilog2();
+        self.sampled_terms(team, (tets, tets), corners).into_iter().sum()
+    }
+
+    /// The terms of the complexity of an analytic field on a mesh of `all` tetrahedra, at some of them, told by their corners: in slices of
+    /// multiples of [`GRAIN`] tetrahedra they are the same.
+    pub fn complexity_terms(&self, all: usize, tets: usize, corners: impl Fn(usize) -> [Vec3; 4] + Sync) -> Vec<f64> {
+        self.sampled_terms(Team::alone(), (all, tets), |t| Some(corners(t)))
+    }
+
+    fn sampled_terms(
+        &self,
+        team: Team<'_>,
+        (all, tets): (usize, usize),
+        corners: impl Fn(usize) -> Option<[Vec3; 4]> + Sync,
+    ) -> Vec<f64> {
+        let depth = (SAMPLES / all.max(1)).max(1).ilog2();
         // As many samples a task whatever their depth.
-        team.sum(GRAIN >> depth.min(GRAIN.ilog2()), tets, |range| {
+        team.chunks(GRAIN >> depth.min(GRAIN.ilog2()), tets, |range| {
             range.filter_map(&corners).map(|corners| self.integrate(corners, depth)).sum()
         })
     }

@@ -1,11 +1,12 @@
 //! `adapt --memory`: part by part, in memory or by a scratch folder, on any number of threads, killed or not: the same files.
 #![cfg(target_os = "linux")]
-use crate::common::adapting::{Adapted, Workplace, areas, cube, stderr, text, volumes};
+use crate::common::adapting::{Adapted, Workplace, areas, complaint, cube, stderr, text, volumes};
 use geo_adapt::mesh::TetMesh;
+use geo_adapt::mesh::io::read_mesh;
 use geo_adapt::mesh::vector::{Vec3, norm, sub};
 use geo_adapt::metric::Sym3;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -36,6 +37,48 @@ fn the_same_bytes_in_memory_and_by_a_scratch_folder_and_on_any_threads() {
     }
     let in_one = written(&work, &mesh, &[&FIELD, &MUCH]);
     assert!(in_one != known, "it was cut");
+}
+
+/// A mesh of some thousand vertices with its metric in a file.
+fn adapted_once(work: &Workplace) -> (PathBuf, String) {
+    let mesh = work.mesh(&cube(3, |p| if p[0] < 0.6 { 1 } else { 2 }));
+    written(work, &mesh, &[&FIELD, &["--threads", "1"]]);
+    for name in ["meshb", "solb"] {
+        std::fs::rename(work.path(&format!("out.{name}")), work.path(&format!("in.{name}"))).unwrap();
+    }
+    (work.path("in.meshb"), text(&work.path("in.solb")))
+}
+
+/// Also where the metric of the input is cut into blocks, and with one that is the same everywhere.
+#[test]
+fn a_mesh_that_is_larger_than_memory_is_read_by_slices_and_adapted_to_the_same_bytes() {
+    let work = Workplace::new();
+    let (mesh, metric) = adapted_once(&work);
+    for field in
+        [&["--metric", &metric, "--complexity", "6000"][..], &["--metric", &metric], &["--size", "0.06"], &FIELD]
+    {
+        let known = written(&work, &mesh, &[field, &PARTS, &MUCH, &["--threads", "2"]]);
+        for threads in ["1", "3"] {
+            let now = written(&work, &mesh, &[field, &PARTS, &LITTLE, &["--threads", threads]]);
+            assert!(now == known, "{field:?}, {threads} threads");
+        }
+    }
+    let run =
+        work.command(&mesh, &[&FIELD[..], &PARTS, &LITTLE].concat()).env("GEO_ADAPT_STAGES", "1").output().unwrap();
+    assert!(stderr(&run).contains("stage files opened"), "it was read by slices: {}", stderr(&run));
+}
+
+#[test]
+fn a_mesh_by_slices_without_all_triangles_is_refused() {
+    let work = Workplace::new();
+    let (mesh, metric) = adapted_once(&work);
+    let mut open = read_mesh(&mesh).unwrap().content;
+    open.triangles.nodes.pop();
+    open.triangles.refs.pop();
+    let mesh = work.mesh(&open);
+    let run = work.command(&mesh, &[&["--metric", &metric][..], &PARTS, &LITTLE].concat()).output().unwrap();
+    assert!(complaint(&run).contains("triangles are missing on its boundary"), "{}", stderr(&run));
+    written(&work, &mesh, &[&["--metric", &metric], &PARTS, &MUCH]);
 }
 
 #[test]

@@ -90,6 +90,26 @@ mod with_mpi {
         assert_eq!((back.vertices, back.tets), (known.vertices, known.tets));
     }
 
+    /// Each process reads some of a mesh of several slices, and has some blocks of its metric.
+    #[test]
+    fn the_same_bytes_of_a_mesh_that_is_read_by_slices() {
+        let work = Workplace::new();
+        let mesh = work.mesh(&cube(3, |p| if p[0] < 0.6 { 1 } else { 2 }));
+        ended_well(&work.command(&mesh, &[&FIELD[..], &["--memory", "4GiB"]].concat()).output().unwrap());
+        let [input, metric] = written(&work);
+        fs::write(&mesh, input).unwrap();
+        fs::write(work.path("in.solb"), metric).unwrap();
+        let metric = text(&work.path("in.solb"));
+        let field = ["--metric", &metric, "--complexity", "6000", "--part-vertices", "600"];
+        ended_well(&work.command(&mesh, &[&field[..], &["--memory", "4GiB"]].concat()).output().unwrap());
+        let bytes = written(&work);
+        for (ranks, more) in [(2, &["--threads", "1"][..]), (4, &["--threads", "2", "--memory", "1MB"])] {
+            let Some(mut run) = launched(ranks, &work.command(&mesh, &[&field[..], more].concat())) else { return };
+            ended_well(&run.output().unwrap());
+            assert!(written(&work) == bytes, "{ranks} processes");
+        }
+    }
+
     #[test]
     fn an_error_is_told_once() {
         let work = Workplace::new();

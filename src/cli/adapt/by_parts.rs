@@ -1,5 +1,6 @@
 //! `adapt --memory`, and `mpirun geo-adapt adapt`: part by part ([`crate::decomposition`]).
-use super::input::{Error, Input};
+use super::begun::Begun;
+use super::input::{Error, OnModel};
 use super::progress::{self, Progress};
 use super::report::Report;
 use super::scratch::Scratch;
@@ -10,13 +11,12 @@ use crate::cli::table::Table;
 use crate::cli::terminal;
 use crate::cli::waiting::Waiting;
 use crate::cli::{BAD_INPUT, INVALID, Outcome, interrupt, note};
-use crate::decomposition::{self, Adapted, Common, Shelf, Sizes, Told, wanted_vertices};
+use crate::decomposition::{Adapted, Common, Shelf, Sizes, Told, wanted_vertices};
 use crate::memory;
 use crate::metric::statistics::Statistics;
 use crate::ranks::{Ranks, Traffic, agree};
 use crate::tasks::{Plan, Pool, Team, stage};
 use serde::Serialize;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
 }
 
 /// The error of any rank.
-fn agreed<T>(ranks: &dyn Ranks, own: Result<T, Error>) -> Result<T, Error> {
+pub(super) fn agreed<T>(ranks: &dyn Ranks, own: Result<T, Error>) -> Result<T, Error> {
     match ranks.count() {
         1 => own,
         _ => Ok(agree(ranks, own.map_err(|error| error.to_string()))?),
@@ -83,26 +83,24 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     stage("start");
     let line = Waiting::for_what("reading the mesh, putting it on its model, and making the metric");
     let mut notices = Vec::new();
-    let given = arguments.input.read(team, &mut notices);
-    let input = given.and_then(|given| arguments.input.prepare(team, given, None, &mut notices));
-    let mut input = agreed(ranks, input)?;
+    let (begun, source) = Begun::with(arguments, team, ranks, &mut notices)?;
     notices.drain(..).for_each(note);
     drop(line);
     let prepared = start.elapsed();
     let named = |error: String| -> Error { format!("{}: {error}", arguments.input.mesh.display()).into() };
-    let freeze = parts::frozen(&arguments.freeze, &input.mesh, &input.names).map_err(named)?;
+    let on = begun.on();
+    let freeze = parts::frozen(&arguments.freeze, &on.mesh, &on.names).map_err(named)?;
     if !freeze.surfaces.is_empty() {
-        arguments.check_references(&input).map_err(named)?;
+        arguments.check_references(on).map_err(named)?;
     }
     let options = arguments.options(plan, freeze);
-    let vertices = wanted_vertices(input.source.complexity(team, &input.mesh)).max(input.mesh.vertices.len() as f64);
+    let vertices = wanted_vertices(begun.complexity()).max(on.size[0] as f64);
     let place = agreed(ranks, arguments.parts.place(&arguments.output, vertices, threads, ranks))?;
     let progress = Progress::new(progress::finish_on_interrupt());
     progress.tell_forecasts(None, &arguments.output);
     let shelf = place.scratch.as_ref().map_or_else(Shelf::in_memory, Scratch::shelf);
-    let run = arguments.run_name(&input, &options);
     let common = Common {
-        model: &input.model,
+        model: &on.model,
         options: &options,
         sizes: arguments.parts.sizes(),
         pool: &pool,
@@ -112,15 +110,15 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
         observer: &progress,
     };
     let goes_on = |rounds| note(format_args!("a run that was ended before goes on after round {rounds}"));
-    let adapted = decomposition::adapt(common, (&input.mesh, &input.place), &mut input.source, run, goes_on);
+    let adapted = begun.adapt(common, source, &arguments.how(&options), goes_on);
     progress.finish();
     agreed(ranks, progress.has_room().map_err(Error::from))?;
     let adapted = adapted.map_err(|error| named(error.to_string()))?;
     let told = Parts::of(&adapted, ranks);
     let result = Ending { arguments, team, progress: &progress, threads, told };
     let code = match targets {
-        Some(targets) if place.is_whole => result.in_memory(&input, adapted, &targets, (start, prepared)),
-        Some(targets) => result.by_slices(&input, adapted, &targets, (start, prepared)),
+        Some(targets) if place.is_whole => result.in_memory(on, adapted, &targets, (start, prepared)),
+        Some(targets) => result.by_slices(on, adapted, &targets, (start, prepared)),
         None => adapted.for_each_slice(|_| Ok(())).map_err(Error::from).map(|()| ExitCode::SUCCESS),
     };
     let code = agreed(ranks, code)?;
@@ -178,24 +176,14 @@ impl Arguments {
         }
     }
 
-    /// A name for what is adapted and how.
-    fn run_name(&self, input: &Input, options: &Options) -> u64 {
-        let mut name = DefaultHasher::new();
-        let mesh = &input.mesh;
-        bytemuck::cast_slice::<_, u8>(&mesh.vertices).hash(&mut name);
-        mesh.tets.nodes.hash(&mut name);
-        mesh.tets.refs.hash(&mut name);
-        mesh.triangles.nodes.hash(&mut name);
-        input.place.entities.hash(&mut name);
-        input.place.faces.hash(&mut name);
-        let mut hint = 0;
-        for &p in &mesh.vertices {
-            input.source.log_at(p, &mut hint).0.map(f64::to_bits).hash(&mut name);
-        }
+    /// A name for how it is adapted.
+    fn how(&self, options: &Options) -> String {
         let Options { criterion, points, freeze, surface, .. } = options;
-        let how = format!("{criterion:?} {points:?} {freeze:?} {surface:?} {:?}", self.parts.sizes());
-        (how, env!("CARGO_PKG_VERSION")).hash(&mut name);
-        name.finish()
+        format!(
+            "{criterion:?} {points:?} {freeze:?} {surface:?} {:?} {}",
+            self.parts.sizes(),
+            env!("CARGO_PKG_VERSION")
+        )
     }
 }
 
@@ -255,12 +243,12 @@ struct Ending<'a> {
 
 impl Ending<'_> {
     /// The mesh is put together in memory, measured and written as any other.
-    fn in_memory(&self, input: &Input, adapted: Adapted<'_>, targets: &Targets, from: (Instant, Duration)) -> Outcome {
+    fn in_memory(&self, on: &OnModel, adapted: Adapted<'_>, targets: &Targets, from: (Instant, Duration)) -> Outcome {
         let adapted = adapted.into_memory()?;
         let finished = from.0.elapsed();
         let line = Waiting::for_what("measuring and writing");
         let asked = self.arguments.asked(self.threads);
-        let mut report = Report::new(self.team, &asked, input, adapted, (self.progress.forecast(), None));
+        let mut report = Report::new(self.team, &asked, on, adapted, (self.progress.forecast(), None));
         report.parts = Some(self.told.clone());
         let times = [from.1, finished, from.0.elapsed()];
         let (report, lost) = targets.write(self.team, report, times)?;
@@ -272,7 +260,7 @@ impl Ending<'_> {
     /// The boundary is measured and written in memory, all else by slices.
     fn by_slices(
         &self,
-        input: &Input,
+        on: &OnModel,
         mut adapted: Adapted<'_>,
         targets: &Targets,
         from: (Instant, Duration),
@@ -282,7 +270,7 @@ impl Ending<'_> {
         let asked = self.arguments.asked(self.threads);
         let skin = adapted.done().clone().with(adapted.take_skin());
         let mut report =
-            Report::new(self.team, &asked, input, skin, (self.progress.forecast(), Some(Statistics::default())));
+            Report::new(self.team, &asked, on, skin, (self.progress.forecast(), Some(Statistics::default())));
         report.parts = Some(self.told.clone());
         let report = targets.by_slices(self.team, report, &adapted, (from.0, [from.1, finished]))?;
         drop(line);

@@ -15,10 +15,11 @@ use crate::formats::{Dataset, NamedField};
 use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::complete_matched;
 use crate::geometry::{Model, Names, on_mesh};
+use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
+use crate::mesh::crossing::{self, Crossings};
 use crate::mesh::io::Read;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
-use crate::mesh::{TetMesh, crossing};
 use crate::metric::{Source, Sym3};
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
@@ -82,20 +83,28 @@ pub struct Given {
 
 /// All that the adapter needs.
 pub struct Input {
-    /// The mesh, its boundary complete.
+    /// The mesh on its model.
+    pub on: OnModel,
+    /// The metric, of the complexity that is asked for.
+    pub source: Source,
+    /// What the metric was made of, where another may be wanted: with --vertices.
+    pub raw: Option<Raw>,
+}
+
+/// A mesh on its model, and what is told of it.
+pub struct OnModel {
+    /// The mesh, its boundary complete; of a mesh that is read by slices the boundary.
     pub mesh: Arc<TetMesh>,
+    /// Vertices and tetrahedra of the whole mesh.
+    pub size: [usize; 2],
     /// Where it lies on the model.
     pub place: Classification,
     /// The model.
     pub model: Model,
-    /// The metric, of the complexity that is asked for.
-    pub source: Source,
-    /// How it was made.
-    pub how: How,
     /// What the mesh's references are called, by the file beside it or else by the model.
     pub names: Names,
-    /// What the metric was made of, where another may be wanted: with --vertices.
-    pub raw: Option<Raw>,
+    /// How the metric was made.
+    pub how: How,
     /// How the number of vertices was met that --vertices asks for.
     pub meeting: Option<Meeting>,
 }
@@ -178,27 +187,31 @@ impl InputArguments {
         let kept = self.amount.vertices.is_some().then(|| raw.clone());
         let on = On { place: &place, model: &model, names: &names };
         let (source, how) = self.source(team, (&mesh, faces), raw, on, (self.amount.complexity(), notices))?;
-        Ok(Input { mesh, place, model, source, how, names, raw: kept, meeting: None })
+        let size = [mesh.vertices.len(), mesh.tets.len()];
+        Ok(Input { on: OnModel { mesh, size, place, model, names, how, meeting: None }, source, raw: kept })
     }
 
     /// Tells where the boundary of the mesh passes through itself.
     fn tell_crossings(&self, team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, notices: &mut Vec<String>) {
-        let crossings = crossing::of_boundary(team, mesh, faces, 1);
-        if let [first] = &crossings.first[..] {
-            notices.push(format!(
-                "the boundary of {} crosses itself: {} pairs of triangles, the first at {}; `geo-adapt inspect` names them, and adapting \
-                 need not mend them",
-                self.mesh.display(),
-                crossings.count,
-                place(first.at)
-            ));
-        }
+        notices.extend(self.crossings_told(&crossing::of_boundary(team, mesh, faces, 1)));
         stage("boundary held against itself");
+    }
+
+    /// What is told of crossings, if there are some.
+    pub(super) fn crossings_told(&self, crossings: &Crossings) -> Option<String> {
+        let first = crossings.first.first()?;
+        Some(format!(
+            "the boundary of {} crosses itself: {} pairs of triangles, the first at {}; `geo-adapt inspect` names them, and adapting need \
+             not mend them",
+            self.mesh.display(),
+            crossings.count,
+            place(first.at)
+        ))
     }
 
     /// The metric made again, of another complexity.
     pub fn source_of(&self, team: Team<'_>, input: &Input, complexity: f64) -> Result<(Source, How), Error> {
-        let Input { mesh, place, model, names, raw, .. } = input;
+        let Input { on: OnModel { mesh, place, model, names, .. }, raw, .. } = input;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let on = On { place, model, names };
         // What there is to say was said of the first.
@@ -230,7 +243,7 @@ impl InputArguments {
     }
 
     /// The model, and where the mesh lies on it.
-    fn place(
+    pub(super) fn place(
         &self,
         team: Team<'_>,
         mesh: &TetMesh,

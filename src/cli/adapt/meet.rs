@@ -50,15 +50,15 @@ pub fn adapted<E>(
         // Bounds of the sizes may leave no such metric.
         let Ok((source, how)) = arguments.source_of(team, input, next) else { return Ok(None) };
         note(format_args!("{count} vertices, not {wanted}: again, with a complexity of {next:.0}"));
-        before = Some((replace(&mut input.source, source), replace(&mut input.how, how)));
+        before = Some((replace(&mut input.source, source), replace(&mut input.on.how, how)));
         adapt(input).map(Some)
     };
     let count = |adapted: &Adapted| adapted.extracted.mesh.vertices.len();
     let Met { best, complexity, meshes, is_met, is_last } =
         meet(wanted, (first, complexity), count, make, is_interrupted)?;
     if let Some(before) = before.filter(|_| !is_last) {
-        (input.source, input.how) = before;
+        (input.source, input.on.how) = before;
     }
-    input.meeting = Some(Meeting { wanted, complexity, meshes, is_met });
+    input.on.meeting = Some(Meeting { wanted, complexity, meshes, is_met });
     Ok(best)
 }

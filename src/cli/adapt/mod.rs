@@ -1,4 +1,5 @@
 //! `geo-adapt adapt`.
+mod begun;
 mod by_parts;
 pub mod field;
 pub mod files;
@@ -9,6 +10,7 @@ pub mod parts;
 pub mod progress;
 pub mod report;
 mod scratch;
+mod slices;
 mod source;
 
 use super::figures::FigureArguments;
@@ -22,7 +24,7 @@ use crate::metric::Field;
 use crate::ranks;
 use crate::tasks::{Backend, Plan, Pool, Strategy, Team, simulation_told, stage, threads_to_simulate};
 use files::Targets;
-use input::{Given, Input, InputArguments};
+use input::{Given, Input, InputArguments, OnModel};
 use progress::Progress;
 use report::{Asked, Report};
 use std::path::PathBuf;
@@ -133,7 +135,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let adapted = arguments.adapted(team, (&pool, plan), &mut input, (&progress, is_last))?;
         let finished = start.elapsed();
         let line = Waiting::for_what("measuring and writing");
-        let report = Report::new(team, &asked, &input, adapted, (progress.forecast(), None));
+        let report = Report::new(team, &asked, &input.on, adapted, (progress.forecast(), None));
         stage("report");
         let (mut report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
         drop(line);
@@ -158,7 +160,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
         let (mesh, names) = (std::mem::take(&mut report.mesh), report.names.clone());
         given = Given { mesh, logs, names, fields: Vec::new(), is_result: true };
-        cad = arguments.input.has_model().then_some(input.model);
+        cad = arguments.input.has_model().then_some(input.on.model);
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -179,14 +181,14 @@ impl Arguments {
         (progress, is_last): (&Progress, bool),
     ) -> Result<Adapted, Box<dyn std::error::Error>> {
         let named = |error| format!("{}: {error}", self.input.mesh.display());
-        let freeze = parts::frozen(&self.freeze, &input.mesh, &input.names).map_err(named)?;
+        let freeze = parts::frozen(&self.freeze, &input.on.mesh, &input.on.names).map_err(named)?;
         let options = self.options(plan, freeze);
         progress.tell_forecasts(options.max_vertices, &self.output);
         if !is_last && !options.freeze.surfaces.is_empty() {
-            self.check_references(input).map_err(named)?;
+            self.check_references(&input.on).map_err(named)?;
         }
         let adapt = |input: &Input| {
-            let Input { mesh, place, model, source, .. } = input;
+            let Input { on: OnModel { mesh, place, model, .. }, source, .. } = input;
             let adapted = adapt::adapt(mesh, place, model, source, &options, pool, progress);
             progress.finish();
             progress.has_room()?;
@@ -197,8 +199,8 @@ impl Arguments {
 
     /// Refuses references that the next cycle or round would not find again: on a CAD model they become the numbers of its faces where they do
     /// not stand for one face each.
-    fn check_references(&self, input: &Input) -> Result<(), String> {
-        if self.input.cad.is_none() || keeps_references(&input.mesh, &input.place) {
+    fn check_references(&self, on: &OnModel) -> Result<(), String> {
+        if self.input.cad.is_none() || keeps_references(&on.mesh, &on.place) {
             return Ok(());
         }
         Err("its references do not stand for one face each, so the first cycle or part replaces them by others, and --freeze would name other \

@@ -1,6 +1,6 @@
 //! What was done: the table on the terminal and the JSON.
 use super::by_parts::Parts;
-use super::input::Input;
+use super::input::OnModel;
 use super::meet::Meeting;
 use super::source::Chords;
 use crate::adapt::forecast::Forecast;
@@ -145,7 +145,7 @@ impl Report {
     pub fn new(
         team: Team<'_>,
         asked: &Asked,
-        input: &Input,
+        input: &OnModel,
         adapted: Adapted,
         known: (Option<Forecast>, Option<Statistics>),
     ) -> Self {
@@ -172,8 +172,8 @@ impl Report {
             chords: input.how.chords,
             vertices_wanted: input.meeting,
             parts: None,
-            input_vertices: input.mesh.vertices.len(),
-            input_tets: input.mesh.tets.len(),
+            input_vertices: input.size[0],
+            input_tets: input.size[1],
             statistics: statistics.unwrap_or_else(|| Statistics::in_metric(team, &mesh, &extracted.metrics)),
             fidelity,
             off_model: extracted.off_model,

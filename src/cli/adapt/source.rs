@@ -145,7 +145,7 @@ impl InputArguments {
     }
 
     /// Whether sizes that are given are to be changed by more than a scale.
-    fn is_bounded(&self) -> bool {
+    pub(super) fn is_bounded(&self) -> bool {
         self.is_graded() || self.limit_chords.is_some()
     }
 
@@ -243,18 +243,24 @@ impl InputArguments {
             return Ok(());
         }
         let own = source.complexity(team, mesh);
+        let complexity = self.checked_complexity(own, wanted)?;
+        if wanted.is_some() && !is_made && !self.is_bounded() {
+            source.scale(team, field::complexity_factor(own, complexity).ln());
+        }
+        Ok(())
+    }
+
+    /// The complexity that is wanted, or else the metric's own. Refuses what no mesh can have.
+    pub(super) fn checked_complexity(&self, own: f64, wanted: Option<f64>) -> Result<f64, String> {
         if !(own > 0.0 && own.is_finite()) {
             return Err(format!(
                 "{}: the metric's complexity on this mesh is {own}; are mesh and metric in the same units?",
                 self.mesh.display()
             ));
         }
-        if let Some(target) = wanted.filter(|_| !is_made && !self.is_bounded()) {
-            source.scale(team, field::complexity_factor(own, target).ln());
-        }
         let complexity = wanted.unwrap_or(own);
         if complexity <= GREATEST_COMPLEXITY {
-            return Ok(());
+            return Ok(complexity);
         }
         let remedy = match (wanted, self.field.size) {
             (Some(_), _) => format!("give a smaller {}", self.amount.name()),
@@ -270,6 +276,6 @@ impl InputArguments {
 }
 
 /// ln M of the size h in all directions.
-fn of_size(h: f64) -> Sym3 {
+pub(super) fn of_size(h: f64) -> Sym3 {
     Sym3::ZERO.plus_identity(-2.0 * h.ln())
 }

@@ -8,7 +8,7 @@ use crate::adapt::forecast::most_in_memory;
 use crate::adapt::{self, Adapted, Options};
 use crate::cli::Outcome;
 use crate::cli::adapt::files::Targets;
-use crate::cli::adapt::input::Input;
+use crate::cli::adapt::input::OnModel;
 use crate::cli::adapt::progress::{Progress, finish_on_interrupt};
 use crate::cli::adapt::report::{Asked, Report};
 use crate::cli::waiting::Waiting;
@@ -50,7 +50,6 @@ pub struct Refined {
     by: Rung,
     notices: Vec<String>,
     start: Arc<TetMesh>,
-    source: Source,
     adapted: Adapted,
     fidelity: Fidelity,
     interrupted: bool,
@@ -140,7 +139,7 @@ pub fn run(
         notices.extend(sizes.notice);
         let times = [prepared, start.elapsed()];
         let fidelity = on_model(team, &adapted, model);
-        return Ok(Refined { by, notices, start: first, source, adapted, fidelity, interrupted, times });
+        return Ok(Refined { by, notices, start: first, adapted, fidelity, interrupted, times });
     }
     unreachable!("the last cycle returns")
 }
@@ -187,17 +186,9 @@ impl Refined {
         });
         self.notices.iter().chain(&flaw).for_each(crate::cli::note);
         let place = self.adapted.extracted.classification.clone();
-        let input = Input {
-            mesh: self.start,
-            place,
-            model,
-            source: self.source,
-            how: Default::default(),
-            names,
-            raw: None,
-            meeting: None,
-        };
-        let report = Report::new(team, asked, &input, self.adapted, (None, None));
+        let size = [self.start.vertices.len(), self.start.tets.len()];
+        let on = OnModel { mesh: self.start, size, place, model, names, how: Default::default(), meeting: None };
+        let report = Report::new(team, asked, &on, self.adapted, (None, None));
         let [prepared, finished] = self.times;
         let (report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
         lost.iter().for_each(crate::cli::note);

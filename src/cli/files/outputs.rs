@@ -2,6 +2,7 @@
 use super::Target;
 use super::reading::{Fields, METRIC};
 use crate::decomposition;
+use crate::formats::vtu::pieces;
 use crate::formats::{self, Dataset, Format, Options};
 use crate::geometry::{Names, names};
 use crate::mesh::io::slices::{MeshWriter, MetricWriter};
@@ -75,6 +76,16 @@ impl Outputs {
         options: Options,
     ) -> Result<Vec<String>, io::Error> {
         formats::add(&mut self.batch, team, &to.path, data, options)
+    }
+
+    /// A piece of a .pvtu.
+    pub fn piece(&mut self, team: Team<'_>, to: &Target, number: usize, data: &mut Dataset) -> Result<(), io::Error> {
+        pieces::add_piece(&mut self.batch, team, &to.path, number, data)
+    }
+
+    /// The .pvtu of so many pieces, of which this is one.
+    pub fn pieces(&mut self, to: &Target, count: usize, one: &Dataset) -> Result<(), io::Error> {
+        pieces::add_pieces(&mut self.batch, &to.path, count, one)
     }
 
     /// A CAD model that was written elsewhere, with its names. A model without names makes a names file from before empty, which would be taken

@@ -1,11 +1,14 @@
 //! What the tests of several files need: a piece with all that a piece may have, and what it is whatever the order of its lists.
 mod bytes;
 mod cuts;
+mod input;
 mod manifold;
 mod outline;
 mod part;
+mod region;
 mod split_and_join;
 
+use super::input::{InMemory, Skin};
 use super::piece::Piece;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary};
 use crate::geometry::{Discrete, Model};
@@ -51,7 +54,8 @@ pub fn sample(n: u32, size: f64) -> (Model, Source, Piece) {
     let log = Sym3::diagonal(1.0, 1.0, 1.0).times(1.0 / (size * size)).ln();
     let logs = vec![log; mesh.vertices.len()];
     let background = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs.clone());
-    let piece = Piece::whole(Team::alone(), &mesh, &place, logs);
+    let input = InMemory { mesh: &mesh, logs: &logs };
+    let piece = Skin::of(Team::alone(), &mesh, &place).piece(&input, 0..mesh.tets.len()).unwrap();
     (Model::Discrete(model), Source::Background(background), piece)
 }
 

@@ -1,6 +1,7 @@
 //! VTK's unstructured grids (.vtu): of ParaView, PyVista, meshio, SU2. References are the cell array `reference` (or what other
 //! programs call so); names are arrays of FieldData, as meshio keeps gmsh's: name → reference and dimension, one pair after the other.
 mod decode;
+pub mod pieces;
 mod write;
 mod xml;
 

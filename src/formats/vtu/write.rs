@@ -71,14 +71,32 @@ pub(in super::super) fn write(
     if as_text {
         batch.add_main(path, |to| text(to, data, &sections))?;
     } else {
-        let stored: Vec<Vec<u8>> = sections
-            .iter()
-            .flat_map(|section| &section.arrays)
-            .map(|array| deflated(team, array.values.bytes()))
-            .collect();
+        let stored = stored(team, &sections);
         batch.add_main(path, |to| appended(to, data, &sections, &stored))?;
     }
     Ok(Vec::new())
+}
+
+/// Writes a piece of a grid, which belongs to a file of its own.
+pub(super) fn write_piece(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset) -> Result<(), Error> {
+    let sections = sections(data);
+    let stored = stored(team, &sections);
+    batch.add(path, |to| appended(to, data, &sections, &stored))
+}
+
+/// What a grid of several pieces says of the arrays that each of them has, those of this one.
+pub(super) fn shared_arrays(data: &Dataset) -> String {
+    let mut text = String::new();
+    for Section { tag, arrays } in sections(data).iter().filter(|section| section.tag != "Cells") {
+        let arrays = arrays.iter().map(|array| format!("{}/>\n", declared("PDataArray", array)));
+        text.push_str(&format!("<P{tag}>\n{}</P{tag}>\n", arrays.collect::<String>()));
+    }
+    text
+}
+
+fn stored(team: Team<'_>, sections: &[Section]) -> Vec<Vec<u8>> {
+    let arrays = sections.iter().flat_map(|section| &section.arrays);
+    arrays.map(|array| deflated(team, array.values.bytes())).collect()
 }
 
 fn sections(data: &Dataset) -> Vec<Section<'_>> {
@@ -169,8 +187,13 @@ fn deflated(team: Team<'_>, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// What precedes the piece.
+/// The order of bytes.
+pub(super) fn order() -> &'static str {
+    if cfg!(target_endian = "big") { "BigEndian" } else { "LittleEndian" }
+}
+
 fn head(data: &Dataset, compressor: &str) -> String {
-    let order = if cfg!(target_endian = "big") { "BigEndian" } else { "LittleEndian" };
+    let order = order();
     let (points, cells) =
         (data.mesh.vertices.len(), data.mesh.tets.len() + data.mesh.triangles.len() + data.mesh.edges.len());
     format!(
@@ -217,8 +240,13 @@ fn attribute(text: &str) -> String {
 
 /// An array's element up to `format=`.
 fn opening(array: &Array) -> String {
+    format!("{} format=", declared("DataArray", array))
+}
+
+/// What an array is.
+fn declared(tag: &str, array: &Array) -> String {
     let (kind, name, width) = (array.values.kind(), attribute(&array.name), array.width);
-    format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{width}\" format=")
+    format!("<{tag} type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{width}\"")
 }
 
 fn appended(to: &mut dyn Write, data: &Dataset, sections: &[Section], stored: &[Vec<u8>]) -> io::Result<()> {

@@ -8,9 +8,11 @@
 //! of a mesh that is read whole.
 mod covered;
 mod file;
+mod gather;
 mod reader;
 mod writer;
 
+pub use gather::{gathered, runs};
 pub use reader::{MeshReader, SolutionReader};
 pub use writer::{MeshWriter, MetricWriter};
 

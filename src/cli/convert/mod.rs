@@ -1,4 +1,6 @@
 //! `geo-adapt convert`.
+mod pieces;
+
 use super::Outcome;
 use super::files::{Files, Outputs};
 use super::table::Table;
@@ -16,10 +18,12 @@ const LISTED: usize = 16;
 
 /// Arguments of `geo-adapt convert`.
 #[derive(clap::Args)]
-#[command(after_help = "Formats: .mesh, .meshb (with .solb and .names.json beside), .su2, .vtu, .vtk (legacy), \
+#[command(
+    after_help = "Formats: .mesh, .meshb (with .solb and .names.json beside), .su2, .vtu, .pvtu (written alone, of a .meshb, a slice at a time), .vtk (legacy), \
                         .xdmf (FEniCSx) and .xmf (meshio, ParaView) with .h5 beside, .cgns (on HDF5), .msh (gmsh 4.1; reads 2.2 too), .msh2 (gmsh 2.2), .inp (Abaqus, CalculiX), .bdf and .nas (Nastran), \
                         .ugrid, .b8.ugrid, .lb8.ugrid (with .mapbc beside), folders (cases of OpenFOAM; \
-                        a new one is named with a / at its end); the surface alone: .stl, .obj, .ply; fields alone: .sol, .solb, .csv, .dat (SU2)")]
+                        a new one is named with a / at its end); the surface alone: .stl, .obj, .ply; fields alone: .sol, .solb, .csv, .dat (SU2)"
+)]
 pub struct Arguments {
     /// The mesh
     input: PathBuf,
@@ -48,6 +52,9 @@ pub struct Arguments {
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { input, output, fields, names, text, plain, scale, translate } = arguments;
+    if pieces::are_wanted(output) {
+        return pieces::run(arguments);
+    }
     let format = Format::of(output)?;
     let mut files = Files::new().reads_any([input]).reads(fields).reads(names);
     let target = files.writes_any(output, "the output")?;

@@ -1,0 +1,103 @@
+//! What a run part by part begins with: a mesh in memory, or one that is read by slices.
+use super::Arguments;
+use super::by_parts::agreed;
+use super::input::{Error, Input, OnModel};
+use super::slices::Sliced;
+use crate::decomposition::{self, Adapted, Common, Given, InMemory, Skin};
+use crate::metric::{Source, Sym3};
+use crate::ranks::Ranks;
+use crate::tasks::Team;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// What a run begins with.
+pub enum Begun {
+    /// A mesh in memory.
+    Whole {
+        /// The mesh on its model.
+        on: OnModel,
+        /// The complexity of its metric.
+        complexity: f64,
+        /// ln M at its vertices.
+        logs: Vec<Sym3>,
+    },
+    /// A mesh that is read by slices.
+    Slices(Sliced),
+}
+
+impl Begun {
+    /// Reads the mesh, puts it on its model and makes the metric, whose source comes too, where there is one for all of the mesh. Collective.
+    pub fn with(
+        arguments: &Arguments,
+        team: Team<'_>,
+        ranks: &dyn Ranks,
+        notices: &mut Vec<String>,
+    ) -> Result<(Self, Option<Source>), Error> {
+        let (input, memory) = (&arguments.input, arguments.parts.memory);
+        if agreed(ranks, input.is_sliced(ranks.count(), memory))? {
+            let told = notices.len();
+            match input.read_slices(team, ranks, notices)? {
+                Ok(sliced) => {
+                    let source = sliced.files.analytic();
+                    return Ok((Self::Slices(sliced), source));
+                }
+                // The triangles are added where the mesh is read as a whole.
+                Err(decomposition::Error::Incomplete) if memory.is_none() => notices.truncate(told),
+                Err(error) => return Err(format!("{}: {error}", input.mesh.display()).into()),
+            }
+        }
+        let given = input.read(team, notices);
+        let prepared = given.and_then(|given| input.prepare(team, given, None, notices));
+        let Input { on, source, .. } = agreed(ranks, prepared)?;
+        let complexity = input.amount.complexity().unwrap_or_else(|| source.complexity(team, &on.mesh));
+        let logs = decomposition::logs_on(team, &on.mesh, &source);
+        Ok((Self::Whole { on, complexity, logs }, Some(source)))
+    }
+
+    /// The mesh, or its boundary, on the model.
+    pub fn on(&self) -> &OnModel {
+        match self {
+            Self::Whole { on, .. } => on,
+            Self::Slices(sliced) => &sliced.on,
+        }
+    }
+
+    /// The complexity of the metric.
+    pub fn complexity(&self) -> f64 {
+        match self {
+            Self::Whole { complexity, .. } => *complexity,
+            Self::Slices(sliced) => sliced.complexity,
+        }
+    }
+
+    /// Adapts it, with the source that came with it. `how` is a name for the way.
+    pub fn adapt<'a>(
+        &self,
+        common: Common<'a>,
+        source: Option<Source>,
+        how: &str,
+        goes_on: impl FnOnce(usize),
+    ) -> Result<Adapted<'a>, decomposition::Error> {
+        let team = Team::new(common.pool, common.options.plan);
+        let (on, complexity) = (self.on(), self.complexity());
+        let mut name = DefaultHasher::new();
+        how.hash(&mut name);
+        complexity.to_bits().hash(&mut name);
+        on.place.entities.hash(&mut name);
+        on.place.faces.hash(&mut name);
+        match self {
+            Self::Whole { logs, .. } => {
+                let input = InMemory { mesh: &on.mesh, logs };
+                input.hash(&mut name);
+                let skin = Skin::of(team, &on.mesh, &on.place);
+                let given = Given { input: &input, skin: &skin, source, complexity, name: name.finish() };
+                decomposition::adapt(common, given, goes_on)
+            }
+            Self::Slices(Sliced { shell, files, .. }) => {
+                shell.name.hash(&mut name);
+                let skin = shell.skin(team, &on.place);
+                let given = Given { input: files, skin: &skin, source, complexity, name: name.finish() };
+                decomposition::adapt(common, given, goes_on)
+            }
+        }
+    }
+}
