@@ -11,6 +11,7 @@ mod file;
 mod reader;
 mod writer;
 
+pub(in crate::mesh) use file::Positioned;
 pub use reader::{MeshReader, SolutionReader};
 pub use writer::{MeshWriter, MetricWriter};
 

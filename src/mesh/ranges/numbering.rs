@@ -1,7 +1,7 @@
 //! Numbers from 0 for the vertices of a few tetrahedra.
 
 /// Different numbers, ascending, and where each of them is.
-pub(super) struct Numbering {
+pub struct Numbering {
     /// The numbers, ascending.
     pub numbers: Vec<u32>,
     table: Table,
