@@ -46,7 +46,7 @@ impl RunArguments {
 /// How much memory there is for a mesh that is larger.
 #[derive(clap::Args)]
 pub struct MemoryArguments {
-    /// Works from the files, by slices, within this memory: 500MB, 4GiB. From .meshb and .solb to .solb
+    /// Works from the files, by slices, within this memory: 500MB, 4GiB. The result is the same. For .meshb and .solb, to .solb
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     pub memory: Option<u64>,
     /// Where what does not fit into the memory lies [default: beside the output]. Nothing of it stays

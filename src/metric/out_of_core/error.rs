@@ -24,7 +24,7 @@ pub enum Error {
     },
     /// Some bytes a vertex are held, and do not fit.
     #[error(
-        "{} MB of memory are too few for this mesh of {vertices} vertices on {threads} threads: give --memory {}MB or more{}",
+        "{} MB of memory are too few for this mesh of {vertices} vertices: give --memory {}MB or more{}",
         .memory / 1_000_000, .needed.div_ceil(1_000_000), if *threads > 1 { ", or fewer --threads" } else { "" }
     )]
     Memory {

@@ -31,7 +31,12 @@ impl Case {
     fn multiscale(&self, output: &str, arguments: &[&str]) -> Output {
         let mut command = program();
         command.args(["metric", "multiscale", &self.mesh, &self.field, "--complexity", "3000", "-o"]);
-        command.arg(self.work.path(output)).args(arguments).output().unwrap()
+        command.arg(self.work.path(output)).args(arguments);
+        // Each thread takes some memory.
+        if !arguments.contains(&"--threads") {
+            command.args(["--threads", "2"]);
+        }
+        command.output().unwrap()
     }
 
     /// The bytes of the metric, and what is printed.
