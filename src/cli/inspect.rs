@@ -6,13 +6,12 @@ use super::files::reading::{self, Carrier};
 use super::files::{Files, JSON, Outputs};
 use super::surface::SurfaceArguments;
 use super::table::{Table, place};
-use crate::formats::{Dataset, Format};
+use crate::formats::Dataset;
 use crate::geometry::fidelity::{self, Fidelity};
-use crate::geometry::{Model, classify, names};
+use crate::geometry::{Model, classify};
 use crate::inspection::{self, Inspected, Metrics};
 use crate::mesh::TetMesh;
 use crate::mesh::io::Read;
-use crate::mesh::io::slices::MeshReader;
 use crate::mesh::numbers::from_one;
 use crate::mesh::validity::{self, Validity};
 use crate::mesh::vector::{Vec3, add, scale};
@@ -116,14 +115,7 @@ fn in_memory(team: Team<'_>, arguments: &Arguments) -> Result<Inspection, Box<dy
 /// Checks and measures from the file, within so many bytes.
 fn of_file(team: Team<'_>, arguments: &Arguments, memory: u64) -> Result<Inspection, Box<dyn std::error::Error>> {
     let path = &arguments.mesh;
-    if Format::of_file(path)? != Format::Libmeshb {
-        let remedy = "bring it into .meshb by `geo-adapt convert`, or leave --memory out";
-        return Err(format!("{}: with --memory only .meshb is read: {remedy}", path.display()).into());
-    }
-    let mesh = MeshReader::open(path)?;
-    names::read(path)?;
-    show(mesh.notices());
-    has_tets(path, mesh.counts().tets)?;
+    let mesh = reading::mesh_by_slices(path)?;
     let file = match &arguments.metric {
         Some(path) => Some(Field::open(path, mesh.counts().vertices)?),
         None => None,
@@ -147,12 +139,10 @@ fn of_file(team: Team<'_>, arguments: &Arguments, memory: u64) -> Result<Inspect
 fn read(team: Team<'_>, path: &Path) -> Result<Dataset, Box<dyn std::error::Error>> {
     let read = reading::mesh(team, path)?;
     show(&read.notices);
-    has_tets(path, read.content.mesh.tets.len())?;
+    if read.content.mesh.tets.is_empty() {
+        return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
+    }
     Ok(read.content)
-}
-
-fn has_tets(path: &Path, tets: usize) -> Result<(), String> {
-    if tets == 0 { Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display())) } else { Ok(()) }
 }
 
 fn show(notices: &[String]) {

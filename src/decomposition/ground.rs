@@ -12,7 +12,7 @@ use super::split::split_tets;
 use super::threads::on_threads;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::renumber::renumbered;
+use crate::mesh::ranges::renumbered;
 use crate::mesh::vector::Vec3;
 use crate::metric::{Background, Source, Sym3};
 use crate::tasks::Team;

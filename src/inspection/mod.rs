@@ -2,13 +2,10 @@
 //! [`crate::metric::Statistics`] say of a mesh in memory.
 //!
 //! The file is gone through twice. First the tetrahedra by themselves, slice by slice in their order ([`tets`]): signs, mean ratios, volume, and
-//! which vertices each block of them has ([`blocks`]). Then all that has to do with neighbours, range by range of the vertices ([`stars`]): the
-//! blocks with a vertex of the range are read again, so that all tetrahedra at those vertices are there. Coordinates and metrics are read for
-//! each slice and range anew ([`points`]). Where tetrahedra that are near each other have near numbers, and so have their vertices, each is read a
-//! few times in all; where they have not, every range reads all of the file. The boundary alone is held as a whole.
-mod blocks;
+//! which vertices each block of them has. Then all that has to do with neighbours, range by range of the vertices ([`stars`]), as
+//! [`crate::mesh::ranges`] reads them. Coordinates and metrics are read for each slice and range anew ([`points`]). The boundary alone is held as
+//! a whole.
 mod error;
-mod numbering;
 mod points;
 mod sizes;
 mod stars;
@@ -22,6 +19,7 @@ pub use sizes::Sizes;
 
 use crate::mesh::Elements;
 use crate::mesh::io::slices::MeshReader;
+use crate::mesh::ranges::check_lists;
 use crate::mesh::validity::{Tagged, Validity, conclude};
 use crate::mesh::vector::Vec3;
 use crate::metric::Statistics;
@@ -80,20 +78,6 @@ fn inspect_by(team: Team<'_>, mesh: &MeshReader, metrics: Metrics<'_>, sizes: &S
         _ => None,
     };
     Ok(Inspected { validity, statistics, worst })
-}
-
-/// Reads the lists that nothing is checked of but their numbers.
-fn check_lists(mesh: &MeshReader) -> Result<(), Error> {
-    let lists = [
-        MeshReader::corners,
-        MeshReader::ridges,
-        MeshReader::required_vertices,
-        MeshReader::required_edges,
-        MeshReader::required_triangles,
-    ];
-    lists.into_iter().try_for_each(|list| list(mesh).map(drop))?;
-    mesh.association()?;
-    Ok(())
 }
 
 /// The points of a tetrahedron.

@@ -1,19 +1,12 @@
 //! Coordinates and metrics of some vertices.
 use super::Error;
 use crate::mesh::io::slices::{MeshReader, SolutionReader};
+use crate::mesh::ranges::gathered;
 use crate::mesh::vector::{Vec3, distance, sub};
 use crate::metric::quality::edge_length;
 use crate::metric::statistics::Part;
 use crate::metric::{Analytic, Field, Figures, Lengths, Sym3};
 use crate::tasks::{GRAIN, Team};
-use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
-
-/// Vertices that are read though nobody asks for them, where those on both sides are asked for: to read them takes less than a call.
-const GAP: u32 = 32;
-
-/// Most vertices that are read at once.
-const MOST: u32 = 1 << 13;
 
 /// What a mesh is measured in.
 #[derive(Clone, Copy)]
@@ -35,7 +28,7 @@ pub(super) struct Source<'s> {
 impl Source<'_> {
     /// The coordinates, shape (n, 3), of vertices in ascending order, shape (n,).
     pub fn points(&self, team: Team<'_>, nodes: &[u32]) -> Result<Vec<Vec3>, Error> {
-        gathered(team, nodes, [0.0; 3], |range| Ok(self.mesh.vertices(Team::alone(), range)?.0))
+        gathered(team, nodes, [0.0; 3], |range| -> Result<_, Error> { Ok(self.mesh.vertices(Team::alone(), range)?.0) })
     }
 
     /// The metrics at them, if there is one.
@@ -44,7 +37,7 @@ impl Source<'_> {
             Metrics::None => None,
             Metrics::Analytic(field) => Some(team.map(GRAIN, points.len(), |v| field.at(points[v]))),
             Metrics::File(file) => {
-                let read = |range| Ok(Field::metrics_in(Team::alone(), file, range)?);
+                let read = |range| -> Result<_, Error> { Ok(Field::metrics_in(Team::alone(), file, range)?) };
                 Some(gathered(team, nodes, Sym3::ZERO, read)?)
             }
         })
@@ -73,43 +66,5 @@ pub(super) fn length([a, b]: [u32; 2], points: &[Vec3], metrics: Option<&[Sym3]>
     match metrics {
         Some(metrics) => edge_length(sub(points[b], points[a]), &metrics[a], &metrics[b]),
         None => distance(points[a], points[b]),
-    }
-}
-
-/// What `read` gives for each of these vertices, in ascending order. Of several errors the one of the first vertex counts.
-fn gathered<T: Copy + Send>(
-    team: Team<'_>,
-    nodes: &[u32],
-    none: T,
-    read: impl Fn(Range<usize>) -> Result<Vec<T>, Error> + Sync,
-) -> Result<Vec<T>, Error> {
-    let mut found = vec![none; nodes.len()];
-    let failed: Mutex<Option<(usize, Error)>> = Mutex::new(None);
-    team.fill(GRAIN, &mut found, |start, found| {
-        let nodes = &nodes[start..start + found.len()];
-        let mut begin = 0;
-        while begin < nodes.len() {
-            let first = nodes[begin];
-            let together = |pair: &[u32]| pair[1] - pair[0] <= GAP && pair[1] - first < MOST;
-            let end = begin + 1 + nodes[begin..].windows(2).take_while(|pair| together(pair)).count();
-            match read(first as usize..nodes[end - 1] as usize + 1) {
-                Ok(values) => {
-                    let slots = found[begin..end].iter_mut().zip(&nodes[begin..end]);
-                    slots.for_each(|(slot, &v)| *slot = values[(v - first) as usize]);
-                }
-                Err(error) => {
-                    let mut failed = failed.lock().unwrap_or_else(PoisonError::into_inner);
-                    if failed.as_ref().is_none_or(|(before, _)| start < *before) {
-                        *failed = Some((start, error));
-                    }
-                    return;
-                }
-            }
-            begin = end;
-        }
-    });
-    match failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        Some((_, error)) => Err(error),
-        None => Ok(found),
     }
 }

@@ -1,9 +1,7 @@
 //! How much is done at once.
 use super::Error;
 use crate::mesh::io::MeshCounts;
-
-/// What the program takes before it has read anything, with its threads: 12 MB of code and libraries, and room that the allocator keeps.
-const PROGRAM: usize = 40_000_000;
+use crate::mesh::ranges::{BLOCK, OF_BLOCK, PROGRAM};
 
 /// A triangle while the boundary is checked, at most: its nodes thrice, the tree of boxes for crossings, its share of the points.
 const OF_TRIANGLE: usize = 300;
@@ -16,9 +14,6 @@ const OF_SLICED: usize = 700;
 
 /// Most tetrahedra of a slice.
 const SLICE: usize = 1 << 16;
-
-/// Tetrahedra of a block.
-const BLOCK: usize = 1 << 10;
 
 /// Least memory that a range of vertices is given.
 const LEAST: usize = 40_000_000;
@@ -44,7 +39,7 @@ impl Sizes {
     pub fn of(memory: u64, threads: usize, counts: &MeshCounts) -> Result<Self, Error> {
         let memory = usize::try_from(memory).unwrap_or(usize::MAX);
         // Keys and nodes; the faces of the boundary come beside them while the vertices are gone through.
-        let index = counts.tets / BLOCK * super::blocks::BYTES;
+        let index = counts.tets / BLOCK * OF_BLOCK;
         let held = PROGRAM + 44 * counts.triangles + OF_EDGE * counts.edges + index;
         let range = memory.saturating_sub(held);
         let sizes = Self { slice: 0, block: BLOCK, range, memory: Some(memory) };

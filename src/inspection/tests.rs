@@ -2,7 +2,7 @@
 use super::*;
 use crate::mesh::adjacency::FACES;
 use crate::mesh::io::write_mesh;
-use crate::mesh::samples::{cube, with_boundary};
+use crate::mesh::samples::{cube, shuffled, with_boundary};
 use crate::mesh::{FlawKind, TetMesh, validity};
 use crate::metric::statistics::Class;
 use crate::metric::{Analytic, Distribution, Field, Sym3};
@@ -74,25 +74,6 @@ fn inspected(mesh: &TetMesh) -> Vec<FlawKind> {
         }
     }
     expected.flaws.iter().map(|flaw| flaw.kind).collect()
-}
-
-/// The mesh with its vertices and tetrahedra in an order without any sense.
-fn shuffled(mesh: &TetMesh) -> TetMesh {
-    let (vertices, tets) = (mesh.vertices.len(), mesh.tets.len());
-    // Coprime to both.
-    let place = |i: usize, count: usize| (i * 7919 + 13) % count;
-    assert!(!vertices.is_multiple_of(7919) && !tets.is_multiple_of(7919));
-    let mut new = mesh.clone();
-    for v in 0..vertices {
-        new.vertices[place(v, vertices)] = mesh.vertices[v];
-    }
-    let number = |v: u32| place(v as usize, vertices) as u32;
-    for t in 0..tets {
-        new.tets.nodes[place(t, tets)] = mesh.tets.nodes[t].map(number);
-    }
-    new.triangles.nodes.iter_mut().flatten().for_each(|v| *v = number(*v));
-    new.edges.nodes.iter_mut().flatten().for_each(|v| *v = number(*v));
-    new
 }
 
 /// A cube moved off its lattice, with two regions and a tagged edge.

@@ -1,9 +1,8 @@
 //! The tetrahedra by themselves, in their order.
-use super::blocks::{Bits, Blocks, Classes};
-use super::numbering::Numbering;
 use super::points::Source;
 use super::{Error, Sizes};
 use crate::mesh::Elements;
+use crate::mesh::ranges::{Bits, Blocks, Classes, Numbering};
 use crate::mesh::validity::{Found, check_tet};
 use crate::metric::Figures;
 use crate::metric::statistics::Part;

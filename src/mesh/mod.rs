@@ -12,7 +12,7 @@ mod matched_faces;
 pub mod numbers;
 pub mod predicate;
 pub mod quadrature;
-pub mod renumber;
+pub mod ranges;
 #[doc(hidden)]
 pub mod samples;
 pub mod split_nonmanifold;

@@ -34,6 +34,25 @@ pub fn cube(n: u32) -> TetMesh {
     with_boundary(vertices, tets)
 }
 
+/// The mesh with its vertices and tetrahedra in an order without any sense.
+pub fn shuffled(mesh: &TetMesh) -> TetMesh {
+    let (vertices, tets) = (mesh.vertices.len(), mesh.tets.len());
+    // Coprime to both.
+    let place = |i: usize, count: usize| (i * 7919 + 13) % count;
+    assert!(!vertices.is_multiple_of(7919) && !tets.is_multiple_of(7919));
+    let mut new = mesh.clone();
+    for v in 0..vertices {
+        new.vertices[place(v, vertices)] = mesh.vertices[v];
+    }
+    let number = |v: u32| place(v as usize, vertices) as u32;
+    for t in 0..tets {
+        new.tets.nodes[place(t, tets)] = mesh.tets.nodes[t].map(number);
+    }
+    new.triangles.nodes.iter_mut().flatten().for_each(|v| *v = number(*v));
+    new.edges.nodes.iter_mut().flatten().for_each(|v| *v = number(*v));
+    new
+}
+
 /// A mesh of these tetrahedra with a triangle on every face of only one of them.
 pub fn with_boundary(vertices: Vec<Vec3>, tets: Vec<[u32; 4]>) -> TetMesh {
     let mut triangles = Elements::default();

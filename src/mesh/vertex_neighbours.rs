@@ -44,6 +44,11 @@ impl VertexNeighbours {
         Self(Rows::of_parts(team, &parts))
     }
 
+    /// Of rows that are known, each ascending.
+    pub fn of_rows(rows: Rows) -> Self {
+        Self(rows)
+    }
+
     /// The neighbours of a vertex.
     #[inline]
     pub fn of_vertex(&self, vertex: u32) -> &[u32] {

@@ -284,16 +284,28 @@ pub fn complexity_of_logs(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 
 
 /// [`complexity_of_logs`] of some tetrahedra, shape (t, 4), on vertices, shape (n, 3): the share that they have in that of their mesh.
 pub fn complexity_of_tets(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], logs: &[Sym3]) -> f64 {
-    weighted_complexity(team, vertices, tets, &team.map(GRAIN, logs.len(), |v| (0.5 * logs[v].trace()).exp()))
+    weighted_complexity(team, vertices, tets, &team.map(GRAIN, logs.len(), |v| density(&logs[v])))
 }
 
 fn weighted_complexity(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], densities: &[f64]) -> f64 {
     let of_tet = |tet: &[u32; 4]| {
         let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
-        let density: f64 = tet.iter().map(|&v| densities[v as usize]).sum();
-        volume6(a, b, c, d) * density
+        share(volume6(a, b, c, d), tet.map(|v| densities[v as usize]))
     };
-    over_tets(team, tets, of_tet) / 24.0
+    over_tets(team, tets, of_tet) / SHARES
+}
+
+/// The share of a tetrahedron in C, times [`SHARES`], from six times its volume and √det M at its vertices.
+pub(super) fn share(volume6: f64, densities: [f64; 4]) -> f64 {
+    volume6 * densities.iter().sum::<f64>()
+}
+
+/// A quarter of a sixth.
+pub(super) const SHARES: f64 = 24.0;
+
+/// √det M of ln M.
+pub(super) fn density(log: &Sym3) -> f64 {
+    (0.5 * log.trace()).exp()
 }
 
 /// Complexity ∫ √det M of the log-Euclidean interpolant, exactly: √det M = e^ℓ with ℓ = tr(ln M)/2 linear in a tetrahedron. On a
@@ -306,9 +318,14 @@ pub fn complexity_between(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 
 pub fn complexity_terms(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], logs: &[Sym3]) -> Vec<f64> {
     let of_tet = |tet: &[u32; 4]| {
         let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
-        volume6(a, b, c, d) / 6.0 * mean_exponential(tet.map(|v| 0.5 * logs[v as usize].trace()))
+        share_between(volume6(a, b, c, d), tet.map(|v| 0.5 * logs[v as usize].trace()))
     };
     team.chunks(GRAIN, tets.len(), |range| tets[range].iter().map(of_tet).sum())
+}
+
+/// The share of a tetrahedron in [`complexity_between`], from six times its volume and tr(ln M)/2 at its vertices.
+pub(super) fn share_between(volume6: f64, halves: [f64; 4]) -> f64 {
+    volume6 / 6.0 * mean_exponential(halves)
 }
 
 /// Sum over the tetrahedra.

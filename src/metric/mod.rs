@@ -20,6 +20,7 @@ mod intersection;
 pub mod lanes;
 mod limit;
 pub mod multiscale;
+pub mod out_of_core;
 pub mod quality;
 #[cfg(test)]
 mod random;

@@ -42,6 +42,16 @@ impl Percentiles {
     }
 }
 
+/// ln h of ln M, ascending.
+pub(super) fn log_sizes(log: &Sym3) -> [f64; 3] {
+    let [a, b, c] = log.eigen().values;
+    [-0.5 * c, -0.5 * b, -0.5 * a]
+}
+
+/// What percentiles are taken of, by [`log_sizes`], as logarithms: least and greatest size, aspect ratio, anisotropic quotient.
+pub(super) const LOGARITHMS: [fn(&[f64; 3]) -> f64; 4] =
+    [|h| h[0], |h| h[2], |h| h[2] - h[0], |h| 2.0 * h[2] - h[0] - h[1]];
+
 /// The figures of a metric at the vertices of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Summary {
@@ -65,23 +75,18 @@ pub struct Summary {
 impl Summary {
     /// Of ln M at the vertices, shape (n,).
     pub fn of(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> Self {
-        // ln h, ascending.
-        let sizes = team.map(GRAIN, logs.len(), |v| {
-            let [a, b, c] = logs[v].eigen().values;
-            [-0.5 * c, -0.5 * b, -0.5 * a]
+        let sizes = team.map(GRAIN, logs.len(), |v| log_sizes(&logs[v]));
+        let of_each = team.chunks(1, LOGARITHMS.len(), |range| {
+            Percentiles::of(sizes.iter().map(|h| LOGARITHMS[range.start](h).exp()).collect())
         });
-        let logarithms: [fn(&[f64; 3]) -> f64; 4] = [|h| h[0], |h| h[2], |h| h[2] - h[0], |h| 2.0 * h[2] - h[0] - h[1]];
-        let of_each = team.chunks(1, logarithms.len(), |range| {
-            Percentiles::of(sizes.iter().map(|h| logarithms[range.start](h).exp()).collect())
-        });
-        Self {
-            vertices: mesh.vertices.len(),
-            complexity: field::complexity_of_logs(team, mesh, logs),
-            complexity_between: field::complexity_between(team, mesh, logs),
-            least_size: of_each[0],
-            greatest_size: of_each[1],
-            aspect_ratio: of_each[2],
-            anisotropic_quotient: of_each[3],
-        }
+        let complexities = [field::complexity_of_logs(team, mesh, logs), field::complexity_between(team, mesh, logs)];
+        Self::of_parts(mesh.vertices.len(), complexities, [0, 1, 2, 3].map(|which| of_each[which]))
+    }
+
+    /// Of the number of vertices, the complexities (at the vertices, between them), and the percentiles in the order of [`LOGARITHMS`].
+    pub(super) fn of_parts(vertices: usize, complexities: [f64; 2], percentiles: [Percentiles; 4]) -> Self {
+        let [complexity, complexity_between] = complexities;
+        let [least_size, greatest_size, aspect_ratio, anisotropic_quotient] = percentiles;
+        Self { vertices, complexity, complexity_between, least_size, greatest_size, aspect_ratio, anisotropic_quotient }
     }
 }

@@ -6,9 +6,9 @@ use super::{Arguments, Outcome};
 use crate::formats::vtu::pieces::piece_path;
 use crate::formats::{Dataset, NamedField};
 use crate::geometry::names;
-use crate::mesh::io::slices::{MeshReader, SolutionReader, gathered, runs};
-use crate::mesh::io::{FieldKind, SolutionField};
-use crate::mesh::renumber::renumbered;
+use crate::mesh::io::slices::{MeshReader, SolutionReader};
+use crate::mesh::io::{self, FieldKind, SolutionField};
+use crate::mesh::ranges::{gathered, renumbered, runs};
 use crate::tasks::{Plan, Team};
 use std::path::Path;
 use std::process::ExitCode;
@@ -69,7 +69,7 @@ fn converted(arguments: &Arguments, size: usize) -> Result<Table, Failure> {
         let mut piece = Dataset::default();
         piece.mesh.tets = tets;
         let numbers = renumbered(&mut [piece.mesh.tets.nodes.as_flattened_mut()]);
-        source.put_vertices(&mut piece, &numbers)?;
+        source.put_vertices(team, &mut piece, &numbers)?;
         outputs.piece(team, &target, number, &mut piece)?;
     }
     outputs.pieces(&target, count, &boundary)?;
@@ -116,20 +116,22 @@ impl Source {
         data.mesh.edges = self.mesh.edges(team, 0..counts.edges)?;
         let mesh = &mut data.mesh;
         let numbers = renumbered(&mut [mesh.triangles.nodes.as_flattened_mut(), mesh.edges.nodes.as_flattened_mut()]);
-        self.put_vertices(&mut data, &numbers)?;
+        self.put_vertices(team, &mut data, &numbers)?;
         Ok(data)
     }
 
     /// The vertices of these numbers, with their fields.
-    fn put_vertices(&self, data: &mut Dataset, numbers: &[u32]) -> Result<(), Failure> {
-        data.mesh.vertices = gathered(numbers, |range| Ok::<_, Failure>(self.mesh.vertices(Team::alone(), range)?.0))?;
+    fn put_vertices(&self, team: Team<'_>, data: &mut Dataset, numbers: &[u32]) -> Result<(), Failure> {
+        let points = |range| Ok::<_, io::Error>(self.mesh.vertices(Team::alone(), range)?.0);
+        data.mesh.vertices = gathered(team, numbers, [0.0; 3], points)?;
         data.mesh.vertex_refs = vec![0; numbers.len()];
         let Some((file, names)) = &self.fields else { return Ok(()) };
         let named = names.iter().zip(file.kinds());
         data.fields = named.map(|(name, &kind)| NamedField { name: name.clone(), kind, values: Vec::new() }).collect();
-        for (range, rows) in runs(numbers) {
-            let start = range.start;
-            let read = file.fields(Team::alone(), range)?.fields;
+        for places in runs(numbers) {
+            let rows = &numbers[places];
+            let (start, end) = (rows[0] as usize, rows[rows.len() - 1] as usize + 1);
+            let read = file.fields(team, start..end)?.fields;
             for (field, SolutionField { kind, values }) in data.fields.iter_mut().zip(&read) {
                 let width = kind.values();
                 let at = |&row: &u32| &values[width * (row as usize - start)..][..width];

@@ -67,6 +67,11 @@ impl Outputs {
         })
     }
 
+    /// A metric (.solb) at so many vertices, which is written by slices.
+    pub fn metric_by_slices(&mut self, to: &Target, vertices: usize) -> Result<MetricWriter, io::Error> {
+        MetricWriter::create(self.batch.open(&to.path, true)?, &to.path, vertices)
+    }
+
     /// A mesh with all that belongs to it, in the format that its ending tells. Returns what that cannot carry.
     pub fn dataset(
         &mut self,

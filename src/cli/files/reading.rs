@@ -2,6 +2,7 @@
 use crate::formats::{self, Dataset, Format, NamedField};
 use crate::geometry::{Names, names};
 use crate::mesh::TetMesh;
+use crate::mesh::io::slices::MeshReader;
 use crate::mesh::io::{self, FieldKind, Read, Solution, SolutionField};
 use crate::mesh::vector::Vec3;
 use crate::metric::{Field, Sym3};
@@ -18,6 +19,21 @@ pub fn mesh(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, io::Error> {
     }
     let Read { content: mesh, notices } = io::read_mesh_on(team, path)?;
     Ok(Read { content: Dataset { mesh, names: names::read(path)?, fields: Vec::new() }, notices })
+}
+
+/// Opens a volume mesh (.meshb) that is larger than memory, to be read by slices.
+pub fn mesh_by_slices(path: &Path) -> Result<MeshReader, Failure> {
+    if Format::of_file(path)? != Format::Libmeshb {
+        let remedy = "bring it into .meshb by `geo-adapt convert`, or leave --memory out";
+        return Err(format!("{}: with --memory only .meshb is read: {remedy}", path.display()).into());
+    }
+    let mesh = MeshReader::open(path)?;
+    names::read(path)?;
+    mesh.notices().iter().for_each(crate::cli::note);
+    if mesh.counts().tets == 0 {
+        return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
+    }
+    Ok(mesh)
 }
 
 /// The mesh that fields are wanted for.

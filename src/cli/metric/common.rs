@@ -2,12 +2,14 @@
 //!
 //! Metric files hold the six terms of M at each vertex in libMeshb's order 11 12 22 13 23 33, in 1/length².
 use crate::adapt::meeting::VERTICES_PER_COMPLEXITY;
+use crate::cli::amount::bytes;
 use crate::cli::files::reading::{self, Carrier, Fields};
-use crate::cli::files::{Files, On, Outputs, Target};
+use crate::cli::files::{Files, On, Outputs, Target, room};
 use crate::cli::terminal::PrintError;
 use crate::formats::Dataset;
 use crate::mesh::TetMesh;
 use crate::mesh::io::Read;
+use crate::mesh::ranges::Scratch;
 use crate::mesh::vector::distance;
 use crate::metric::{Limits, Sym3, field, held};
 use crate::tasks::{Pool, Team};
@@ -38,6 +40,32 @@ impl RunArguments {
     /// Prints a table, unless quiet.
     pub fn print(&self, text: &str) -> Result<(), PrintError> {
         super::super::say(text)
+    }
+}
+
+/// How much memory there is for a mesh that is larger.
+#[derive(clap::Args)]
+pub struct MemoryArguments {
+    /// Works from the files, by slices, within this memory: 500MB, 4GiB. The result is the same. For .meshb and .solb, to .solb
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub memory: Option<u64>,
+    /// Where what does not fit into the memory lies [default: beside the output]. Nothing of it stays
+    #[arg(long, value_name = "FOLDER", requires = "memory")]
+    scratch: Option<PathBuf>,
+}
+
+impl MemoryArguments {
+    /// The scratch folder of a run with this output, in which there is room for so many bytes.
+    pub fn scratch(&self, output: &Path, bytes: f64) -> Result<Scratch, String> {
+        let beside = output.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = self.scratch.as_deref().unwrap_or(beside);
+        if !folder.is_dir() {
+            return Err(format!("{}: there is no folder of this name; give --scratch a folder", folder.display()));
+        }
+        match room::lacking_bytes(folder, bytes) {
+            Some(why) => Err(format!("{why}; --scratch chooses a folder on another disk")),
+            None => Ok(Scratch::within(folder)),
+        }
     }
 }
 

@@ -2,14 +2,18 @@
 use super::common::{Failure, GradationArgument, LimitArguments};
 use crate::cli::files::reading::{self, Carrier};
 use crate::mesh::TetMesh;
-use crate::mesh::io::{FieldKind, Read, Solution, SolutionField};
+use crate::mesh::io::slices::{MeshReader, SolutionReader};
+use crate::mesh::io::{FieldKind, Read, Solution};
+use crate::mesh::ranges::Scratch;
 use crate::mesh::split_nonmanifold::copy_values;
 use crate::metric::multiscale::{self, Bounds, Cut, Measure, Norm, Options, SizeBound, Summary, multiscale};
+use crate::metric::out_of_core::{self, Sizes, Step};
 use crate::metric::recovery::Recovery;
 use crate::metric::{Limits, Sym3};
 use crate::tasks::Team;
 use clap::ValueEnum;
 use serde::Serialize;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// How several files become one metric.
@@ -43,9 +47,6 @@ pub struct MultiscaleArguments {
     #[command(flatten)]
     limits: LimitArguments,
 }
-
-/// The steps in time of each sensor, each with a value a vertex.
-type Sensors<'f> = Vec<Vec<&'f [f64]>>;
 
 /// The options that say how the metric is made, as [`MultiscaleArguments`] has them.
 pub const OPTIONS: [&str; 4] = ["norm", "hessian", "component", "combine"];
@@ -106,71 +107,119 @@ impl MultiscaleArguments {
             scalars.iter_mut().for_each(|values| copy_values(values, copies));
             files.push(scalars);
         }
-        let (sensors, names) = self.sensors(paths, &files)?;
+        let views: Vec<Vec<&[f64]>> = files.iter().map(|scalars| scalars.iter().map(Vec::as_slice).collect()).collect();
+        let (sensors, names) = self.sensors(paths, &views)?;
         let (norm, recovery, gradation) = (self.norm, self.hessian, self.gradation.ratio());
         let bounds = Bounds { complexity, measure, gradation, limits, fixed, by_others };
         let options = Options { recovery, norm, bounds };
-        let (logs, summary) = multiscale(team, mesh, &sensors, &options).map_err(|error| match error {
-            multiscale::Error::Flat { sensor } | multiscale::Error::NotFinite { sensor, .. } => {
-                format!("{}: {error}", names[sensor])
-            }
-            _ => error.to_string(),
+        let (logs, summary) =
+            multiscale(team, mesh, &sensors, &options).map_err(|error| named_sensor(&error, &names))?;
+        Ok((logs, self.made(paths, &sensors, complexity, summary)))
+    }
+
+    /// As [`MultiscaleArguments::make`], from files: the metric of a .meshb is in a scratch folder, and no more memory is used than is asked for.
+    pub fn make_of_files<'t>(
+        &self,
+        team: Team<'t>,
+        mesh: &MeshReader,
+        paths: &[PathBuf],
+        complexity: f64,
+        (memory, scratch): (u64, &Scratch),
+        notices: &mut Vec<String>,
+    ) -> Result<(out_of_core::Metric<'t>, Made), Failure> {
+        if self.hessian != Recovery::Fit {
+            let name = self.hessian.name();
+            return Err(
+                format!("--hessian {name} needs all of the mesh in memory: leave --memory out, or --hessian").into()
+            );
+        }
+        let (norm, gradation, limits) = (self.norm, self.gradation.ratio(), self.limits.limits()?);
+        let vertices = mesh.counts().vertices;
+        let files = paths.iter().map(|path| SolutionReader::open(path)).collect::<Result<Vec<_>, _>>()?;
+        let mut steps = Vec::new();
+        for (path, file) in paths.iter().zip(&files) {
+            notices.extend_from_slice(file.notices());
+            let components = self.components(path, file.kinds(), [file.vertices(), vertices])?;
+            steps.push(components.map(|component| Step { file, component }).collect::<Vec<_>>());
+        }
+        let (sensors, names) = self.sensors(paths, &steps)?;
+        let sizes = Sizes::of(memory, team.threads(), gradation.is_some(), mesh.counts())?;
+        let options = out_of_core::Options { norm, complexity, gradation, limits };
+        let made = out_of_core::multiscale(team, mesh, &sensors, &options, (&sizes, scratch));
+        let (metric, summary) = made.map_err(|error| match error {
+            out_of_core::Error::Multiscale(error) => named_sensor(&error, &names).into(),
+            error => Failure::from(error),
         })?;
-        let made = Made {
+        Ok((metric, self.made(paths, &sensors, complexity, summary)))
+    }
+
+    /// What was made of these files.
+    fn made<T>(&self, paths: &[PathBuf], sensors: &[Vec<T>], complexity_wanted: f64, summary: Summary) -> Made {
+        Made {
             fields: paths.to_vec(),
             sensors: sensors.len(),
             steps: sensors.first().map_or(0, Vec::len),
             combine: self.combine,
             component: self.component,
-            hessian: recovery,
-            norm,
-            gradation,
-            complexity_wanted: complexity,
+            hessian: self.hessian,
+            norm: self.norm,
+            gradation: self.gradation.ratio(),
+            complexity_wanted,
             summary,
-        };
-        Ok((logs, made))
+        }
     }
 
     /// The scalars of a file, each with a value a vertex.
     fn scalars(&self, path: &Path, solution: Solution, vertices: usize) -> Result<Vec<Vec<f64>>, String> {
+        let kinds: Vec<FieldKind> = solution.fields.iter().map(|field| field.kind).collect();
+        let components = self.components(path, &kinds, [solution.vertices, vertices])?;
+        if self.component.is_some() {
+            return Ok(components.filter_map(|index| solution.component(index)).collect());
+        }
+        Ok(solution.fields.into_iter().map(|field| field.values).collect())
+    }
+
+    /// Which numbers of each vertex are scalars of their own, in a file with these fields at so many vertices, of a mesh of so many.
+    fn components(
+        &self,
+        path: &Path,
+        kinds: &[FieldKind],
+        [found, vertices]: [usize; 2],
+    ) -> Result<Range<usize>, String> {
         let name = path.display();
-        if solution.vertices != vertices {
-            let found = solution.vertices;
+        if found != vertices {
             return Err(format!(
                 "{name}: values at {found} vertices, but the mesh has {vertices}: give a field of this mesh"
             ));
         }
-        let count: usize = solution.fields.iter().map(|field| field.kind.values()).sum();
+        let count: usize = kinds.iter().map(|kind| kind.values()).sum();
         if let Some(component) = self.component {
-            let mut before = component as usize - 1;
-            for SolutionField { kind, values } in &solution.fields {
-                if before < kind.values() {
-                    return Ok(vec![values.iter().skip(before).step_by(kind.values()).copied().collect()]);
-                }
-                before -= kind.values();
+            let index = component as usize;
+            if index <= count {
+                return Ok(index - 1..index);
             }
             return Err(format!("{name}: {count} values a vertex, but --component is {component}; give 1 to {count}"));
         }
         if count == 0 {
             return Err(format!("{name}: no field at the vertices; give a file with a scalar field"));
         }
-        if solution.fields.iter().any(|field| field.kind != FieldKind::Scalar) {
+        if kinds.iter().any(|&kind| kind != FieldKind::Scalar) {
             let remedy =
                 format!("choose one of the {count} values a vertex by --component 1 to {count}, such as a vector's x");
             return Err(format!("{name}: not all fields are scalars (libMeshb type 1); {remedy}"));
         }
-        Ok(solution.fields.into_iter().map(|field| field.values).collect())
+        Ok(0..count)
     }
 
-    /// The scalars as sensors with their steps, and what each is called in errors.
-    fn sensors<'f>(&self, paths: &[PathBuf], files: &'f [Vec<Vec<f64>>]) -> Result<(Sensors<'f>, Vec<String>), String> {
+    /// The scalars of the files as sensors with their steps in time, and what each is called in errors.
+    fn sensors<T: Copy>(&self, paths: &[PathBuf], files: &[Vec<T>]) -> Result<(Vec<Vec<T>>, Vec<String>), String> {
         let field = |path: &Path, number: usize, of: usize| match of {
             1 => path.display().to_string(),
             _ => format!("{}: field {}", path.display(), number + 1),
         };
         let (Some(first), Some(path)) = (files.first(), paths.first()) else { return Err("no field is given".into()) };
         if self.combine == Combine::Intersect {
-            let sensors = files.iter().flatten().map(|values| vec![values.as_slice()]).collect();
+            let sensors = files.iter().flatten().map(|&scalar| vec![scalar]).collect();
             let names = paths.iter().zip(files).flat_map(|(path, scalars)| {
                 (0..scalars.len()).map(|number| field(path, number, scalars.len())).collect::<Vec<_>>()
             });
@@ -185,9 +234,19 @@ impl MultiscaleArguments {
                 path.display()
             ));
         }
-        let sensors = (0..first.len()).map(|k| files.iter().map(|scalars| scalars[k].as_slice()).collect()).collect();
+        let sensors = (0..first.len()).map(|k| files.iter().map(|scalars| scalars[k]).collect()).collect();
         let more = if paths.len() > 1 { format!(" and the {} other steps", paths.len() - 1) } else { String::new() };
         Ok((sensors, (0..first.len()).map(|k| field(path, k, first.len()) + &more).collect()))
+    }
+}
+
+/// The error with the file of its sensor, if it has one.
+fn named_sensor(error: &multiscale::Error, names: &[String]) -> String {
+    match *error {
+        multiscale::Error::Flat { sensor } | multiscale::Error::NotFinite { sensor, .. } => {
+            format!("{}: {error}", names[sensor])
+        }
+        _ => error.to_string(),
     }
 }
 

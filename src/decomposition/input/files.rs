@@ -2,7 +2,8 @@
 use super::super::Error;
 use super::{Input, Vertices};
 use crate::mesh::Elements;
-use crate::mesh::io::slices::{MeshReader, SolutionReader, gathered};
+use crate::mesh::io::slices::{MeshReader, SolutionReader};
+use crate::mesh::ranges::gathered;
 use crate::metric::{Field, Source, Sym3};
 use crate::tasks::Team;
 use std::ops::Range;
@@ -62,14 +63,15 @@ impl Input for Files {
     }
 
     fn vertices(&self, numbers: &[u32]) -> Result<Vertices, Error> {
-        let of_mesh = gathered(numbers, |range| {
+        let of_mesh = gathered(Team::alone(), numbers, ([0.0; 3], 0), |range| {
             let (points, refs) = self.mesh.vertices(Team::alone(), range)?;
             Ok::<_, Error>(points.into_iter().zip(refs).collect())
         });
         let (points, refs): (Vec<_>, Vec<_>) = of_mesh?.into_iter().unzip();
         let logs = match &self.metric {
             MetricOf::File(file) => {
-                let logs = gathered(numbers, |range| Field::logs_in(Team::alone(), file, range));
+                let logs =
+                    gathered(Team::alone(), numbers, Sym3::ZERO, |range| Field::logs_in(Team::alone(), file, range));
                 logs?.into_iter().map(|log: Sym3| log.held_log().plus_identity(self.log_factor)).collect()
             }
             MetricOf::Uniform(log) => vec![log.plus_identity(self.log_factor); numbers.len()],

@@ -10,7 +10,7 @@ use crate::geometry::discrete::outward_triangles;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{FACES, Side, TriangleIndex, sorted3};
 use crate::mesh::predicate::is_positive;
-use crate::mesh::renumber::renumbered;
+use crate::mesh::ranges::renumbered;
 use crate::metric;
 use crate::metric::field::complexity_terms;
 use crate::ranks::{Ranks, agree};

@@ -10,7 +10,7 @@ use crate::geometry::discrete::outward_triangles;
 use crate::geometry::{Entity, Model};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{MatchedFaces, Side, TriangleIndex};
-use crate::mesh::renumber::renumbered;
+use crate::mesh::ranges::renumbered;
 use crate::mesh::vector::Vec3;
 use crate::tasks::Team;
 use std::ops::Range;

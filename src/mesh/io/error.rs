@@ -26,7 +26,7 @@ pub enum Error {
 
 impl Error {
     /// An error of the operating system at a file.
-    pub(super) fn system(path: &Path, source: std::io::Error) -> Self {
+    pub(in crate::mesh) fn system(path: &Path, source: std::io::Error) -> Self {
         Self::System { path: path.to_owned(), source }
     }
 

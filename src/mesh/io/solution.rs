@@ -61,6 +61,18 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// The values of one number a vertex, shape (vertices,), counted from 0 through all fields; none where there are not so many.
+    pub fn component(&self, index: usize) -> Option<Vec<f64>> {
+        let mut before = index;
+        for SolutionField { kind, values } in &self.fields {
+            if before < kind.values() {
+                return Some(values.iter().skip(before).step_by(kind.values()).copied().collect());
+            }
+            before -= kind.values();
+        }
+        None
+    }
+
     /// A solution of one symmetric tensor field, shape (vertices, 6), each 11 12 22 13 23 33: what a
     /// metric file holds.
     ///

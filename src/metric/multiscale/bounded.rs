@@ -1,5 +1,5 @@
 //! Limits and gradation, and the scale at which the complexity is met with them.
-use super::reach::{NEARLY, Unreachable, reach, reach_within};
+use super::reach::{NEARLY, Unreachable, reach_within, try_reach};
 use super::{Error, Measure, Summary};
 use crate::mesh::TetMesh;
 use crate::mesh::vertex_neighbours::VertexNeighbours;
@@ -69,6 +69,83 @@ impl Bounds<'_> {
     }
 }
 
+/// Where ln M at the vertices is, and what is done with it there. The metric before its bounds, at scale 1, is called raw.
+pub(in crate::metric) trait Medium {
+    /// ln M at the vertices.
+    type Logs;
+    /// Why there is no metric.
+    type Error: From<Unreachable>;
+
+    /// Room for one.
+    fn room(&self) -> Result<Self::Logs, Self::Error>;
+
+    /// Puts into `to` what `from` (none: the raw metric) is at another scale, its logarithm given, within the bounds. Returns what
+    /// [`Bounds::apply`] does.
+    fn scaled(
+        &self,
+        from: Option<&Self::Logs>,
+        log_scale: f64,
+        bounds: &Bounds<'_>,
+        to: &mut Self::Logs,
+    ) -> Result<(usize, Option<Cut>), Self::Error>;
+
+    /// As [`Medium::scaled`], in place.
+    fn rescale(&self, logs: &mut Self::Logs, log_scale: f64, bounds: &Bounds<'_>) -> Result<(), Self::Error>;
+
+    /// Lets sizes grow by a ratio at most.
+    fn grade(&self, logs: &mut Self::Logs, ratio: f64) -> Result<(), Self::Error>;
+
+    /// The complexity, as it is measured here.
+    fn complexity(&self, logs: &Self::Logs, measure: Measure) -> Result<f64, Self::Error>;
+}
+
+/// A metric in memory.
+pub(super) struct InMemory<'m> {
+    pub team: Team<'m>,
+    pub mesh: &'m TetMesh,
+    /// The neighbours of the vertices; none without gradation.
+    pub around: Option<VertexNeighbours>,
+    pub raw: &'m [Sym3],
+}
+
+impl Medium for InMemory<'_> {
+    type Logs = Vec<Sym3>;
+    type Error = Error;
+
+    fn room(&self) -> Result<Vec<Sym3>, Error> {
+        Ok(Vec::new())
+    }
+
+    fn scaled(
+        &self,
+        from: Option<&Vec<Sym3>>,
+        log_scale: f64,
+        bounds: &Bounds<'_>,
+        to: &mut Vec<Sym3>,
+    ) -> Result<(usize, Option<Cut>), Error> {
+        let from = from.map_or(self.raw, Vec::as_slice);
+        self.team.remap(GRAIN, to, from.len(), |v| from[v].plus_identity(log_scale));
+        Ok(bounds.apply(self.team, to))
+    }
+
+    fn rescale(&self, logs: &mut Vec<Sym3>, log_scale: f64, bounds: &Bounds<'_>) -> Result<(), Error> {
+        self.team.fill(GRAIN, logs, |_, logs| logs.iter_mut().for_each(|log| *log = log.plus_identity(log_scale)));
+        bounds.apply(self.team, logs);
+        Ok(())
+    }
+
+    fn grade(&self, logs: &mut Vec<Sym3>, ratio: f64) -> Result<(), Error> {
+        if let Some(around) = &self.around {
+            gradation::grade_with(self.team, &self.mesh.vertices, around, logs, ratio);
+        }
+        Ok(())
+    }
+
+    fn complexity(&self, logs: &Vec<Sym3>, measure: Measure) -> Result<f64, Error> {
+        Ok(measure.of(self.team, self.mesh, logs))
+    }
+}
+
 /// The metric within its bounds and graded, at the scale at which it has the complexity wanted. `raw` is ln M before that.
 ///
 /// # Errors
@@ -79,41 +156,27 @@ pub fn bounded(
     raw: &[Sym3],
     bounds: &Bounds<'_>,
 ) -> Result<(Vec<Sym3>, Summary), Error> {
-    bounded_with(team, mesh, None, raw, bounds)
+    let around = bounds.gradation.map(|_| VertexNeighbours::of_mesh(team, mesh));
+    meet(&InMemory { team, mesh, around, raw }, bounds)
 }
 
-/// As [`bounded`], with the neighbours of the vertices, if they are known.
-pub(super) fn bounded_with(
-    team: Team<'_>,
-    mesh: &TetMesh,
-    around: Option<VertexNeighbours>,
-    raw: &[Sym3],
-    bounds: &Bounds<'_>,
-) -> Result<(Vec<Sym3>, Summary), Error> {
-    let target = bounds.complexity;
-    let scaled = |logs: &[Sym3], scale: f64, to: &mut Vec<Sym3>| {
-        team.remap(GRAIN, to, logs.len(), |v| logs[v].plus_identity(scale));
-        bounds.apply(team, to)
-    };
-    let complexity = |logs: &[Sym3]| bounds.measure.of(team, mesh, logs);
-    let unreachable = |Unreachable { nearest }| Error::Unreachable { target, nearest };
-    let (mut of, mut scale, mut rounds) = (Vec::new(), 0.0, 0);
+/// As [`bounded`], wherever the metric is.
+pub(in crate::metric) fn meet<M: Medium>(medium: &M, bounds: &Bounds<'_>) -> Result<(M::Logs, Summary), M::Error> {
+    let (mut of, mut scale, mut rounds) = (None, 0.0, 0);
     if let Some(ratio) = bounds.gradation {
-        let around = around.unwrap_or_else(|| VertexNeighbours::of_mesh(team, mesh));
-        (of, scale, rounds) = graded(team, mesh, &around, raw, (ratio, bounds)).map_err(unreachable)?;
+        let (logs, at, asked) = graded(medium, ratio, bounds)?;
+        (of, scale, rounds) = (Some(logs), at, asked);
     }
-    let of = if bounds.gradation.is_some() { &of } else { raw };
-    let (mut logs, mut reached) = (Vec::new(), 0.0);
-    let (more, again) = reach(target, |more| {
-        scaled(of, more, &mut logs);
-        reached = complexity(&logs);
-        reached
-    })
-    .map_err(unreachable)?;
-    let mut before = Vec::new();
-    let (limited, cut) = scaled(raw, scale + more, &mut before);
+    let (mut logs, mut reached) = (medium.room()?, 0.0);
+    let (more, again) = try_reach(bounds.complexity, |more| -> Result<f64, M::Error> {
+        medium.scaled(of.as_ref(), more, bounds, &mut logs)?;
+        reached = medium.complexity(&logs, bounds.measure)?;
+        Ok(reached)
+    })?;
+    let mut before = of.map_or_else(|| medium.room(), Ok)?;
+    let (limited, cut) = medium.scaled(None, scale + more, bounds, &mut before)?;
     let summary = Summary {
-        complexity_before_gradation: complexity(&before),
+        complexity_before_gradation: medium.complexity(&before, bounds.measure)?,
         complexity: reached,
         limited,
         cut,
@@ -123,34 +186,25 @@ pub(super) fn bounded_with(
     Ok((logs, summary))
 }
 
-/// ln M, graded, of nearly the complexity wanted; the scale of `raw` from which it was graded; and the number of gradings.
+/// ln M, graded, of nearly the complexity wanted; the scale of the raw metric from which it was graded; and the number of gradings.
 ///
 /// Gradation costs most of all. So a metric whose complexity is nearly right will do; it is scaled afterwards. A metric that was graded by
 /// the ratio r^k is graded by r when its sizes are multiplied by 1/k or less, for in the bound on growth ln r stands beside |e|/h only.
 /// For the same reason a metric that was graded and then made coarser is nowhere finer than the graded one at the coarser scale. So
 /// grading goes on from it instead of from the beginning, unless there is a least size, which does not scale.
-fn graded(
-    team: Team<'_>,
-    mesh: &TetMesh,
-    around: &VertexNeighbours,
-    raw: &[Sym3],
-    (ratio, bounds): (f64, &Bounds<'_>),
-) -> Result<(Vec<Sym3>, f64, u32), Unreachable> {
+fn graded<M: Medium>(medium: &M, ratio: f64, bounds: &Bounds<'_>) -> Result<(M::Logs, f64, u32), M::Error> {
     let ratio = ratio.powf(1.0 - NEARLY / 3.0);
-    let (mut logs, mut last) = (Vec::new(), f64::NEG_INFINITY);
-    let (scale, rounds) = reach_within(NEARLY, bounds.complexity, USUAL_SCALE, |scale| {
+    let (mut logs, mut last) = (medium.room()?, f64::NEG_INFINITY);
+    let (scale, rounds) = reach_within(NEARLY, bounds.complexity, USUAL_SCALE, |scale| -> Result<f64, M::Error> {
         if scale < last && bounds.limits.hmin.is_none() {
-            team.fill(GRAIN, &mut logs, |_, logs: &mut [Sym3]| {
-                logs.iter_mut().for_each(|log| *log = log.plus_identity(scale - last));
-            });
+            medium.rescale(&mut logs, scale - last, bounds)?;
         } else {
-            team.remap(GRAIN, &mut logs, raw.len(), |v| raw[v].plus_identity(scale));
+            medium.scaled(None, scale, bounds, &mut logs)?;
         }
         last = scale;
-        bounds.apply(team, &mut logs);
-        gradation::grade_with(team, &mesh.vertices, around, &mut logs, ratio);
+        medium.grade(&mut logs, ratio)?;
         stage("graded");
-        bounds.measure.of(team, mesh, &logs)
+        medium.complexity(&logs, bounds.measure)
     })?;
     Ok((logs, scale, rounds))
 }

@@ -11,12 +11,13 @@ mod bounded;
 mod norm;
 mod optimal;
 mod reach;
-mod sensor;
+pub(super) mod sensor;
 #[cfg(test)]
 mod tests;
 
-use bounded::bounded_with;
+use bounded::InMemory;
 pub use bounded::{Bounds, Cut, SizeBound, bounded};
+pub(super) use bounded::{Medium, meet};
 pub use norm::Norm;
 
 use super::recovery::{Recovery, Rings};
@@ -24,9 +25,9 @@ use super::{Interpolation, Limits, Sym3, field, intersect_all};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
-use optimal::Spectrum;
+pub(super) use optimal::Spectrum;
 pub use reach::Unreachable;
-pub(super) use reach::reach;
+pub(super) use reach::{reach, try_reach};
 use serde::Serialize;
 
 /// Which metric is made.
@@ -114,6 +115,12 @@ pub enum Error {
     },
 }
 
+impl From<Unreachable> for Error {
+    fn from(Unreachable { target, nearest }: Unreachable) -> Self {
+        Self::Unreachable { target, nearest }
+    }
+}
+
 /// ln M at the vertices, shape (n,), of the multiscale metric of some sensors. Each sensor has a field, shape (n,), for each step in
 /// time; mostly there is one.
 ///
@@ -129,8 +136,8 @@ pub fn multiscale(
         return Err(Error::Nothing);
     }
     let diameter = diameter(team, mesh);
-    let hmax = options.bounds.limits.hmax.unwrap_or(diameter).min(diameter);
-    let bounds = Bounds { limits: Limits { hmax: Some(hmax), ..options.bounds.limits }, ..options.bounds };
+    let limits = within(options.bounds.limits, diameter);
+    let (hmax, bounds) = (limits.hmax.unwrap_or(diameter), Bounds { limits, ..options.bounds });
     let rings = Rings::of(team, mesh);
     stage("rings");
     let (mut raw, mut unfitted) = (Vec::new(), 0);
@@ -146,8 +153,14 @@ pub fn multiscale(
             intersect_all(team, &mut raw, &logs);
         }
     }
-    let (logs, summary) = bounded_with(team, mesh, Some(rings.into_neighbours()), &raw, &bounds)?;
+    let medium = InMemory { team, mesh, around: Some(rings.into_neighbours()), raw: &raw };
+    let (logs, summary) = meet(&medium, &bounds)?;
     Ok((logs, Summary { unfitted, ..summary }))
+}
+
+/// The limits, where no size is above the diameter.
+pub(super) fn within(limits: Limits, diameter: f64) -> Limits {
+    Limits { hmax: Some(limits.hmax.unwrap_or(diameter).min(diameter)), ..limits }
 }
 
 /// ln M of the optimal metric of a sensor at the complexity wanted, without other bounds than `hmax`.
@@ -166,20 +179,41 @@ fn optimal_logs(
         team.remap(GRAIN, &mut logs, spectra.len(), log);
         options.bounds.measure.of(team, mesh, &logs)
     });
-    reached.map_err(|Unreachable { nearest }| Error::Unreachable { target: options.bounds.complexity, nearest })?;
+    reached?;
     Ok(logs)
 }
 
 /// The diagonal of the box of the vertices that tetrahedra have.
 pub fn diameter(team: Team<'_>, mesh: &TetMesh) -> f64 {
-    let (none, tets) = (([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), &mesh.tets.nodes);
-    let join = |(low, high): (Vec3, Vec3), (l, h): (Vec3, Vec3)| -> (Vec3, Vec3) {
-        (std::array::from_fn(|i| low[i].min(l[i])), std::array::from_fn(|i| high[i].max(h[i])))
-    };
+    let tets = &mesh.tets.nodes;
     let parts = team.chunks(GRAIN, tets.len(), |range| {
-        let points = tets[range].iter().flatten().map(|&v| mesh.vertices[v as usize]);
-        points.fold(none, |found, p| join(found, (p, p)))
+        Extent::of(tets[range].iter().flatten().map(|&v| mesh.vertices[v as usize]))
     });
-    let (low, high) = parts.into_iter().fold(none, join);
-    distance(low, high)
+    parts.into_iter().fold(Extent::NONE, Extent::and).diagonal()
+}
+
+/// The box of some points.
+#[derive(Clone, Copy)]
+pub(super) struct Extent([Vec3; 2]);
+
+impl Extent {
+    /// That of none.
+    pub const NONE: Self = Self([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]);
+
+    /// That of these.
+    pub fn of(points: impl Iterator<Item = Vec3>) -> Self {
+        points.fold(Self::NONE, |found, p| found.and(Self([p, p])))
+    }
+
+    /// That of others too.
+    pub fn and(self, Self([l, h]): Self) -> Self {
+        let Self([low, high]) = self;
+        Self([std::array::from_fn(|i| low[i].min(l[i])), std::array::from_fn(|i| high[i].max(h[i]))])
+    }
+
+    /// Its diagonal.
+    pub fn diagonal(self) -> f64 {
+        let Self([low, high]) = self;
+        distance(low, high)
+    }
 }

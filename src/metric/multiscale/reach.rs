@@ -18,6 +18,8 @@ const FARTHEST: f64 = 40.0;
 /// No scale has that complexity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unreachable {
+    /// The complexity wanted.
+    pub target: f64,
     /// The complexity that came nearest.
     pub nearest: f64,
 }
@@ -27,24 +29,32 @@ pub struct Unreachable {
 ///
 /// By secants, since a call with gradation costs much and the curve is nearly straight. When two secants have not halved the bracket, it
 /// is bisected.
-pub fn reach(target: f64, complexity: impl FnMut(f64) -> f64) -> Result<(f64, u32), Unreachable> {
+pub fn reach(target: f64, mut complexity: impl FnMut(f64) -> f64) -> Result<(f64, u32), Unreachable> {
+    try_reach(target, |scale| Ok(complexity(scale)))
+}
+
+/// As [`reach`], of a complexity that may not be had.
+pub fn try_reach<E: From<Unreachable>>(
+    target: f64,
+    complexity: impl FnMut(f64) -> Result<f64, E>,
+) -> Result<(f64, u32), E> {
     reach_within(TOLERANCE, target, 0.0, complexity)
 }
 
-/// As [`reach`], to a tolerance, from a first guess of the scale.
-pub fn reach_within(
+/// As [`try_reach`], to a tolerance, from a first guess of the scale.
+pub fn reach_within<E: From<Unreachable>>(
     tolerance: f64,
     target: f64,
     guess: f64,
-    mut complexity: impl FnMut(f64) -> f64,
-) -> Result<(f64, u32), Unreachable> {
+    mut complexity: impl FnMut(f64) -> Result<f64, E>,
+) -> Result<(f64, u32), E> {
     let (mut scale, mut slope, mut last) = (guess, FREE_SLOPE, None::<(f64, f64)>);
     let (mut below, mut above) = (f64::NEG_INFINITY, f64::INFINITY);
     // How wide the bracket was when it was last halved, and how often not since.
     let (mut width, mut patience) = (f64::INFINITY, 0);
     let mut nearest = (f64::INFINITY, 0.0);
     for asked in 1..=60 {
-        let found = complexity(scale);
+        let found = complexity(scale)?;
         let miss = (found / target).ln();
         if miss.abs() <= tolerance {
             return Ok((scale, asked));
@@ -76,7 +86,7 @@ pub fn reach_within(
             break;
         }
     }
-    Err(Unreachable { nearest: nearest.1 })
+    Err(Unreachable { target, nearest: nearest.1 }.into())
 }
 
 #[cfg(test)]
@@ -114,8 +124,8 @@ mod tests {
     #[test]
     fn what_bounds_forbid_is_said() {
         let bounded = |s: f64| (1.5 * s).exp().clamp(10.0, 1000.0);
-        assert_eq!(reach(5000.0, bounded), Err(Unreachable { nearest: 1000.0 }));
-        assert_eq!(reach(5.0, bounded), Err(Unreachable { nearest: 10.0 }));
+        assert_eq!(reach(5000.0, bounded), Err(Unreachable { target: 5000.0, nearest: 1000.0 }));
+        assert_eq!(reach(5.0, bounded), Err(Unreachable { target: 5.0, nearest: 10.0 }));
         assert!(reach(5.0, |_| f64::NAN).is_err());
         // A jump has no scale of the value within.
         assert!(reach(500.0, |s| if s < 1.0 { 100.0 } else { 900.0 }).is_err());

@@ -1,7 +1,7 @@
 //! From the values of a field to |H|, and which fields cannot be adapted to.
 use super::Error;
 use crate::mesh::TetMesh;
-use crate::mesh::vector::sub;
+use crate::mesh::vector::{Vec3, sub};
 use crate::metric::Sym3;
 use crate::metric::recovery::{Recovery, Rings};
 use crate::tasks::{GRAIN, Team};
@@ -29,11 +29,12 @@ pub fn absolute(
     diameter: f64,
 ) -> Result<Absolute, Error> {
     let mut mean: Vec<Sym3> = Vec::new();
-    let (mut unfitted, mut greatest, mut range) = (0, 0.0f64, 0.0f64);
+    let (mut unfitted, mut span) = (0, Span::default());
     for (step, values) in steps.iter().enumerate() {
-        let (low, high) = bounds(team, values).map_err(|vertex| Error::NotFinite { sensor: number, step, vertex })?;
-        greatest = greatest.max(low.abs()).max(high.abs());
-        range = range.max(high - low);
+        let not_finite = |vertex| Error::NotFinite { sensor: number, step, vertex };
+        let parts = team.chunks(GRAIN, values.len(), |range| Bounds::of(range.start, &values[range]));
+        let bounds = parts.into_iter().try_fold(Bounds::NONE, |bounds, part| part.map(|part| bounds.and(part)));
+        span = span.and(bounds.map_err(not_finite)?);
         let (mut hessians, count) = recovery.hessians(team, mesh, rings, values);
         unfitted = unfitted.max(count);
         team.fill(GRAIN, &mut hessians, |_, hessians| hessians.iter_mut().for_each(|h| *h = h.magnitude()));
@@ -47,38 +48,60 @@ pub fn absolute(
     }
     let share = 1.0 / steps.len().max(1) as f64;
     team.fill(GRAIN, &mut mean, |_, sums| sums.iter_mut().for_each(|sum| *sum = sum.times(share)));
-    if !is_curved(team, mesh, rings, &mean, ROUNDING * greatest) {
+    let curved = team.chunks(GRAIN, mean.len(), |mut range| {
+        range.any(|v| span.is_curved(&mesh.vertices, (v, mean[v]), rings.neighbours(v as u32)))
+    });
+    if !curved.contains(&true) {
         return Err(Error::Flat { sensor: number });
     }
-    Ok(Absolute { hessians: mean, floor: 1e-12 * range / (diameter * diameter), unfitted })
+    Ok(Absolute { hessians: mean, floor: span.floor(diameter), unfitted })
 }
 
-/// Least and greatest value, or the first vertex where it is none.
-fn bounds(team: Team<'_>, values: &[f64]) -> Result<(f64, f64), usize> {
-    let parts = team.chunks(GRAIN, values.len(), |range| {
-        let mut bounds = (f64::INFINITY, f64::NEG_INFINITY);
-        for vertex in range {
-            let value = values[vertex];
-            if !value.is_finite() {
-                return Err(vertex);
-            }
-            bounds = (bounds.0.min(value), bounds.1.max(value));
-        }
-        Ok(bounds)
-    });
-    parts
-        .into_iter()
-        .try_fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), part| part.map(|(l, h)| (low.min(l), high.max(h))))
-}
+/// Least and greatest of some values.
+#[derive(Clone, Copy)]
+pub(in crate::metric) struct Bounds([f64; 2]);
 
-/// Whether eᵀ|H|e, the second difference along an edge e, is above rounding anywhere. A Hessian has the rounding divided by the square of
-/// the edges' lengths; measured along edges, these lengths do not matter.
-fn is_curved(team: Team<'_>, mesh: &TetMesh, rings: &Rings, hessians: &[Sym3], rounding: f64) -> bool {
-    let curved = team.chunks(GRAIN, hessians.len(), |mut range| {
-        range.any(|v| {
-            let edge = |&other: &u32| sub(mesh.vertices[other as usize], mesh.vertices[v]);
-            rings.neighbours(v as u32).iter().any(|other| hessians[v].quadratic(edge(other)) > rounding)
+impl Bounds {
+    /// Those of none.
+    pub const NONE: Self = Self([f64::INFINITY, f64::NEG_INFINITY]);
+
+    /// Those of the values of the vertices from `start` on, or the first vertex where the value is not finite.
+    pub fn of(start: usize, values: &[f64]) -> Result<Self, usize> {
+        (start..).zip(values).try_fold(Self::NONE, |bounds, (vertex, &value)| {
+            if value.is_finite() { Ok(bounds.and(Self([value, value]))) } else { Err(vertex) }
         })
-    });
-    curved.contains(&true)
+    }
+
+    /// Those of others too.
+    pub fn and(self, Self([low, high]): Self) -> Self {
+        Self([self.0[0].min(low), self.0[1].max(high)])
+    }
+}
+
+/// What the values of a sensor span, over its steps.
+#[derive(Clone, Copy, Default)]
+pub(in crate::metric) struct Span {
+    /// The greatest absolute value.
+    greatest: f64,
+    /// The greatest difference in a step.
+    range: f64,
+}
+
+impl Span {
+    /// With one step more.
+    pub fn and(self, Bounds([low, high]): Bounds) -> Self {
+        Self { greatest: self.greatest.max(low.abs()).max(high.abs()), range: self.range.max(high - low) }
+    }
+
+    /// See [`Absolute::floor`].
+    pub fn floor(self, diameter: f64) -> f64 {
+        1e-12 * self.range / (diameter * diameter)
+    }
+
+    /// Whether eᵀ|H|e, the second difference along an edge e from a vertex to one of its neighbours, is above rounding. A Hessian has the
+    /// rounding divided by the square of the edges' lengths; measured along edges, these lengths do not matter.
+    pub fn is_curved(self, points: &[Vec3], (vertex, hessian): (usize, Sym3), neighbours: &[u32]) -> bool {
+        let edge = |&other: &u32| sub(points[other as usize], points[vertex]);
+        neighbours.iter().any(|other| hessian.quadratic(edge(other)) > ROUNDING * self.greatest)
+    }
 }

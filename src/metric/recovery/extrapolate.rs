@@ -9,10 +9,7 @@ pub fn fill(team: Team<'_>, rings: &Rings, mut known: Vec<Option<Sym3>>) -> Vec<
         let filled = team.collect(GRAIN, known.len(), |range, filled| {
             for vertex in range.filter(|&v| known[v].is_none()) {
                 let near = rings.neighbours(vertex as u32).iter().filter_map(|&other| known[other as usize]);
-                let (sum, count) = near.fold((Sym3::ZERO, 0.0), |(sum, count), h| (sum.plus(h), count + 1.0));
-                if count > 0.0 {
-                    filled.push((vertex, sum.times(1.0 / count)));
-                }
+                filled.extend(mean(near).map(|mean| (vertex, mean)));
             }
         });
         if filled.is_empty() {
@@ -20,6 +17,12 @@ pub fn fill(team: Team<'_>, rings: &Rings, mut known: Vec<Option<Sym3>>) -> Vec<
         }
         filled.into_iter().for_each(|(vertex, hessian)| known[vertex] = Some(hessian));
     }
+}
+
+/// The mean of those that are known of the neighbours' Hessians; none of none.
+pub fn mean(near: impl Iterator<Item = Sym3>) -> Option<Sym3> {
+    let (sum, count) = near.fold((Sym3::ZERO, 0.0), |(sum, count), h| (sum.plus(h), count + 1.0));
+    (count > 0.0).then(|| sum.times(1.0 / count))
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@ use super::rings::Rings;
 use super::{extrapolate, l2};
 use crate::mesh::TetMesh;
 use crate::mesh::stamped_set::StampedSet;
-use crate::mesh::vector::sub;
+use crate::mesh::vector::{Vec3, sub};
+use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::Sym3;
 use crate::tasks::{GRAIN, Team};
 use std::ops::Range;
@@ -34,16 +35,7 @@ pub fn hessians(
     values: &[f64],
     limiter: Option<Limiter>,
 ) -> (Vec<Sym3>, usize) {
-    let around = || Around {
-        mesh,
-        rings,
-        values,
-        limiter,
-        seen: StampedSet::default(),
-        stencil: Vec::new(),
-        fit: Quadratic::telling(limiter.is_some()),
-        span: [0.0; 2],
-    };
+    let around = || Around::new(&mesh.vertices, rings.around(), values, limiter);
     let fitted = team.map_with(VERTICES, values.len(), around, |around, vertex| around.hessian(vertex as u32));
     let count = |range: Range<usize>| fitted[range].iter().filter(|(hessian, _)| hessian.is_none()).count();
     let unfitted = team.chunks(GRAIN, fitted.len(), count).into_iter().sum();
@@ -65,10 +57,10 @@ pub fn hessians(
     (team.map(GRAIN, filled.len(), |v| filled[v].unwrap_or_else(|| projected[v])), unfitted)
 }
 
-/// What one task works with.
-struct Around<'a> {
-    mesh: &'a TetMesh,
-    rings: &'a Rings,
+/// What one task works with: what is known of the vertices around those that are fitted, by the places of the lists.
+pub(in crate::metric) struct Around<'a> {
+    points: &'a [Vec3],
+    neighbours: &'a VertexNeighbours,
     values: &'a [f64],
     limiter: Option<Limiter>,
     seen: StampedSet,
@@ -79,9 +71,25 @@ struct Around<'a> {
     span: [f64; 2],
 }
 
-impl Around<'_> {
-    /// The Hessian, and whether it is one at a jump.
-    fn hessian(&mut self, vertex: u32) -> (Option<Sym3>, bool) {
+/// How many rings around a vertex a fit may need.
+pub(in crate::metric) const RINGS: usize = 3;
+
+impl<'a> Around<'a> {
+    /// Of vertices at these points, with their neighbours and values. Neighbours are known of all that are nearer than [`RINGS`] edges, points and
+    /// values of those so near too.
+    pub fn new(
+        points: &'a [Vec3],
+        neighbours: &'a VertexNeighbours,
+        values: &'a [f64],
+        limiter: Option<Limiter>,
+    ) -> Self {
+        let fit = Quadratic::telling(limiter.is_some());
+        let (seen, stencil) = (StampedSet::default(), Vec::new());
+        Self { points, neighbours, values, limiter, seen, stencil, fit, span: [0.0; 2] }
+    }
+
+    /// The Hessian, none where the points do not determine it, and whether it is one at a jump.
+    pub fn hessian(&mut self, vertex: u32) -> (Option<Sym3>, bool) {
         self.seen.clear();
         self.seen.insert(vertex);
         self.stencil.clear();
@@ -135,11 +143,11 @@ impl Around<'_> {
     /// Adds the neighbours of `other`.
     #[inline]
     fn add(&mut self, vertex: u32, other: u32) {
-        let (p, value) = (self.mesh.vertices[vertex as usize], self.values[vertex as usize]);
-        for &near in self.rings.neighbours(other) {
+        let (p, value) = (self.points[vertex as usize], self.values[vertex as usize]);
+        for &near in self.neighbours.of_vertex(other) {
             if self.seen.insert(near) {
                 self.stencil.push(near);
-                let [x, y, z] = sub(self.mesh.vertices[near as usize], p);
+                let [x, y, z] = sub(self.points[near as usize], p);
                 let rise = self.values[near as usize] - value;
                 self.span = [self.span[0].min(rise), self.span[1].max(rise)];
                 self.fit.push([x, y, z, rise]);

@@ -1,6 +1,6 @@
 //! Second derivatives of a field that is known at the vertices of a mesh.
-mod extrapolate;
-mod fit;
+pub(super) mod extrapolate;
+pub(super) mod fit;
 mod l2;
 mod limiter;
 mod quadratic;

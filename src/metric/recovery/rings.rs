@@ -23,6 +23,11 @@ impl Rings {
         self.neighbours
     }
 
+    /// The neighbours of all vertices.
+    pub fn around(&self) -> &VertexNeighbours {
+        &self.neighbours
+    }
+
     /// The vertices that share an edge with this one, ascending.
     #[inline]
     pub fn neighbours(&self, vertex: u32) -> &[u32] {

@@ -66,6 +66,7 @@ const COMMANDS: &[Case] = &[
     case("metric intersect a.meshb a.solb b.sol -o OUT", "solb", &["a.meshb", "a.solb", "b.sol"]),
     case("metric limit a.solb --hmax 1 -o OUT", "solb", &["a.solb"]),
     case("metric multiscale a.meshb f.solb b.sol --complexity 9 -o OUT", "sol", &["a.meshb", "f.solb", "b.sol"]),
+    case("metric multiscale a.meshb f.solb --complexity 9 --memory 1GB -o OUT", "solb", &["a.meshb", "f.solb"]),
     case("metric multiscale a.meshb f.solb --complexity 9 -o new.sol --report OUT", "json", &["a.meshb", "f.solb"]),
     case("metric scale a.meshb a.solb --complexity 9 -o OUT", "solb", &["a.meshb", "a.solb"]),
     case("metric show a.meshb a.solb --report OUT", "json", &["a.meshb", "a.solb"]),

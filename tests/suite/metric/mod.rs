@@ -1,5 +1,6 @@
 //! Metrics, fields, and fields from mesh to mesh.
 mod commands;
 mod field;
+mod larger_than_memory;
 mod multiscale;
 mod transfer;

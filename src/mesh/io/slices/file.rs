@@ -6,7 +6,7 @@ use std::io;
 
 /// A file without a position of its own.
 #[derive(Debug)]
-pub(super) struct Positioned {
+pub(in crate::mesh) struct Positioned {
     file: File,
     /// Where the system has no such calls: who moves the file's position.
     #[cfg(not(unix))]
@@ -14,7 +14,7 @@ pub(super) struct Positioned {
 }
 
 impl Positioned {
-    pub(super) fn new(file: File) -> Self {
+    pub(in crate::mesh) fn new(file: File) -> Self {
         Self {
             file,
             #[cfg(not(unix))]
@@ -23,24 +23,24 @@ impl Positioned {
     }
 
     /// Number of bytes.
-    pub(super) fn size(&self) -> io::Result<u64> {
+    pub(in crate::mesh) fn size(&self) -> io::Result<u64> {
         Ok(self.file.metadata()?.len())
     }
 
     /// Fills the buffer with the bytes from a place on.
     #[cfg(unix)]
-    pub(super) fn read(&self, buffer: &mut [u8], place: u64) -> io::Result<()> {
+    pub(in crate::mesh) fn read(&self, buffer: &mut [u8], place: u64) -> io::Result<()> {
         std::os::unix::fs::FileExt::read_exact_at(&self.file, buffer, place)
     }
 
     /// Writes bytes at a place.
     #[cfg(unix)]
-    pub(super) fn write(&self, bytes: &[u8], place: u64) -> io::Result<()> {
+    pub(in crate::mesh) fn write(&self, bytes: &[u8], place: u64) -> io::Result<()> {
         std::os::unix::fs::FileExt::write_all_at(&self.file, bytes, place)
     }
 
     #[cfg(not(unix))]
-    pub(super) fn read(&self, buffer: &mut [u8], place: u64) -> io::Result<()> {
+    pub(in crate::mesh) fn read(&self, buffer: &mut [u8], place: u64) -> io::Result<()> {
         use std::io::{Read, Seek, SeekFrom};
         let _turn = self.turn.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         (&self.file).seek(SeekFrom::Start(place))?;
@@ -48,7 +48,7 @@ impl Positioned {
     }
 
     #[cfg(not(unix))]
-    pub(super) fn write(&self, bytes: &[u8], place: u64) -> io::Result<()> {
+    pub(in crate::mesh) fn write(&self, bytes: &[u8], place: u64) -> io::Result<()> {
         use std::io::{Seek, SeekFrom, Write};
         let _turn = self.turn.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         (&self.file).seek(SeekFrom::Start(place))?;

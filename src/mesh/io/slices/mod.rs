@@ -8,11 +8,10 @@
 //! of a mesh that is read whole.
 mod covered;
 mod file;
-mod gather;
 mod reader;
 mod writer;
 
-pub use gather::{gathered, runs};
+pub(in crate::mesh) use file::Positioned;
 pub use reader::{MeshReader, SolutionReader};
 pub use writer::{MeshWriter, MetricWriter};
 

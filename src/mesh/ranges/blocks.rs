@@ -8,19 +8,20 @@ const CLASSES: usize = 512;
 const WORDS: usize = CLASSES / 64;
 
 /// Bytes of a block.
-pub(super) const BYTES: usize = 8 * WORDS;
+pub const BYTES: usize = 8 * WORDS;
 
 /// A bit for each class of vertices that a block has some of.
-pub(super) type Bits = [u64; WORDS];
+pub type Bits = [u64; WORDS];
 
 /// How the vertices are divided into classes.
 #[derive(Clone, Copy)]
-pub(super) struct Classes {
+pub struct Classes {
     /// Vertices of a class.
     size: usize,
 }
 
 impl Classes {
+    /// Of so many vertices.
     pub fn of(vertices: usize) -> Self {
         Self { size: vertices.div_ceil(CLASSES).max(1) }
     }
@@ -46,7 +47,8 @@ impl Classes {
 }
 
 /// The blocks of a mesh.
-pub(super) struct Blocks {
+pub struct Blocks {
+    /// How the vertices are divided.
     pub classes: Classes,
     /// Tetrahedra of a block.
     pub size: usize,

@@ -1,7 +1,7 @@
 //! Numbers from 0 for the vertices of a few tetrahedra.
 
 /// Different numbers, ascending, and where each of them is.
-pub(super) struct Numbering {
+pub struct Numbering {
     /// The numbers, ascending.
     pub numbers: Vec<u32>,
     table: Table,
@@ -83,9 +83,25 @@ impl Table {
     }
 }
 
+/// Numbers nodes anew, from 0 on in their order. Returns the numbers that they had, shape (n,), ascending.
+pub fn renumbered(lists: &mut [&mut [u32]]) -> Vec<u32> {
+    let numbering = Numbering::of(lists.iter().flat_map(|list| list.iter().copied()));
+    lists.iter_mut().flat_map(|list| list.iter_mut()).for_each(|v| *v = numbering.place(*v));
+    numbering.into_numbers()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nodes_keep_their_order() {
+        let mut lists = [vec![5, 9, 7000], vec![9, 6]];
+        let [a, b] = &mut lists;
+        assert_eq!(renumbered(&mut [a, b]), [5, 6, 9, 7000]);
+        assert_eq!(lists, [vec![0, 2, 3], vec![2, 1]]);
+        assert!(renumbered(&mut []).is_empty() && renumbered(&mut [&mut []]).is_empty());
+    }
 
     #[test]
     fn places_are_those_in_the_sorted_list() {
