@@ -165,6 +165,14 @@ impl PartArguments {
 }
 
 impl Arguments {
+    /// Refuses what so many processes, or one with --memory, cannot do.
+    ///
+    /// # Errors
+    /// What, and what to give instead.
+    pub fn fits_processes(&self, processes: u32) -> Result<(), Error> {
+        if processes > 1 || self.parts.memory.is_some() { self.fits_parts() } else { Ok(()) }
+    }
+
     /// Refuses what cannot be done part by part.
     fn fits_parts(&self) -> Result<(), Error> {
         let refused = [
