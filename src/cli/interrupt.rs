@@ -3,6 +3,7 @@
 //! By itself an interrupt ends the program at once, with exit code 130; a program that it has started is ended first. A command that can
 //! come to a good end says so ([`finish_on`]): then the first interrupt asks for that, and a second one ends it at once. SIGUSR1 asks for it
 //! too, however often it comes: mpirun hands it on to its processes and leaves them their time, while it ends them one second after an interrupt.
+use super::terminal;
 use crate::process::{self, Stop};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
@@ -31,7 +32,7 @@ pub fn listen() {
         let says = *FINISHES.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(says) = says.filter(|_| is_first) {
             IS_TOLD.store(true, SeqCst);
-            super::tell(format_args!("\ngeo-adapt: interrupted: {says}"));
+            tell(says);
             return;
         }
         STOP.now.store(true, SeqCst);
@@ -44,10 +45,16 @@ pub fn listen() {
     let _ = ctrlc::set_handler(handler);
 }
 
+fn tell(what: &str) {
+    if !terminal::is_hushed() {
+        terminal::tell(format_args!("\ngeo-adapt: interrupted: {what}"));
+    }
+}
+
 /// Ends the program from whichever thread, whatever the others are at.
 fn leave() -> ! {
     if !IS_TOLD.load(SeqCst) {
-        super::tell("\ngeo-adapt: interrupted: nothing was written");
+        tell("nothing was written");
     }
     super::workplace::clear();
     #[cfg(unix)]

@@ -9,8 +9,7 @@ const NUMBERS: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_
 const PIECE: usize = 1 << 30;
 
 /// How to get a program that can be one of several processes.
-const REMEDY: &str =
-    "build it with `cargo build --release --features mpi` (on Debian: apt install libopenmpi-dev openmpi-bin libclang-dev)";
+const REMEDY: &str = "build it with `cargo build --release --features mpi` (on Debian: apt install libopenmpi-dev openmpi-bin libclang-dev)";
 
 /// What started this process as one of several.
 struct Launched {

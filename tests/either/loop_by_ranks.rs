@@ -69,7 +69,9 @@ fn what_cannot_be_part_by_part_is_refused_before_the_first_step() {
         assert!(said.contains(told), "{adapt}: {said}");
     }
     let place = Place::new("");
-    let with = |option: &str| CONFIG.replace("['--part-vertices'", &format!("['--max-vertices', '{option}', '--part-vertices'"));
+    let with = |option: &str| {
+        CONFIG.replace("['--part-vertices'", &format!("['--max-vertices', '{option}', '--part-vertices'"))
+    };
     std::fs::write(place.path("loop.toml"), with("5000") + "memory = '1GiB'\n").unwrap();
     let said = place.refusal();
     assert!(said.contains("[adapt]: --max-vertices") && said.contains("leave it out of the options"), "{said}");
@@ -98,7 +100,10 @@ fn memory_adapts_part_by_part_and_may_change() {
 #[test]
 fn a_program_without_mpi_refuses_several_processes_at_the_start() {
     let said = Place::new("processes = 2").refusal();
-    assert!(said.contains("[adapt] processes is above 1") && said.contains("cargo build --release --features mpi"), "{said}");
+    assert!(
+        said.contains("[adapt] processes is above 1") && said.contains("cargo build --release --features mpi"),
+        "{said}"
+    );
 }
 
 #[cfg(feature = "mpi")]
@@ -145,11 +150,14 @@ mod with_mpi {
         if !is_there() {
             return;
         }
-        let place = Place::new("processes = 2\nmemory = '1MB'\nscratch = 'parts'");
+        let place = Place::new("processes = 2\nmemory = '100kB'\nscratch = 'parts'");
         std::fs::create_dir(place.path("parts")).unwrap();
         std::fs::write(place.path("parts/mine.txt"), "not of geo-adapt").unwrap();
         let said = stderr(&place.command().output().unwrap());
-        assert!(said.contains("cycle-01/adapt: mpirun -n 2 ") && said.contains("adapt ended with exit code 2"), "{said}");
+        assert!(
+            said.contains("cycle-01/adapt: mpirun -n 2 ") && said.contains("adapt ended with exit code 2"),
+            "{said}"
+        );
         assert!(said.contains("this folder is not empty"), "{said}");
         assert_eq!(names(&place.path("parts")), ["mine.txt"]);
     }

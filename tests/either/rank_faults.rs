@@ -11,9 +11,8 @@ use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 /// Of many small parts, and so little memory that they lie in the scratch folder.
-const ARGUMENTS: [&str; 10] = [
-    "--analytic", "polar-1", "--complexity", "2500", "--part-vertices", "600", "--memory", "1MB", "--threads", "1",
-];
+const ARGUMENTS: [&str; 10] =
+    ["--analytic", "polar-1", "--complexity", "2500", "--part-vertices", "600", "--memory", "1MB", "--threads", "1"];
 
 const OUTPUTS: [&str; 2] = ["out.meshb", "out.solb"];
 
@@ -104,7 +103,15 @@ fn a_killed_process_ends_all_and_the_run_goes_on_from_there() {
     assert_eq!(names(&work.path("")), ["in.meshb"], "something is left");
 }
 
-/// Each rank is started by a script that leads rank 1 astray.
+/// A run on the mesh of the folder, each rank of which is started by a script that leads rank 1 into another folder.
+fn astray(work: &Workplace) -> Command {
+    let script = r#"cd "$1"; shift; [ "$OMPI_COMM_WORLD_RANK" = 1 ] && cd elsewhere; exec "$@""#;
+    let alone = work.command(Path::new("in.meshb"), &ARGUMENTS);
+    let mut command = mpirun(3);
+    command.args(["sh", "-c", script, "sh", &text(&work.path(""))]).arg(alone.get_program()).args(alone.get_args());
+    command
+}
+
 #[test]
 fn an_input_that_one_rank_does_not_see_is_told() {
     if !is_there() {
@@ -113,11 +120,7 @@ fn an_input_that_one_rank_does_not_see_is_told() {
     let work = Workplace::new();
     work.mesh(&cube(3, |_| 1));
     fs::create_dir(work.path("elsewhere")).unwrap();
-    let script = r#"cd "$1"; shift; [ "$OMPI_COMM_WORLD_RANK" = 1 ] && cd elsewhere; exec "$@""#;
-    let alone = work.command(Path::new("in.meshb"), &ARGUMENTS);
-    let mut command = mpirun(3);
-    command.args(["sh", "-c", script, "sh", &text(&work.path(""))]).arg(alone.get_program()).args(alone.get_args());
-    let said = complaint(&mut command);
+    let said = complaint(&mut astray(&work));
     assert!(said.contains("rank 1: in.meshb: "), "{said}");
     assert_eq!(names(&work.path("")), ["elsewhere", "in.meshb"]);
 }
@@ -215,4 +218,19 @@ fn an_interrupt_writes_the_last_mesh_or_leaves_the_scratch_folder() {
         assert!(taken(&work) == known, "{name}");
         assert_eq!(names(&work.path("")), ["in.meshb"], "{name}");
     }
+}
+
+/// A file of the same name that is another one, on the disk of one machine.
+#[test]
+fn an_input_that_is_another_one_on_one_rank_is_told() {
+    if !is_there() {
+        return;
+    }
+    let work = Workplace::new();
+    work.mesh(&cube(3, |_| 1));
+    fs::create_dir(work.path("elsewhere")).unwrap();
+    geo_adapt::mesh::io::write_mesh(&work.path("elsewhere/in.meshb"), &cube(4, |_| 1)).unwrap();
+    let said = complaint(&mut astray(&work));
+    assert!(said.contains("rank 1: ") && said.contains("let all processes see the same files"), "{said}");
+    assert_eq!(names(&work.path("")), ["elsewhere", "in.meshb"]);
 }

@@ -13,7 +13,7 @@ use crate::cli::{BAD_INPUT, INVALID, Outcome, interrupt, note};
 use crate::decomposition::{self, Adapted, Common, Shelf, Sizes, Told, wanted_vertices};
 use crate::memory;
 use crate::metric::statistics::Statistics;
-use crate::ranks::{Ranks, Traffic, agree};
+use crate::ranks::{Ranks, Traffic, agree, broadcast};
 use crate::tasks::{Plan, Pool, Team, stage};
 use serde::Serialize;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -95,12 +95,15 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
         arguments.check_references(&input).map_err(named)?;
     }
     let options = arguments.options(plan, freeze);
+    let run = arguments.run_name(&input, &options);
+    agreed(ranks, is_same(ranks, run))?;
     let vertices = wanted_vertices(input.source.complexity(team, &input.mesh)).max(input.mesh.vertices.len() as f64);
     let place = agreed(ranks, arguments.parts.place(&arguments.output, vertices, threads, ranks))?;
-    let progress = Progress::new(progress::finish_on_interrupt());
+    let is_alone = ranks.count() == 1;
+    let stop = if is_alone { progress::finish_on_interrupt() } else { progress::finish_on_interrupt_of_mpirun() };
+    let progress = Progress::new(stop);
     progress.tell_forecasts(None, &arguments.output);
     let shelf = place.scratch.as_ref().map_or_else(Shelf::in_memory, Scratch::shelf);
-    let run = arguments.run_name(&input, &options);
     let common = Common {
         model: &input.model,
         options: &options,
@@ -128,6 +131,15 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
         scratch.remove();
     }
     Ok(code)
+}
+
+/// Refuses inputs that are not those of rank 0: the result would be of both.
+fn is_same(ranks: &dyn Ranks, run: u64) -> Result<(), Error> {
+    if broadcast(ranks, &run.to_le_bytes()) == run.to_le_bytes() {
+        return Ok(());
+    }
+    Err("its mesh, metric or model is not the one that rank 0 has: let all processes see the same files, and run the same program on machines of one \
+         kind".into())
 }
 
 /// Where pieces lie, and whether the result is made in memory.

@@ -79,7 +79,9 @@ fn held(folder: &Path) -> Result<File, String> {
         fs::create_dir_all(folder).map_err(named)?;
         let is_empty = fs::read_dir(folder).map_err(named)?.next().is_none();
         if !is_empty && !file.exists() {
-            return Err("this folder is not empty, and no scratch folder of geo-adapt; give --scratch a new folder".into());
+            return Err(
+                "this folder is not empty, and no scratch folder of geo-adapt; give --scratch a new folder".into()
+            );
         }
         let mut lock = File::options().write(true).create(true).truncate(false).open(&file).map_err(named)?;
         // Where there are no locks nobody waits.
@@ -90,7 +92,10 @@ fn held(folder: &Path) -> Result<File, String> {
             return Ok(lock);
         }
         if began.elapsed() > PATIENCE {
-            return Err("another run of geo-adapt is at work in this folder: wait for its end, or give another --scratch".into());
+            return Err(
+                "another run of geo-adapt is at work in this folder: wait for its end, or give another --scratch"
+                    .into(),
+            );
         }
         std::thread::sleep(Duration::from_millis(20));
     }
