@@ -150,12 +150,12 @@ mod with_mpi {
         if !is_there() {
             return;
         }
-        let place = Place::new("processes = 2\nmemory = '100kB'\nscratch = 'parts'");
+        let place = Place::new("processes = 2\nmemory = '1MB'\nscratch = 'parts'");
         std::fs::create_dir(place.path("parts")).unwrap();
         std::fs::write(place.path("parts/mine.txt"), "not of geo-adapt").unwrap();
         let said = stderr(&place.command().output().unwrap());
         assert!(
-            said.contains("cycle-01/adapt: mpirun -n 2 ") && said.contains("adapt ended with exit code 2"),
+            said.contains("cycle-02/adapt: mpirun -n 2 ") && said.contains("adapt ended with exit code 2"),
             "{said}"
         );
         assert!(said.contains("this folder is not empty"), "{said}");
