@@ -1,7 +1,10 @@
 //! Finds the programs that the loop starts, and starts one as several processes, by mpirun.
 use super::data::text;
 use super::error::Error;
+use crate::process::{Log, Outcome, Runner, Stop, Tie, errors_or_last_lines};
 use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
 
 /// What starts several processes.
 const MPIRUN: &str = "mpirun";
@@ -49,6 +52,32 @@ pub fn check(table: &str, processes: u32) -> Result<(), String> {
         ));
     }
     Ok(())
+}
+
+/// How long processes may take to meet: on many machines the program is read from one disk.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Starts so many processes of this program, which meet and end: whether mpirun is of the right MPI, and reaches its machines, is known before a
+/// solver has worked for an hour. `log` is removed again where they do.
+///
+/// # Errors
+/// Why they do not meet, by the last lines of the log; [`Error::Interrupted`].
+pub fn meet(processes: u32, log: &Path, stop: &Stop) -> Result<(), Error> {
+    let mut words = words(processes);
+    let [program, ..] = &words[..] else { return Ok(()) };
+    let mut command = Command::new(program);
+    words.extend([own()?, "ranks".into()]);
+    command.args(&words[1..]).envs(ENVIRONMENT);
+    let failed = |error: std::io::Error| Error::Failed(format!("{}: {error}", log.display()));
+    let said = Log::create(log).map_err(failed)?;
+    let runner = Runner { tie: Tie::Bound, limit: Some(PATIENCE), stop: &stop.now, log: Some(&said) };
+    let why = match runner.run(&mut command, |_| ()) {
+        Ok(Outcome::Done) => return std::fs::remove_file(log).map_err(failed),
+        Ok(Outcome::Interrupted) => return Err(Error::Interrupted),
+        Ok(outcome) => format!("{outcome}: {}", errors_or_last_lines(log, &[])),
+        Err(error) => error.to_string(),
+    };
+    Err(Error::Failed(format!("[adapt] processes = {processes}: `{}` {why}; see {}", words.join(" "), log.display())))
 }
 
 /// The words before those of a program that is started as so many processes; none for one.

@@ -78,6 +78,10 @@ pub fn run(loaded: &Loaded, options: &Options, observer: &dyn Observer, stop: &S
         )));
     }
     let steps = Steps { layout: &layout, observer, stop };
+    launch::meet(loaded.config.adapt.processes(), &layout.launch(), stop).map_err(|error| match error {
+        Error::Failed(message) => Error::Failed(format!("{}: {message}", loaded.path.display())),
+        other => other,
+    })?;
     begin(loaded, options, steps)?;
     let threads = loaded.config.threads.map_or_else(Vec::new, |threads| vec!["--threads".into(), threads.to_string()]);
     let pipeline = Pipeline { loaded, steps, options, threads };

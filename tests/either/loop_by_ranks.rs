@@ -68,13 +68,15 @@ fn what_cannot_be_part_by_part_is_refused_before_the_first_step() {
         let said = Place::new(adapt).refusal();
         assert!(said.contains(told), "{adapt}: {said}");
     }
-    let place = Place::new("");
-    let with = |option: &str| {
-        CONFIG.replace("['--part-vertices'", &format!("['--max-vertices', '{option}', '--part-vertices'"))
-    };
-    std::fs::write(place.path("loop.toml"), with("5000") + "memory = '1GiB'\n").unwrap();
-    let said = place.refusal();
-    assert!(said.contains("[adapt]: --max-vertices") && said.contains("leave it out of the options"), "{said}");
+    for (option, told) in
+        [("--max-vertices", "leave it out of the options"), ("--threads", "cannot be used multiple times")]
+    {
+        let place = Place::new("");
+        let config = CONFIG.replace("['--part-vertices'", &format!("['{option}', '500', '--part-vertices'"));
+        std::fs::write(place.path("loop.toml"), config + "memory = '1GiB'\n").unwrap();
+        let said = place.refusal();
+        assert!(said.contains(option) && said.contains("[adapt]") && said.contains(told), "{said}");
+    }
 }
 
 /// With one process, too; and only the kind of the adaptation is a difference, not how many processes and how much memory.
@@ -120,6 +122,29 @@ mod with_mpi {
         let said = complaint(&run);
         assert!(said.contains("no mpirun on the PATH") && said.contains("openmpi-bin"), "{said}");
         assert!(!place.path("out").exists());
+    }
+
+    /// It starts processes that each believe to be alone.
+    #[test]
+    fn the_mpirun_of_another_mpi_is_told_at_the_start() {
+        use std::os::unix::fs::PermissionsExt;
+        if !is_there() {
+            return;
+        }
+        let place = Place::new("processes = 2");
+        std::fs::write(
+            place.path("mpirun"),
+            "#!/bin/sh\nshift 2\nexport PMI_SIZE=2\n\"$@\" & \"$@\"; code=$?; wait; exit $code\n",
+        )
+        .unwrap();
+        std::fs::set_permissions(place.path("mpirun"), std::fs::Permissions::from_mode(0o755)).unwrap();
+        let path = format!("{}:{}", place.path("").display(), std::env::var("PATH").unwrap());
+        let said = complaint(&place.command().env("PATH", path).output().unwrap());
+        assert!(said.contains("[adapt] processes = 2: `mpirun -n 2 ") && said.contains("of another MPI"), "{said}");
+        assert_eq!(said.matches("PMI_SIZE").count(), 2, "once, and once in the remedy: {said}");
+        assert!(!place.path("out/start").exists());
+        place.run();
+        assert!(!place.path("out/mpirun.log").exists());
     }
 
     #[test]

@@ -14,6 +14,9 @@ pub fn words(loaded: &Loaded) -> Result<(), String> {
         adapt.push("--cad=model.step".into());
     }
     adapt.extend(config.adapt_words(config.schedule.complexity, has_model));
+    if config.threads.is_some() || config.adapt.threads.is_some() || config.adapt.processes() > 1 {
+        adapt.push("--threads=1".into());
+    }
     let mut all = vec![("[metric] and [adapt] options", adapt)];
     if mesh.bootstrap.is_some() {
         let bootstrap = fixed(&["bootstrap", "model.step", "-o", "mesh.meshb"]);
