@@ -1,7 +1,9 @@
 //! Ctrl-C, and the signals that ask a program to end: one answer for all commands.
 //!
 //! By itself an interrupt ends the program at once, with exit code 130; a program that it has started is ended first. A command that can
-//! come to a good end says so ([`finish_on`]): then the first interrupt asks for that, and a second one ends it at once.
+//! come to a good end says so ([`finish_on`]): then the first interrupt asks for that, and a second one ends it at once. SIGUSR1 asks for it
+//! too, however often it comes: mpirun hands it on to its processes and leaves them their time, while it ends them one second after an interrupt.
+use super::terminal;
 use crate::process::{self, Stop};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
@@ -30,7 +32,7 @@ pub fn listen() {
         let says = *FINISHES.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(says) = says.filter(|_| is_first) {
             IS_TOLD.store(true, SeqCst);
-            super::tell(format_args!("\ngeo-adapt: interrupted: {says}"));
+            tell(says);
             return;
         }
         STOP.now.store(true, SeqCst);
@@ -43,10 +45,16 @@ pub fn listen() {
     let _ = ctrlc::set_handler(handler);
 }
 
+fn tell(what: &str) {
+    if !terminal::is_hushed() {
+        terminal::tell(format_args!("\ngeo-adapt: interrupted: {what}"));
+    }
+}
+
 /// Ends the program from whichever thread, whatever the others are at.
 fn leave() -> ! {
     if !IS_TOLD.load(SeqCst) {
-        super::tell("\ngeo-adapt: interrupted: nothing was written");
+        tell("nothing was written");
     }
     super::workplace::clear();
     #[cfg(unix)]
@@ -61,7 +69,17 @@ fn leave() -> ! {
 /// From now on the first interrupt asks the command to come to its end, and says this.
 pub fn finish_on(says: &'static str) -> &'static AtomicBool {
     *FINISHES.lock().unwrap_or_else(PoisonError::into_inner) = Some(says);
+    #[cfg(unix)]
+    // SAFETY: the handler does nothing but to store in an atomic, which a handler may.
+    unsafe {
+        libc::signal(libc::SIGUSR1, ask as *const () as libc::sighandler_t);
+    }
     &STOP.asked
+}
+
+#[cfg(unix)]
+extern "C" fn ask(_: libc::c_int) {
+    STOP.asked.store(true, SeqCst);
 }
 
 /// From now on an interrupt ends the program at once again. The flag returned is set when that has to wait for a program that runs.

@@ -78,6 +78,9 @@ enum Command {
     /// Run a case of OpenFOAM that `cycle` has prepared
     #[command(hide = true)]
     Openfoam(openfoam::Arguments),
+    /// Start as one of several processes, meet the others, and end
+    #[command(hide = true)]
+    Ranks,
     /// Bring fields from one mesh to another
     Transfer(transfer::Arguments),
     /// Measure which back-end, strategy and grain are the fastest on a case
@@ -91,7 +94,7 @@ impl Command {
     fn line(&self) -> Option<Waiting> {
         let what = match self {
             Self::Adapt(_) | Self::Bootstrap(_) | Self::Cycle(_) | Self::Openfoam(_) | Self::Tune(_) => return None,
-            Self::Completions(_) | Self::Man(_) => return None,
+            Self::Completions(_) | Self::Man(_) | Self::Ranks => return None,
             Self::Classify(_) => "putting the mesh on the model",
             Self::Convert(_) => "converting",
             Self::Field(_) => "working on fields",
@@ -140,7 +143,7 @@ pub fn main() -> ExitCode {
     arguments.how.set();
     notices.iter().for_each(note);
     interrupt::listen();
-    if !matches!(arguments.command, Command::Adapt(_)) && ranks::is_one_of_several() {
+    if !matches!(arguments.command, Command::Adapt(_) | Command::Ranks) && ranks::is_one_of_several() {
         terminal::error(
             "several processes were started, and each would do all of the work: `adapt` alone shares it (start this one without mpirun or srun)",
         );
@@ -161,6 +164,7 @@ pub fn main() -> ExitCode {
         Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
         Command::Openfoam(arguments) => openfoam::run(&arguments),
+        Command::Ranks => ranks::start().map(drop).map(|()| ExitCode::SUCCESS).map_err(Into::into),
         Command::Transfer(arguments) => transfer::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::View(arguments) => view::run(&arguments),

@@ -17,6 +17,7 @@ pub struct How {
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 static VERBOSE: AtomicU8 = AtomicU8::new(0);
+static HUSHED: AtomicBool = AtomicBool::new(false);
 
 impl How {
     /// Holds from now on.
@@ -32,6 +33,12 @@ impl How {
 /// Says nothing from now on but errors: another process speaks for this one.
 pub fn hush() {
     QUIET.store(true, Relaxed);
+    HUSHED.store(true, Relaxed);
+}
+
+/// Whether another process speaks for this one.
+pub fn is_hushed() -> bool {
+    HUSHED.load(Relaxed)
 }
 
 /// Whether nothing but errors is wanted.

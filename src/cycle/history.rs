@@ -27,6 +27,8 @@ pub struct Cycle {
     pub seconds: Seconds,
     /// Edge lengths, mean ratios and more of the mesh in its metric, as `adapt --report` has them; none of the first mesh.
     pub statistics: Option<Value>,
+    /// Processes that adapted the mesh, where it was adapted part by part.
+    pub processes: Option<usize>,
     /// Whether there are pictures.
     pub pictures: bool,
 }
@@ -60,6 +62,7 @@ impl Cycle {
         let adapted = (cycle > 1).then(|| layout.step(cycle - 1, "adapt"));
         let report = adapted.as_ref().and_then(|folder| fs::read(folder.join("report.json")).ok());
         let report: Option<Value> = report.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        let processes = report.as_ref().and_then(|report| Some(report["parts"]["processes"].as_array()?.len()));
         Some(Self {
             cycle,
             complexity: adapted.and_then(|folder| finished::<Adapted>(&folder)).map(|done| done.result.complexity),
@@ -68,6 +71,7 @@ impl Cycle {
             functionals: solved.functionals,
             seconds: seconds.collect(),
             statistics: report.and_then(|mut report| Some(report.get_mut("statistics")?.take())),
+            processes,
             pictures: finished::<Value>(&layout.step(cycle, "picture")).is_some(),
         })
     }

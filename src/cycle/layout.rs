@@ -37,6 +37,11 @@ impl Layout {
         self.root.join("lock")
     }
 
+    /// What mpirun says where it cannot start processes.
+    pub fn launch(&self) -> PathBuf {
+        self.root.join("mpirun.log")
+    }
+
     /// The report page.
     pub fn page(&self) -> PathBuf {
         self.root.join("report.html")

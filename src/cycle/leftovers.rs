@@ -10,11 +10,14 @@ use std::time::{Duration, Instant};
 /// The file with the group of the program that runs in a step.
 pub const PID: &str = "pid";
 
+/// How long a program may take to end: mpirun ends its own ones first, which are in other groups.
+const LENIENCY: Duration = Duration::from_secs(4);
+
 /// How long between two looks.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// After so long the user is told what is waited for.
-const PATIENCE: Duration = Duration::from_secs(1);
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Ends programs that still run in the folder of a step and write to its log. Returns whether there were any; `tell` is told about a wait.
 ///
@@ -30,11 +33,15 @@ pub fn end(folder: &Path, stop: &Stop, tell: &dyn Fn(&str)) -> Result<bool, Erro
         Err(TryLockError::Error(_)) => return Ok(false),
     }
     let text = fs::read_to_string(folder.join(PID)).ok();
-    if let Some(group) = text.as_deref().and_then(Group::parse).filter(|group| group.is_there(&log)) {
-        group.kill();
-    }
+    let mut group = text.as_deref().and_then(Group::parse).filter(|group| group.is_there(&log));
+    group.iter().for_each(Group::ask_to_end);
     let (began, mut is_told) = (Instant::now(), false);
     while matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
+        if began.elapsed() > LENIENCY
+            && let Some(group) = group.take()
+        {
+            group.kill();
+        }
         if stop.asked.load(Relaxed) {
             return Err(Error::Interrupted);
         }

@@ -2,6 +2,7 @@
 //!
 //! Every step has a folder of its own and is a command that the user can type again (`step`). What is there on the disk is the
 //! whole state: a loop that was killed goes on after its last finished step.
+mod adaptation;
 mod changes;
 mod config;
 mod data;
@@ -11,6 +12,7 @@ pub mod example;
 mod field_value;
 mod history;
 mod inputs;
+pub mod launch;
 mod layout;
 mod leftovers;
 mod observer;

@@ -1,5 +1,6 @@
 //! The steps of a cycle, each by the commands that make it.
-use super::config::{FIRST, Loaded, TransferMethod, option};
+use super::adaptation::{self, begun};
+use super::config::{Loaded, TransferMethod, option};
 use super::data::{Adapted, Begun, FieldName, SolveResult, text};
 use super::done::Done;
 use super::error::Error;
@@ -45,13 +46,11 @@ impl<'a> Pipeline<'a> {
                 let mut words = vec!["bootstrap".into(), text(&model), "-o".into(), text(&target)];
                 words.extend(self.loaded.config.bootstrap_words().into_iter().chain(self.threads.clone()));
                 running.geo_adapt(words)?;
-                let domain = target.with_extension("brep");
-                let cad = Some(if mesh.far_field.is_some() { domain } else { model });
-                return Ok(Begun { cad, surface: None });
+                return Ok(begun(self.loaded, &target));
             }
             if let Some(cells) = mesh.cube {
                 write_mesh(&target, &cube(cells))?;
-                return Ok(self.begun(&target));
+                return Ok(begun(self.loaded, &target));
             }
             let Some(file) = &mesh.file else {
                 return Err(Error::Failed("[mesh] names neither file nor bootstrap".into()));
@@ -63,15 +62,8 @@ impl<'a> Pipeline<'a> {
             } else {
                 running.geo_adapt(vec!["convert".into(), text(&file), text(&target)])?;
             }
-            Ok(self.begun(&target))
+            Ok(begun(self.loaded, &target))
         })
-    }
-
-    /// What the boundary of the first mesh lies on.
-    fn begun(&self, first: &Path) -> Begun {
-        let mesh = &self.loaded.config.mesh;
-        let at = |path: &Path| if path == Path::new(FIRST) { first.to_owned() } else { self.loaded.at(path) };
-        Begun { cad: mesh.cad.as_deref().map(|cad| self.loaded.at(cad)), surface: mesh.surface.as_deref().map(at) }
     }
 
     /// The solution on the mesh of a cycle; `before` are the fields of the last one, where it was brought here.
@@ -181,19 +173,10 @@ impl<'a> Pipeline<'a> {
     }
 
     /// The next mesh.
-    pub fn adapt(&self, cycle: u32, Begun { cad, surface }: &Begun) -> Result<Done<Adapted>, Error> {
-        let (layout, config) = (self.layout(), &self.loaded.config);
-        let complexity = config.schedule.of_cycle(cycle);
-        self.steps.step(layout.step(cycle, "adapt"), |running| {
-            let mut words = vec!["adapt".into(), text(&layout.mesh(cycle))];
-            words.extend(["-o".into(), text(&running.file("mesh.meshb"))]);
-            words.extend(["--field".into(), text(&layout.step(cycle, "metric").join("sensors.solb"))]);
-            words.extend(["--report".into(), text(&running.file("report.json"))]);
-            option(&mut words, "--cad", cad.as_deref().map(text).as_ref());
-            option(&mut words, "--surface", surface.as_deref().map(text).as_ref());
-            let has_model = cad.is_some() || surface.is_some();
-            words.extend(config.adapt_words(complexity, has_model).into_iter().chain(self.threads.clone()));
-            running.geo_adapt(words)?;
+    pub fn adapt(&self, cycle: u32, begun: &Begun) -> Result<Done<Adapted>, Error> {
+        let complexity = self.loaded.config.schedule.of_cycle(cycle);
+        self.steps.step(self.layout().step(cycle, "adapt"), |running| {
+            running.call(&adaptation::call(self.loaded, self.layout(), self.options.threads, cycle, begun)?)?;
             Ok(Adapted { complexity })
         })
     }

@@ -1,8 +1,10 @@
 //! What a run would do: for `geo-adapt cycle --dry-run`. Nothing is written.
+use super::adaptation::{self, begun};
 use super::config::{Loaded, TransferMethod};
 use super::error::Error;
 use super::layout::Layout;
-use super::run::{State, found};
+use super::observer::Options;
+use super::run::{State, found, launchable};
 use std::path::{Path, PathBuf};
 
 /// What a run would do.
@@ -16,6 +18,8 @@ pub struct Plan {
     pub taken: Vec<String>,
     /// The step that comes next; none where the loop has ended.
     pub next: Option<String>,
+    /// The command of the next adaptation; none where there is none.
+    pub adaptation: Option<String>,
     /// The adaptations that the schedule has, with their complexities: the first so many.
     pub complexities: Vec<f64>,
     /// Adaptations at most, where that is known.
@@ -29,8 +33,9 @@ const TOLD: u32 = 50;
 ///
 /// # Errors
 /// What the run would refuse.
-pub fn plan(loaded: &Loaded, restart: bool) -> Result<Plan, Error> {
-    loaded.config.solver.solver().check(&loaded.base).map_err(|error| format!("{}: {error}", loaded.path.display()))?;
+pub fn plan(loaded: &Loaded, options: &Options) -> Result<Plan, Error> {
+    let restart = options.restart;
+    launchable(loaded)?;
     let folder = loaded.output();
     check_folder(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let layout = Layout::new(folder.canonicalize().unwrap_or(folder));
@@ -42,7 +47,13 @@ pub fn plan(loaded: &Loaded, restart: bool) -> Result<Plan, Error> {
     let finished: Vec<String> = all.iter().take_while(is_done).cloned().collect();
     let next = all.get(finished.len()).cloned();
     let complexities = (1..=last.unwrap_or(TOLD).min(TOLD)).map(|cycle| schedule.of_cycle(cycle)).collect();
-    Ok(Plan { folder: layout.root().to_owned(), finished, taken, next, complexities, last })
+    let adapted = finished.iter().filter(|step| step.ends_with("/adapt")).count() as u32;
+    let adaptation = (adapted < last.unwrap_or(TOLD)).then(|| {
+        let begun = begun(loaded, &layout.mesh(1));
+        adaptation::call(loaded, &layout, options.threads, adapted + 1, &begun).map(|call| call.line())
+    });
+    let adaptation = adaptation.transpose()?;
+    Ok(Plan { folder: layout.root().to_owned(), finished, taken, next, adaptation, complexities, last })
 }
 
 /// The steps of a loop of so many adaptations, without its pictures.

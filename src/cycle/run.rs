@@ -6,6 +6,7 @@ use super::done::write_json;
 use super::error::Error;
 use super::history::History;
 use super::inputs::{self, Fingerprints};
+use super::launch;
 use super::layout::Layout;
 use super::observer::{Observer, Options};
 use super::pipeline::Pipeline;
@@ -16,6 +17,7 @@ use super::{leftovers, report};
 use crate::geometry::names;
 use crate::mesh::io::read_mesh;
 use crate::process::Stop;
+use crate::ranks;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::Write;
@@ -62,7 +64,7 @@ struct Version {
 /// # Errors
 /// [`Error::Interrupted`] when the user ended it, [`Error::Failed`] with place and remedy. In both cases it goes on with the same call.
 pub fn run(loaded: &Loaded, options: &Options, observer: &dyn Observer, stop: &Stop) -> Result<Ended, Error> {
-    loaded.config.solver.solver().check(&loaded.base).map_err(|error| format!("{}: {error}", loaded.path.display()))?;
+    launchable(loaded)?;
     let folder = loaded.output();
     let named = |error: std::io::Error| Error::Failed(format!("{}: {error}", folder.display()));
     fs::create_dir_all(&folder).map_err(named)?;
@@ -76,12 +78,29 @@ pub fn run(loaded: &Loaded, options: &Options, observer: &dyn Observer, stop: &S
         )));
     }
     let steps = Steps { layout: &layout, observer, stop };
+    launch::meet(loaded.config.adapt.processes(), &layout.launch(), stop).map_err(|error| match error {
+        Error::Failed(message) => Error::Failed(format!("{}: {message}", loaded.path.display())),
+        other => other,
+    })?;
     begin(loaded, options, steps)?;
     let threads = loaded.config.threads.map_or_else(Vec::new, |threads| vec!["--threads".into(), threads.to_string()]);
     let pipeline = Pipeline { loaded, steps, options, threads };
     let outcome = go(&pipeline, observer, stop);
     drop(lock);
     outcome
+}
+
+/// Refuses what asks for programs that are not there, before the first of them has worked for an hour.
+///
+/// # Errors
+/// Which, and how to get it.
+pub(super) fn launchable(loaded: &Loaded) -> Result<(), Error> {
+    let (config, several) = (&loaded.config, loaded.config.adapt.processes());
+    let own = if several > 1 { ranks::check() } else { Ok(()) };
+    let own = own.map_err(|error| format!("[adapt] processes is above 1, but {error}; or give processes = 1"));
+    let checked = own.and_then(|()| launch::check("[adapt]", several));
+    let checked = checked.and_then(|()| config.solver.solver().check(&loaded.base));
+    checked.map_err(|error| Error::Failed(format!("{}: {error}", loaded.path.display())))
 }
 
 /// Begins a loop, or goes on with what is there.

@@ -1,7 +1,8 @@
 //! A step: a folder that is either done, or begun anew.
-use super::data::{Call, text};
+use super::data::Call;
 use super::done::{Done, read, write_json};
 use super::error::Error;
+use super::launch;
 use super::layout::{DONE, Layout};
 use super::leftovers;
 use super::observer::Observer;
@@ -112,14 +113,12 @@ impl Running<'_> {
         let log = self.folder.join("log.txt");
         let message = format!(
             "{} {outcome}; the last lines of {}:\n{}\nits command is in {}; finished steps are kept: mend the cause and start the loop again",
-            call.words.iter().take(2).cloned().collect::<Vec<_>>().join(" "),
+            call.words[..call.words.len().min(2 + own_place(call).unwrap_or(0))].join(" "),
             log.display(),
             last_lines(&log),
             self.folder.join("command.txt").display()
         );
-        let is_memory =
-            outcome == Outcome::Killed || is_own(call) && outcome == Outcome::Code(memory::end::EXIT_CODE.into());
-        Err(if is_memory { Error::OutOfMemory(message) } else { Error::Failed(message) })
+        Err(if is_memory_end(call, outcome) { Error::OutOfMemory(message) } else { Error::Failed(message) })
     }
 
     /// Runs a program to its end, its output in the log, its process group in a file of the folder.
@@ -142,14 +141,20 @@ impl Running<'_> {
 
     /// Runs a subcommand of this program.
     pub fn geo_adapt(&mut self, words: Vec<String>) -> Result<(), Error> {
-        let program =
-            std::env::current_exe().map_err(|error| Error::Failed(format!("this program's own file: {error}")))?;
-        let words = std::iter::once(text(&program)).chain(words).collect();
+        let words = std::iter::once(launch::own()?).chain(words).collect();
         self.call(&Call { words, env: Vec::new(), folder: self.folder.clone() })
     }
 }
 
-/// Whether a command is one of this program.
-fn is_own(call: &Call) -> bool {
-    std::env::current_exe().is_ok_and(|program| call.words.first() == Some(&text(&program)))
+/// Where in a command this program is named: at its beginning, or behind mpirun.
+fn own_place(call: &Call) -> Option<usize> {
+    let own = launch::own().ok()?;
+    call.words.iter().position(|word| *word == own)
+}
+
+/// Whether a command has ended for want of memory. Of several processes the system kills one, and mpirun tells it by its exit code.
+fn is_memory_end(call: &Call, outcome: Outcome) -> bool {
+    let ends = [memory::end::EXIT_CODE.into(), launch::KILLED];
+    let is_end = matches!(outcome, Outcome::Code(code) if ends.contains(&code));
+    outcome == Outcome::Killed || is_end && own_place(call).is_some()
 }

@@ -91,7 +91,7 @@ pub fn last_lines(log: &Path) -> String {
         .join("\n")
 }
 
-/// The last lines of the last program, in one line. Errors come first, but lines with one of these words, which only sum errors up, do
+/// The last lines of the last program, in one line, none of them twice in a row. Errors come first, but lines with one of these words, which only sum errors up, do
 /// not count as errors.
 pub fn errors_or_last_lines(log: &Path, sums: &[&str]) -> String {
     let text = end_of(log);
@@ -101,7 +101,9 @@ pub fn errors_or_last_lines(log: &Path, sums: &[&str]) -> String {
     let lines: Vec<&str> = lines.map(str::trim).filter(says_something).collect();
     let is_error = |line: &&str| line.contains("rror") && !sums.iter().any(|word| line.contains(word));
     let errors: Vec<&str> = lines.iter().copied().filter(is_error).collect();
-    let told = if errors.is_empty() { &lines } else { &errors };
+    let mut told = if errors.is_empty() { lines } else { errors };
+    // Several processes say the same.
+    told.dedup();
     told[told.len().saturating_sub(IN_ONE_LINE)..].join(" | ")
 }
 
@@ -137,5 +139,6 @@ mod tests {
         assert_eq!(told("$ mesher\none\ntwo\nthree\nfour\n"), "two | three | four");
         let text = "$ mesher\nError: before\n$ mesher again\nError: no room\nError : ---\nError : 2 errors\ngoodbye\n";
         assert_eq!(told(text), "Error: no room");
+        assert_eq!(told("Error: no licence\nError: no licence\nabout\nError: no licence\n"), "Error: no licence");
     }
 }

@@ -26,7 +26,7 @@ pub use abort::abort;
 pub use alone::Alone;
 #[cfg(any(test, feature = "internals"))]
 pub use start::start_in_pieces;
-pub use start::{is_one_of_several, start};
+pub use start::{check, is_one_of_several, start};
 pub use together::{agree, broadcast, sum, sum_reals};
 
 /// The processes of a run. What is said of one rank holds for all: they make the same calls in the same order.

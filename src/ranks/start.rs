@@ -8,6 +8,9 @@ const NUMBERS: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_
 /// The longest message of MPI, bytes. It counts in 32 bits with sign, so longer ones go in pieces.
 const PIECE: usize = 1 << 30;
 
+/// How to get a program that can be one of several processes.
+const REMEDY: &str = "build it with `cargo build --release --features mpi` (on Debian: apt install libopenmpi-dev openmpi-bin libclang-dev)";
+
 /// What started this process as one of several.
 struct Launched {
     variable: &'static str,
@@ -56,10 +59,17 @@ fn start_several(launched: &Launched, piece: usize) -> Result<Box<dyn Ranks>, St
 fn start_several(launched: &Launched, _: usize) -> Result<Box<dyn Ranks>, String> {
     let Launched { variable, processes } = launched;
     Err(format!(
-        "{processes} processes were started ({variable}), but this geo-adapt was built without MPI, and each would do all of the work. \
-         Build it with `cargo build --release --features mpi` (on Debian: apt install libopenmpi-dev openmpi-bin libclang-dev), or start \
-         one process, without mpirun. Where a program under mpirun starts geo-adapt as a single process, unset {variable}"
+        "{processes} processes were started ({variable}), but this geo-adapt was built without MPI, and each would do all of the work: \
+         {REMEDY}, or start one process, without mpirun. Where a program under mpirun starts geo-adapt as a single process, unset {variable}"
     ))
+}
+
+/// Refuses to start several processes of this program where it was built for one. Says nothing to the others.
+///
+/// # Errors
+/// Without the feature `mpi`. The text says how to get it.
+pub fn check() -> Result<(), String> {
+    if cfg!(feature = "mpi") { Ok(()) } else { Err(format!("this geo-adapt was built without MPI: {REMEDY}")) }
 }
 
 /// Whether a launcher has started this process as one of several. Says nothing to the others.

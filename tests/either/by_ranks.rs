@@ -25,30 +25,16 @@ fn a_program_without_mpi_says_how_to_get_it() {
 #[cfg(feature = "mpi")]
 mod with_mpi {
     use super::*;
+    use crate::mpirun::{is_there, mpirun};
     use geo_adapt::mesh::io::read_mesh;
     use std::fs;
-    use std::path::PathBuf;
-    use std::process::{Child, Command, Output, Stdio};
-    use std::time::{Duration, Instant};
+    use std::process::{Command, Output};
 
-    /// How long a run may take in which a process fails: what hangs, hangs for ever.
-    const PATIENCE: Duration = Duration::from_secs(30);
-
-    /// `mpirun` with a command on so many processes; none where there is no mpirun.
-    fn launched(ranks: usize, alone: &Command) -> Option<Command> {
-        let there =
-            Command::new("mpirun").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
-        assert!(there || std::env::var_os("GEO_ADAPT_SET_UP").is_none(), "tests/run has set up mpirun");
-        if !there {
-            eprintln!("skipped: mpirun is not there (apt-get install openmpi-bin)");
-            return None;
-        }
-        let mut command = Command::new("mpirun");
-        // More ranks than cores, and as root in CI.
-        command.args(["--oversubscribe", "-n", &ranks.to_string()]);
-        command.envs([("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")]);
-        command.arg(alone.get_program()).args(alone.get_args()).stdin(Stdio::null());
-        Some(command)
+    /// `mpirun` with a command on so many processes.
+    fn launched(ranks: usize, alone: &Command) -> Command {
+        let mut command = mpirun(ranks);
+        command.arg(alone.get_program()).args(alone.get_args());
+        command
     }
 
     fn written(work: &Workplace) -> [Vec<u8>; 2] {
@@ -63,6 +49,9 @@ mod with_mpi {
 
     #[test]
     fn the_same_bytes_on_any_number_of_processes() {
+        if !is_there() {
+            return;
+        }
         let work = Workplace::new();
         let mesh = work.mesh(&cube(3, |p| if p[0] < 0.6 { 1 } else { 2 }));
         let alone = [&FIELD[..], &["--memory", "4GiB", "--threads", "1"]].concat();
@@ -71,8 +60,7 @@ mod with_mpi {
         for (ranks, more) in
             [(2, &["--threads", "1"][..]), (3, &["--threads", "2"]), (5, &["--threads", "1", "--memory", "1MB"])]
         {
-            let Some(mut run) = launched(ranks, &work.command(&mesh, &[&FIELD[..], more].concat())) else { return };
-            let run = run.output().unwrap();
+            let run = launched(ranks, &work.command(&mesh, &[&FIELD[..], more].concat())).output().unwrap();
             ended_well(&run);
             assert_eq!(String::from_utf8_lossy(&run.stdout).matches("unit edges").count(), 1, "one of them speaks");
             assert!(written(&work) == bytes, "{ranks} processes");
@@ -81,8 +69,7 @@ mod with_mpi {
         let [vtu, back] = ["out.vtu", "back.meshb"].map(|name| text(&work.path(name)));
         let mut to_vtu = program();
         to_vtu.args(["adapt", &text(&mesh), "-o", &vtu]).args(FIELD);
-        let Some(mut run) = launched(2, &to_vtu) else { return };
-        ended_well(&run.output().unwrap());
+        ended_well(&launched(2, &to_vtu).output().unwrap());
         ended_well(&program().args(["convert", &vtu, &back]).output().unwrap());
         let [known, back] = [work.path("known.meshb"), work.path("back.meshb")];
         fs::write(&known, &bytes[0]).unwrap();
@@ -104,66 +91,8 @@ mod with_mpi {
         ended_well(&work.command(&mesh, &[&field[..], &["--memory", "4GiB"]].concat()).output().unwrap());
         let bytes = written(&work);
         for (ranks, more) in [(2, &["--threads", "1"][..]), (4, &["--threads", "2", "--memory", "1MB"])] {
-            let Some(mut run) = launched(ranks, &work.command(&mesh, &[&field[..], more].concat())) else { return };
-            ended_well(&run.output().unwrap());
+            ended_well(&launched(ranks, &work.command(&mesh, &[&field[..], more].concat())).output().unwrap());
             assert!(written(&work) == bytes, "{ranks} processes");
         }
-    }
-
-    #[test]
-    fn an_error_is_told_once() {
-        let work = Workplace::new();
-        let Some(mut run) = launched(3, &work.command(&work.path("no such mesh.meshb"), &FIELD)) else { return };
-        let began = Instant::now();
-        let run = run.output().unwrap();
-        let said = stderr(&run);
-        assert!(!run.status.success() && began.elapsed() < PATIENCE, "{said}");
-        assert_eq!(said.matches("geo-adapt: error:").count(), 1, "{said}");
-        assert!(said.contains("no such mesh.meshb") && !said.contains("panicked"), "{said}");
-    }
-
-    /// The processes that mpirun has started.
-    fn processes(mpirun: &Child) -> Vec<PathBuf> {
-        let is_ours = |path: &PathBuf| {
-            let stat = fs::read_to_string(path.join("stat")).unwrap_or_default();
-            let after = stat.rsplit(") ").next().unwrap_or_default();
-            after.split(' ').nth(1) == Some(&mpirun.id().to_string())
-        };
-        fs::read_dir("/proc").unwrap().flatten().map(|entry| entry.path()).filter(is_ours).collect()
-    }
-
-    #[test]
-    fn a_killed_process_ends_all_and_the_run_goes_on_from_there() {
-        let work = Workplace::new();
-        let mesh = work.mesh(&cube(3, |_| 1));
-        let alone = [&FIELD[..], &["--memory", "1MB", "--threads", "1"]].concat();
-        ended_well(&work.command(&mesh, &alone).output().unwrap());
-        let known = written(&work);
-        let kills = if std::env::var_os("GEO_ADAPT_LONG").is_some() { 30 } else { 3 };
-        let mut is_killed = 0;
-        for kill in 0..kills {
-            let Some(mut run) = launched(3, &work.command(&mesh, &alone)) else { return };
-            let mut run = run.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-            std::thread::sleep(Duration::from_millis(700 + 150 * (kill % 7)));
-            let ranks = processes(&run);
-            if let Some(rank) = ranks.get(kill as usize % ranks.len().max(1)) {
-                let pid = rank.file_name().unwrap().to_str().unwrap();
-                is_killed += i32::from(Command::new("kill").args(["-9", pid]).status().unwrap().success());
-            }
-            let began = Instant::now();
-            while run.try_wait().unwrap().is_none() {
-                assert!(began.elapsed() < PATIENCE, "it hangs");
-                std::thread::sleep(Duration::from_millis(10));
-            }
-            let [mesh, metric] = ["out.meshb", "out.solb"].map(|name| work.path(name));
-            assert_eq!(mesh.exists(), metric.exists());
-            if mesh.exists() {
-                assert!(written(&work) == known);
-            }
-        }
-        assert!(is_killed > 0);
-        let Some(mut run) = launched(2, &work.command(&mesh, &alone)) else { return };
-        ended_well(&run.output().unwrap());
-        assert!(written(&work) == known && !work.path("out.meshb.scratch").exists());
     }
 }

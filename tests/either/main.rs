@@ -12,7 +12,12 @@ mod growth;
 mod inspect;
 mod kill_points;
 mod library;
+mod loop_by_ranks;
 mod memory_end;
+#[cfg(feature = "mpi")]
+mod mpirun;
 mod narrow_voids;
 mod no_backend;
+#[cfg(feature = "mpi")]
+mod rank_faults;
 mod ranks;

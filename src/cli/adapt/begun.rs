@@ -69,34 +69,44 @@ impl Begun {
         }
     }
 
-    /// Adapts it, with the source that came with it. `how` is a name for the way.
+    /// A name for it, and for how it is adapted.
+    pub fn name(&self, how: &str) -> u64 {
+        let on = self.on();
+        let mut name = DefaultHasher::new();
+        how.hash(&mut name);
+        self.complexity().to_bits().hash(&mut name);
+        on.place.entities.hash(&mut name);
+        on.place.faces.hash(&mut name);
+        name.write(bytemuck::cast_slice(&on.mesh.vertices));
+        name.write(bytemuck::cast_slice(&on.mesh.tets.nodes));
+        name.write(bytemuck::cast_slice(&on.mesh.tets.refs));
+        name.write(bytemuck::cast_slice(&on.mesh.triangles.nodes));
+        match self {
+            Self::Whole { logs, .. } => logs.iter().for_each(|log| name.write(bytemuck::bytes_of(&log.0))),
+            Self::Slices(sliced) => sliced.shell.name.hash(&mut name),
+        }
+        name.finish()
+    }
+
+    /// Adapts it, with the source that came with it. `name` is one for this and for the way.
     pub fn adapt<'a>(
         &self,
         common: Common<'a>,
         source: Option<Source>,
-        how: &str,
+        name: u64,
         goes_on: impl FnOnce(usize),
     ) -> Result<Adapted<'a>, decomposition::Error> {
         let team = Team::new(common.pool, common.options.plan);
         let (on, complexity) = (self.on(), self.complexity());
-        let mut name = DefaultHasher::new();
-        how.hash(&mut name);
-        complexity.to_bits().hash(&mut name);
-        on.place.entities.hash(&mut name);
-        on.place.faces.hash(&mut name);
         match self {
             Self::Whole { logs, .. } => {
                 let input = InMemory { mesh: &on.mesh, logs };
-                input.hash(&mut name);
                 let skin = Skin::of(team, &on.mesh, &on.place);
-                let given = Given { input: &input, skin: &skin, source, complexity, name: name.finish() };
-                decomposition::adapt(common, given, goes_on)
+                decomposition::adapt(common, Given { input: &input, skin: &skin, source, complexity, name }, goes_on)
             }
             Self::Slices(Sliced { shell, files, .. }) => {
-                shell.name.hash(&mut name);
                 let skin = shell.skin(team, &on.place);
-                let given = Given { input: files, skin: &skin, source, complexity, name: name.finish() };
-                decomposition::adapt(common, given, goes_on)
+                decomposition::adapt(common, Given { input: files, skin: &skin, source, complexity, name }, goes_on)
             }
         }
     }

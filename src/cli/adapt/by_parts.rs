@@ -14,7 +14,7 @@ use crate::cli::{BAD_INPUT, INVALID, Outcome, interrupt, note};
 use crate::decomposition::{Adapted, Common, Shelf, Sizes, Told, wanted_vertices};
 use crate::memory;
 use crate::metric::statistics::Statistics;
-use crate::ranks::{Ranks, Traffic, agree};
+use crate::ranks::{Ranks, Traffic, agree, broadcast};
 use crate::tasks::{Plan, Pool, Team, stage};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -94,9 +94,13 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
         arguments.check_references(on).map_err(named)?;
     }
     let options = arguments.options(plan, freeze);
+    let run = begun.name(&arguments.how(&options));
+    agreed(ranks, is_same(ranks, run))?;
     let vertices = wanted_vertices(begun.complexity()).max(on.size[0] as f64);
     let place = agreed(ranks, arguments.parts.place(&arguments.output, vertices, threads, ranks))?;
-    let progress = Progress::new(progress::finish_on_interrupt());
+    let is_alone = ranks.count() == 1;
+    let stop = if is_alone { progress::finish_on_interrupt() } else { progress::finish_on_interrupt_of_mpirun() };
+    let progress = Progress::new(stop);
     progress.tell_forecasts(None, &arguments.output);
     let shelf = place.scratch.as_ref().map_or_else(Shelf::in_memory, Scratch::shelf);
     let common = Common {
@@ -110,7 +114,7 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
         observer: &progress,
     };
     let goes_on = |rounds| note(format_args!("a run that was ended before goes on after round {rounds}"));
-    let adapted = begun.adapt(common, source, &arguments.how(&options), goes_on);
+    let adapted = begun.adapt(common, source, run, goes_on);
     progress.finish();
     agreed(ranks, progress.has_room().map_err(Error::from))?;
     let adapted = adapted.map_err(|error| named(error.to_string()))?;
@@ -126,6 +130,15 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
         scratch.remove();
     }
     Ok(code)
+}
+
+/// Refuses inputs that are not those of rank 0: the result would be of both.
+fn is_same(ranks: &dyn Ranks, run: u64) -> Result<(), Error> {
+    if broadcast(ranks, &run.to_le_bytes()) == run.to_le_bytes() {
+        return Ok(());
+    }
+    Err("its mesh, metric or model is not the one that rank 0 has: let all processes see the same files, and run the same program on machines of one \
+         kind".into())
 }
 
 /// Where pieces lie, and whether the result is made in memory.
@@ -163,6 +176,14 @@ impl PartArguments {
 }
 
 impl Arguments {
+    /// Refuses what so many processes, or one with --memory, cannot do.
+    ///
+    /// # Errors
+    /// What, and what to give instead.
+    pub fn fits_processes(&self, processes: u32) -> Result<(), Error> {
+        if processes > 1 || self.parts.memory.is_some() { self.fits_parts() } else { Ok(()) }
+    }
+
     /// Refuses what cannot be done part by part.
     fn fits_parts(&self) -> Result<(), Error> {
         let refused = [

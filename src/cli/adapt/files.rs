@@ -95,16 +95,22 @@ impl Targets {
         let mut outputs = self.outputs()?;
         let [vertices, tets] = adapted.size();
         let counts = MeshCounts { vertices, tets, ..MeshCounts::of(&report.mesh) };
-        let writer = outputs.slices(&self.mesh, metric, &counts, &report.names)?;
         let measured = Mutex::new(Measured::of(team, &report.mesh, &report.metrics));
-        writer.put_listed(team, &report.mesh, &report.metrics)?;
+        let mut begun = || -> Result<_, Failure> {
+            let writer = outputs.slices(&self.mesh, metric, &counts, &report.names)?;
+            writer.put_listed(team, &report.mesh, &report.metrics)?;
+            Ok(writer)
+        };
+        // Other ranks wait to give their slices, so an error is told at the first of these.
+        let writer = begun().map_err(|error| error.to_string());
         adapted.for_each_slice(|mut slice| {
             let told = |error: Failure| decomposition::Error::Told(error.to_string());
+            let writer = writer.as_ref().map_err(|error| decomposition::Error::Told(error.clone()))?;
             writer.put(&slice).map_err(told)?;
             measured.lock().unwrap_or_else(PoisonError::into_inner).add(&mut slice);
             Ok(())
         })?;
-        writer.finish()?;
+        writer?.finish()?;
         report.statistics = measured.into_inner().unwrap_or_else(PoisonError::into_inner).statistics();
         self.finish(outputs, &mut report, [prepared, finished, start.elapsed()])?;
         Ok(report)

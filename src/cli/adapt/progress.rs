@@ -14,6 +14,14 @@ pub fn finish_on_interrupt() -> &'static AtomicBool {
     interrupt::finish_on("ends as soon as it can and writes the mesh (again: ends at once, and writes none)")
 }
 
+/// The same for one of several processes, which mpirun ends one second after an interrupt, done or not.
+pub fn finish_on_interrupt_of_mpirun() -> &'static AtomicBool {
+    interrupt::finish_on(
+        "writes the mesh if that can be in the one second that mpirun leaves (SIGUSR1 to mpirun leaves as long as it takes); with a scratch folder \
+         the same command goes on",
+    )
+}
+
 /// How often the time is drawn anew.
 const TICK: Duration = Duration::from_millis(200);
 

@@ -1,4 +1,5 @@
 //! Options of a configuration that go to other commands: refused before the loop if those would refuse them.
+use crate::cli::Command;
 use crate::cycle::Loaded;
 use clap::Parser;
 
@@ -13,6 +14,9 @@ pub fn words(loaded: &Loaded) -> Result<(), String> {
         adapt.push("--cad=model.step".into());
     }
     adapt.extend(config.adapt_words(config.schedule.complexity, has_model));
+    if config.threads.is_some() || config.adapt.threads.is_some() || config.adapt.processes() > 1 {
+        adapt.push("--threads=1".into());
+    }
     let mut all = vec![("[metric] and [adapt] options", adapt)];
     if mesh.bootstrap.is_some() {
         let bootstrap = fixed(&["bootstrap", "model.step", "-o", "mesh.meshb"]);
@@ -20,14 +24,18 @@ pub fn words(loaded: &Loaded) -> Result<(), String> {
     }
     for (place, words) in all {
         let command = words[0].clone();
-        let Err(said) = crate::cli::Arguments::try_parse_from(std::iter::once("geo-adapt".to_owned()).chain(words))
-        else {
-            continue;
-        };
-        let said = said.to_string();
-        let why = said.lines().next().unwrap_or_default().trim_start_matches("error: ");
         let path = loaded.path.display();
-        return Err(format!("{path}: {place}: {why}; `geo-adapt {command} --help` lists what can be there"));
+        let parsed = crate::cli::Arguments::try_parse_from(std::iter::once("geo-adapt".to_owned()).chain(words));
+        let parsed = parsed.map_err(|said| {
+            let said = said.to_string();
+            let why = said.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+            format!("{path}: {place}: {why}; `geo-adapt {command} --help` lists what can be there")
+        })?;
+        if let Command::Adapt(adapt) = parsed.command {
+            let remedy = "leave it out of the options, or give neither processes nor memory";
+            let fits = adapt.fits_processes(config.adapt.processes());
+            fits.map_err(|error| format!("{path}: [adapt]: {error}; {remedy}"))?;
+        }
     }
     Ok(())
 }

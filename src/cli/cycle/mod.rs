@@ -39,15 +39,15 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let Some(path) = &arguments.config else { return Err("give a configuration".into()) };
     let loaded = Loaded::read(path)?;
     check::words(&loaded)?;
+    let threads = loaded.config.threads.map_or_else(super::cores, usize::from);
+    let options = Options { threads, restart: arguments.restart };
     if arguments.dry_run {
-        print(&plan::text(&loaded, arguments.restart)?)?;
+        print(&plan::text(&loaded, &options)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     interrupt::finish_on(
         "ends after this step (again: ends it at once); the same command goes on after the last finished step",
     );
-    let threads = loaded.config.threads.map_or_else(super::cores, usize::from);
-    let options = Options { threads, restart: arguments.restart };
     let progress = Progress::new(!is_quiet(), &loaded.config.schedule);
     let ended = cycle::run(&loaded, &options, &progress, interrupt::stop());
     let printed = progress.finish();

@@ -1,7 +1,7 @@
 //! What a run of the loop would do, for people.
 use super::super::table::{Table, figure};
 use crate::adapt::meeting::VERTICES_PER_COMPLEXITY;
-use crate::cycle::{Error, Loaded, Plan, plan};
+use crate::cycle::{Error, Loaded, Options, Plan, plan};
 
 /// Rows of complexities at the beginning and the end of a long loop.
 const SHOWN: usize = 6;
@@ -10,15 +10,15 @@ const SHOWN: usize = 6;
 ///
 /// # Errors
 /// What the run would refuse.
-pub fn text(loaded: &Loaded, restart: bool) -> Result<String, Error> {
-    let Plan { folder, finished, taken, next, complexities, last } = plan(loaded, restart)?;
+pub fn text(loaded: &Loaded, options: &Options) -> Result<String, Error> {
+    let Plan { folder, finished, taken, next, adaptation, complexities, last } = plan(loaded, options)?;
     let mut table = Table::new();
     table.row("configuration", loaded.path.display());
     let there = match finished.last() {
         None => "no step is done".to_owned(),
         Some(last) => format!("{} steps are done, the last is {last}", finished.len()),
     };
-    let thrown = if restart { ", --restart removes what is there" } else { "" };
+    let thrown = if options.restart { ", --restart removes what is there" } else { "" };
     table.row("folder", format_args!("{} ({there}{thrown})", folder.display()));
     for change in taken {
         table.row("changed", format_args!("{change} (taken: nothing that depends on it is done)"));
@@ -39,6 +39,9 @@ pub fn text(loaded: &Loaded, restart: bool) -> Result<String, Error> {
         earlier.map_or_else(String::new, |converged| format!(", or when {} changes no more", converged.functional));
     if let Some(last) = last {
         table.row("ends", format_args!("after {last} adaptations and {} solves{earlier}", last + 1));
+    }
+    if let Some(command) = adaptation {
+        table.line(&format!("the next adaptation: {command}"));
     }
     Ok(table.text().to_owned())
 }

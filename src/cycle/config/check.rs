@@ -12,6 +12,13 @@ impl Loaded {
         self.check_metric()?;
         self.check_schedule()?;
         self.check_names()?;
+        let adapt = &self.config.adapt;
+        if adapt.processes == Some(0) || adapt.threads == Some(0) {
+            return Err("[adapt] processes and threads: give 1 or more".into());
+        }
+        if adapt.scratch.is_some() && adapt.memory.is_none() {
+            return Err("[adapt] scratch belongs to memory, which says what does not fit: give both, or none".into());
+        }
         let output = &self.config.output;
         if let Some(cut) = &output.cut {
             cut.parse::<Plane>().map_err(|error| format!("[output] cut: {error}"))?;

@@ -103,11 +103,16 @@ pub struct Difference {
 }
 
 /// The keys, as `table.key`, in which two configurations differ so that finished steps would differ too. Only the end of the loop, what
-/// is drawn, and the threads may differ.
+/// is drawn, the threads, and by how many processes and in how much memory parts are adapted may differ.
 pub fn differences(old: &Config, new: &Config) -> Vec<Difference> {
+    let same_parts = old.adapt.is_by_parts() == new.adapt.is_by_parts();
     let comparable = |config: &Config| {
         let mut config = config.clone();
         config.threads = None;
+        (config.adapt.threads, config.adapt.scratch) = (None, None);
+        if same_parts {
+            (config.adapt.processes, config.adapt.memory) = (None, None);
+        }
         config.output = Output::default();
         config.schedule.cycles = None;
         config.schedule.max_complexity = None;

@@ -180,9 +180,29 @@ fn two() -> u32 {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Adapt {
+    /// Processes: above 1 the mesh is adapted part by part, and mpirun starts them.
+    pub processes: Option<u32>,
+    /// Threads of each process; those of the loop without, shared out.
+    pub threads: Option<u16>,
+    /// Memory of each process, as `adapt --memory` has it: "4GiB". With it the mesh is adapted part by part by one process, too.
+    pub memory: Option<String>,
+    /// The folder for parts that do not fit into the memory. Without, it is in that of the step, and goes with it.
+    pub scratch: Option<PathBuf>,
     /// Further words for `geo-adapt adapt`, such as ["--freeze", "inlet"].
     #[serde(default)]
     pub options: Vec<String>,
+}
+
+impl Adapt {
+    /// Processes, at least 1.
+    pub fn processes(&self) -> u32 {
+        self.processes.unwrap_or(1)
+    }
+
+    /// Whether the mesh is adapted part by part, which gives another mesh, by however many processes.
+    pub fn is_by_parts(&self) -> bool {
+        self.processes() > 1 || self.memory.is_some()
+    }
 }
 
 /// `[transfer]`.

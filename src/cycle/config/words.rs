@@ -20,6 +20,7 @@ impl Config {
         }
         option(&mut words, "--segments", metric.segments.as_ref());
         option(&mut words, "--feature-cells", metric.feature_cells.as_ref());
+        option(&mut words, "--memory", self.adapt.memory.as_ref());
         words.extend(self.adapt.options.iter().cloned());
         words
     }

@@ -104,6 +104,11 @@ fn table(history: &History) -> String {
     html + "</tbody>"
 }
 
+/// How a mesh was adapted part by part.
+fn by_processes(processes: usize) -> String {
+    if processes > 1 { format!(", part by part by {processes} processes") } else { ", part by part".into() }
+}
+
 /// Each adapted mesh: pictures where there are, and its histograms.
 fn meshes(layout: &Layout, history: &History) -> String {
     let mut html = String::new();
@@ -113,8 +118,10 @@ fn meshes(layout: &Layout, history: &History) -> String {
             cycle.complexity.map_or_else(String::new, |complexity| format!("complexity {}, ", short(complexity)));
         let _ = write!(
             html,
-            "<article><h3>Mesh of cycle {}: {complexity}{} vertices</h3><div class=\"row\">",
-            cycle.cycle, cycle.vertices
+            "<article><h3>Mesh of cycle {}: {complexity}{} vertices{}</h3><div class=\"row\">",
+            cycle.cycle,
+            cycle.vertices,
+            cycle.processes.map_or_else(String::new, by_processes)
         );
         if cycle.pictures {
             for (file, what) in [("surface.png", "surface"), ("cut.png", "cut")] {

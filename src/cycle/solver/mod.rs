@@ -176,12 +176,3 @@ impl Job<'_> {
         Ok(Dataset { mesh, names, fields })
     }
 }
-
-/// The path of a program: a path with a folder in it, from `base`, else what the PATH has.
-pub fn find_program(name: &str, base: &Path) -> Option<PathBuf> {
-    let found = |path: PathBuf| path.is_file().then_some(path);
-    if name.contains('/') {
-        return found(base.join(name));
-    }
-    std::env::split_paths(&std::env::var_os("PATH")?).find_map(|folder| found(folder.join(name)))
-}

@@ -13,7 +13,6 @@ use crate::mesh::vector::Vec3;
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::{Source, Sym3};
 use crate::tasks::{GRAIN, Team};
-use std::hash::{Hash, Hasher};
 use std::ops::Range;
 
 /// Tetrahedra of a slice for each vertex of a part.
@@ -67,17 +66,6 @@ pub fn logs_on(team: Team<'_>, mesh: &TetMesh, source: &Source) -> Vec<Sym3> {
     match source.logs_on(mesh) {
         Some(logs) => logs.to_vec(),
         None => team.map(GRAIN, mesh.vertices.len(), |v| source.log_at(mesh.vertices[v], &mut 0)),
-    }
-}
-
-impl Hash for InMemory<'_> {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        let Self { mesh, logs } = self;
-        state.write(bytemuck::cast_slice(&mesh.vertices));
-        state.write(bytemuck::cast_slice(&mesh.tets.nodes));
-        state.write(bytemuck::cast_slice(&mesh.tets.refs));
-        state.write(bytemuck::cast_slice(&mesh.triangles.nodes));
-        logs.iter().for_each(|log| state.write(bytemuck::bytes_of(&log.0)));
     }
 }
 

@@ -33,7 +33,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     (
         "cycle",
-        &["view", "formats", "adapt", "sizing", "metric", "geometry", "transfer", "tasks", "mesh", "process", "memory"],
+        &[
+            "view", "formats", "ranks", "adapt", "sizing", "metric", "geometry", "transfer", "tasks", "mesh",
+            "process", "memory",
+        ],
     ),
     ("api", &["adapt", "metric", "geometry", "transfer", "tasks", "mesh"]),
     ("formats", &["geometry", "mesh", "tasks"]),

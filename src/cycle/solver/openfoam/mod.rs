@@ -19,8 +19,9 @@ pub use flow::{Flow, Kind};
 pub use forces::{Coefficients, Walls};
 pub use method::{Method, Scheme, Stage};
 
-use super::{FieldName, Job, Solver, find_program};
+use super::{FieldName, Job, Solver};
 use crate::cycle::data::{Call, Solved};
+use crate::cycle::launch::{self, find_program};
 use crate::formats::foam::{self, CellField};
 use crate::formats::{self, Dataset, NamedField};
 use crate::mesh::TetMesh;
@@ -191,12 +192,10 @@ impl Config {
 impl Solver for Config {
     fn check(&self, base: &Path) -> Result<(), String> {
         self.flow.check()?;
-        if self.block == Some(0) || self.steps == 0 || self.processes == 0 {
-            return Err("[solver.openfoam] steps, block and processes: give 1 or more".into());
+        if self.block == Some(0) || self.steps == 0 {
+            return Err("[solver.openfoam] steps and block: give 1 or more".into());
         }
-        if self.processes > 1 && find_program("mpirun", base).is_none() {
-            return Err("[solver.openfoam] processes is above 1, but there is no mpirun on the PATH".into());
-        }
+        launch::check("[solver.openfoam]", self.processes)?;
         if !(self.courant > 0.0 && self.courant < 1.0 && self.smoothing > 0.0 && self.smoothing.is_finite()) {
             return Err(
                 "[solver.openfoam] courant: give a number between 0 and 1 (0.2 to 0.45 is usual); smoothing: above 0"

@@ -1,5 +1,6 @@
 //! Starts OpenFOAM's programs, the solver alone or in several processes.
 use super::drive::Plan;
+use crate::cycle::launch::ENVIRONMENT;
 use crate::process::{Log, Outcome, Runner, Tie, last_lines};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -53,10 +54,8 @@ fn run(case: &Path, log: &Path, stop: &AtomicBool, words: &[&str]) -> Result<(),
     let said = Log::open(log).map_err(|error| Failure::Stopped(format!("{}: {error}", log.display())))?;
     let mut command = Command::new(words[0]);
     command.args(&words[1..]).current_dir(case);
-    // Ends where a number is none, instead of going on with it. The others let OpenMPI work for root, as in containers, and start more
-    // processes than there are cores, as it was asked to.
-    command.env("FOAM_SIGFPE", "true").env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
-    command.env("OMPI_MCA_rmaps_base_oversubscribe", "1");
+    // Ends where a number is none, instead of going on with it.
+    command.env("FOAM_SIGFPE", "true").envs(ENVIRONMENT);
     if let Some(folder) = installation() {
         command.env("WM_PROJECT_DIR", folder);
     }

@@ -7,8 +7,9 @@ mod history;
 
 pub use conditions::{Conditions, Model};
 
-use super::{Job, Solver, find_program, handover};
+use super::{Job, Solver, handover};
 use crate::cycle::data::{Call, Solved};
+use crate::cycle::launch::{self, find_program};
 use crate::formats::Dataset;
 use cfg::Cfg;
 use serde::{Deserialize, Serialize};
@@ -93,17 +94,11 @@ impl Config {
 impl Solver for Config {
     fn check(&self, base: &Path) -> Result<(), String> {
         self.cfg(base, false)?;
-        if self.processes == 0 {
-            return Err("[solver.su2] processes: give 1 or more".into());
-        }
         let remedy = "install SU2 (https://su2code.github.io) and put its bin folder on the PATH, or give [solver.su2] program with its folder";
         if find_program(&self.program, base).is_none() {
             return Err(format!("[solver.su2] {} is not there: {remedy}", self.program));
         }
-        if self.processes > 1 && find_program("mpirun", base).is_none() {
-            return Err("[solver.su2] processes is above 1, but there is no mpirun on the PATH".into());
-        }
-        Ok(())
+        launch::check("[solver.su2]", self.processes)
     }
 
     fn inputs(&self, base: &Path) -> Vec<PathBuf> {
@@ -129,12 +124,9 @@ impl Solver for Config {
         }
         self.cfg(job.base, job.before.is_some())?.write(&job.folder.join(CONFIG))?;
         let program = find_program(&self.program, job.base).unwrap_or_else(|| self.program.clone().into());
-        let mut words = Vec::new();
-        if self.processes > 1 {
-            words.extend(["mpirun".into(), "-n".into(), self.processes.to_string()]);
-        }
+        let mut words = launch::words(self.processes);
         words.extend([program.to_string_lossy().into_owned(), CONFIG.into()]);
-        Ok(vec![Call { words, env: Vec::new(), folder: job.folder.to_path_buf() }])
+        Ok(vec![Call { words, env: launch::environment(self.processes), folder: job.folder.to_path_buf() }])
     }
 
     fn collect(&self, job: &Job<'_>) -> Result<Solved, String> {
