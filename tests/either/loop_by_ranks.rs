@@ -139,7 +139,9 @@ mod with_mpi {
         .unwrap();
         std::fs::set_permissions(place.path("mpirun"), std::fs::Permissions::from_mode(0o755)).unwrap();
         let path = format!("{}:{}", place.path("").display(), std::env::var("PATH").unwrap());
-        let said = complaint(&place.command().env("PATH", path).output().unwrap());
+        let run = place.command().env("PATH", path).output().unwrap();
+        let said = stderr(&run);
+        assert_eq!(run.status.code(), Some(2), "{said}");
         assert!(said.contains("[adapt] processes = 2: `mpirun -n 2 ") && said.contains("of another MPI"), "{said}");
         assert_eq!(said.matches("PMI_SIZE").count(), 2, "once, and once in the remedy: {said}");
         assert!(!place.path("out/start").exists());
