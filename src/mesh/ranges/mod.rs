@@ -2,8 +2,10 @@
 //!
 //! Slices of the tetrahedra in the order of the file tell which classes of vertices each block of them has ([`Blocks`]). So a range of vertices
 //! reads the blocks alone that may have some of its tetrahedra ([`each_range`]). What is known of single vertices is read for each slice and range
-//! anew ([`gathered`]), or lies in a scratch folder ([`Column`], [`Neighbours`]). Where tetrahedra that are near each other have near numbers, and so have their vertices, each is read a few times in all;
-//! where they have not, every range reads all of the file. (docs/decisions/inspection.md)
+//! anew ([`gathered`]), or lies in a scratch folder ([`Column`], [`Neighbours`]).
+//!
+//! Where tetrahedra that are near each other have near numbers, and so have their vertices, each is read a few times in all; where they have
+//! not, every range reads all of the file (docs/decisions/inspection.md).
 mod blocks;
 mod column;
 mod gathered;

@@ -1,7 +1,7 @@
 //! Grading does what the formula says, once, alike on any number of threads.
 use super::*;
 use crate::mesh::samples::cube;
-use crate::mesh::vector::{distance, norm};
+use crate::mesh::vector::{distance, norm, sub};
 use crate::tasks::{Plan, Pool};
 use proptest::prelude::*;
 

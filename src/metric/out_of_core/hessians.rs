@@ -90,12 +90,10 @@ fn fit(
 ) -> Result<Vec<u32>, Error> {
     let numbers = numbers(&own);
     let Some(local) = Local::read(mesh, &numbers, RINGS, sizes.task)? else {
-        let parts = halves(&own).map(|half| fit(mesh, values, hessians, half, sizes));
-        let [mut without, more] = parts;
-        if let (Ok(without), Ok(more)) = (&mut without, more) {
-            without.extend(more);
-        }
-        return without;
+        let [first, second] = halves(&own);
+        let mut without = fit(mesh, values, hessians, first, sizes)?;
+        without.extend(fit(mesh, values, hessians, second, sizes)?);
+        return Ok(without);
     };
     let values = values.at(&local.numbering.numbers)?;
     let mut around = Around::new(&local.points, &local.around, &values, None);

@@ -1,7 +1,7 @@
 //! Some vertices, with those around them.
 use super::Error;
 use super::mesh::Mesh;
-use crate::mesh::ranges::Numbering;
+use crate::mesh::ranges::{Around, Numbering};
 use crate::mesh::vector::Vec3;
 use crate::mesh::vertex_neighbours::VertexNeighbours;
 
@@ -23,18 +23,21 @@ impl Local {
     pub fn read(mesh: &Mesh, own: &[u32], rings: usize, bytes: usize) -> Result<Option<Self>, Error> {
         let fits = |vertices: usize| own.len() <= 1 || vertices * OF_VERTEX <= bytes;
         let mut inner = own.to_vec();
-        for ring in 1.. {
+        // All but the last ring: its vertices have neighbours that are not needed.
+        for _ in 1..rings {
             let around = mesh.neighbours.around(&inner)?;
-            let near = inner.iter().chain(&around.entries).copied();
-            let Some(numbering) = Numbering::of_at_most(near, fits) else { return Ok(None) };
-            if ring < rings {
-                inner = numbering.into_numbers();
-                continue;
-            }
-            let points = mesh.points.at(&numbering.numbers)?;
-            let around = around.within(&inner, &numbering.numbers, |v| numbering.place(v));
-            return Ok(Some(Self { numbering, points, around }));
+            let Some(grown) = Numbering::of_at_most(with(&inner, &around), fits) else { return Ok(None) };
+            inner = grown.into_numbers();
         }
-        unreachable!("the last ring returns")
+        let around = mesh.neighbours.around(&inner)?;
+        let Some(numbering) = Numbering::of_at_most(with(&inner, &around), fits) else { return Ok(None) };
+        let points = mesh.points.at(&numbering.numbers)?;
+        let around = around.within(&inner, &numbering.numbers, |v| numbering.place(v));
+        Ok(Some(Self { numbering, points, around }))
     }
+}
+
+/// Vertices, and all neighbours of theirs.
+fn with<'v>(vertices: &'v [u32], around: &'v Around) -> impl Iterator<Item = u32> + 'v {
+    vertices.iter().chain(&around.entries).copied()
 }

@@ -36,8 +36,8 @@ impl Mesh {
     pub fn read(team: Team<'_>, mesh: &MeshReader, sizes: &Sizes, scratch: &Scratch) -> Result<Self, Error> {
         let counts = *mesh.counts();
         check_lists(mesh)?;
-        each_slice(team, SLICE, counts.triangles, |range| Ok(drop(mesh.triangles(Team::alone(), range)?)))?;
-        each_slice(team, SLICE, counts.edges, |range| Ok(drop(mesh.edges(Team::alone(), range)?)))?;
+        each_slice(team, SLICE, counts.triangles, |range| Ok(mesh.triangles(Team::alone(), range)?.len()))?;
+        each_slice(team, SLICE, counts.edges, |range| Ok(mesh.edges(Team::alone(), range)?.len()))?;
         let points = scratch.column()?;
         each_slice(team, SLICE, counts.vertices, |range| {
             Ok(points.write(range.start, &mesh.vertices(Team::alone(), range)?.0)?)
