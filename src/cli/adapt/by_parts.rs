@@ -133,7 +133,7 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
 }
 
 /// Refuses inputs that are not those of rank 0: the result would be of both.
-fn is_same(ranks: &dyn Ranks, run: u64) -> Result<(), Error> {
+pub(super) fn is_same(ranks: &dyn Ranks, run: u64) -> Result<(), Error> {
     if broadcast(ranks, &run.to_le_bytes()) == run.to_le_bytes() {
         return Ok(());
     }

@@ -1,4 +1,5 @@
 //! A mesh that is larger than memory, or that several processes share: read by slices, with its boundary alone in memory.
+use super::by_parts::{agreed, is_same};
 use super::input::{Error, InputArguments, OnModel};
 use super::source::of_size;
 use crate::decomposition::{self, Files, MetricOf, Shell};
@@ -7,13 +8,20 @@ use crate::mesh::crossing;
 use crate::mesh::io::slices::MeshReader;
 use crate::metric::field::complexity_factor;
 use crate::metric::{Field, Source};
-use crate::ranks::{Ranks, agree};
+use crate::ranks::Ranks;
 use crate::tasks::{Team, stage};
+use std::fs::File;
+use std::hash::{DefaultHasher, Hasher};
+use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
 /// Memory for a vertex of a mesh with its background, read as a whole, bytes.
 const BYTES_A_VERTEX: f64 = 700.0;
+
+/// So many blocks of a file are compared, of so many bytes.
+const BLOCKS: u64 = 64;
+const BLOCK: usize = 1 << 12;
 
 /// What a run begins with.
 pub struct Sliced {
@@ -53,7 +61,9 @@ impl InputArguments {
         ranks: &dyn Ranks,
         notices: &mut Vec<String>,
     ) -> Result<Result<Sliced, decomposition::Error>, Error> {
-        let files = agree(ranks, self.open_files(notices).map_err(|error| error.to_string()))?;
+        let files = agreed(ranks, self.open_files(notices))?;
+        let print = agreed(ranks, self.fingerprint())?;
+        agreed(ranks, is_same(ranks, print))?;
         stage("files opened");
         let shell = match Shell::read(team, ranks, &files) {
             Ok(shell) => shell,
@@ -61,7 +71,25 @@ impl InputArguments {
         };
         stage("mesh read");
         let sliced = self.put_on_model(team, shell, files, notices);
-        Ok(Ok(agree(ranks, sliced.map_err(|error| error.to_string()))?))
+        Ok(Ok(agreed(ranks, sliced)?))
+    }
+
+    /// What mesh and metric are known by, without reading all of them: each rank reads another share.
+    fn fingerprint(&self) -> Result<u64, Error> {
+        let mut print = DefaultHasher::new();
+        for path in std::iter::once(&self.mesh).chain(&self.field.metric) {
+            let told = |error: std::io::Error| format!("{}: {error}", path.display());
+            let mut file = File::open(path).map_err(told)?;
+            let length = file.metadata().map_err(told)?.len();
+            print.write_u64(length);
+            for block in 0..BLOCKS {
+                let mut bytes = [0; BLOCK];
+                let start = length.saturating_sub(BLOCK as u64) / (BLOCKS - 1) * block;
+                let read = file.seek(SeekFrom::Start(start)).and_then(|_| file.read(&mut bytes)).map_err(told)?;
+                print.write(&bytes[..read]);
+            }
+        }
+        Ok(print.finish())
     }
 
     fn open_files(&self, notices: &mut Vec<String>) -> Result<Files, Error> {
