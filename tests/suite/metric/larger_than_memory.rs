@@ -58,7 +58,7 @@ impl Case {
         let run = self.multiscale(output, arguments);
         let said = stderr(&run);
         assert_eq!(run.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(!said.contains("panicked") && said.matches("error").count() == 1, "{said}");
+        assert!(!said.contains("panicked") && said.matches("error: ").count() == 1, "{said}");
         assert_eq!(names(), before, "{arguments:?}");
         said
     }
