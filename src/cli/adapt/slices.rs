@@ -11,7 +11,7 @@ use crate::metric::{Field, Source};
 use crate::ranks::Ranks;
 use crate::tasks::{Team, stage};
 use std::fs::File;
-use std::hash::{DefaultHasher, Hasher};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
@@ -81,7 +81,7 @@ impl InputArguments {
             let told = |error: std::io::Error| format!("{}: {error}", path.display());
             let mut file = File::open(path).map_err(told)?;
             let length = file.metadata().map_err(told)?.len();
-            print.write_u64(length);
+            length.hash(&mut print);
             for block in 0..BLOCKS {
                 let mut bytes = [0; BLOCK];
                 let start = length.saturating_sub(BLOCK as u64) / (BLOCKS - 1) * block;
