@@ -1,17 +1,17 @@
 //! The finished pieces of all ranks.
 use super::Error;
 use super::bytes::{decoded, encoded, put, take};
-use super::outline::{Numbering, Outline};
+use super::outline::Outline;
 use super::piece::Piece;
 use super::rounds::{Common, KEY, Rounds};
 use super::threads::{Shared, add, on_threads, sorted};
 
 impl Rounds<'_> {
-    /// The numbers of all vertices in the whole mesh.
+    /// What must be known of all finished pieces to number their vertices.
     ///
     /// # Errors
     /// Where a piece cannot be read.
-    pub fn numbering(&self) -> Result<Numbering, Error> {
+    pub fn outlines(&self) -> Result<Vec<Outline>, Error> {
         let Common { shelf, ranks, .. } = self.common;
         let own = ranks.rank() as u32;
         let list = Shared::default();
@@ -39,7 +39,7 @@ impl Rounds<'_> {
             }
         }
         outlines.sort_by_key(|(at, _)| at[0]);
-        Ok(Numbering::of(outlines.into_iter().map(|(_, outline)| outline).collect()))
+        Ok(outlines.into_iter().map(|(_, outline)| outline).collect())
     }
 
     /// Calls f on rank 0 with each finished piece of all ranks and its place in their order: on all threads where there is one rank, else one

@@ -11,6 +11,7 @@ use super::piece::Piece;
 use super::shelf::{Key, Shelf};
 use super::sizes::{Sizes, growth, wanted_vertices};
 use super::threads::{Shared, add, on_threads, sorted};
+use super::times::{Stopwatch, Told, ToldPart, lap};
 use super::zones::divide;
 use crate::adapt::{Observer, Options, References, Scheduler};
 use crate::geometry::Model;
@@ -62,19 +63,6 @@ pub struct Common<'a> {
     pub observer: &'a dyn Observer,
 }
 
-/// A round.
-#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
-pub struct Told {
-    /// Parts.
-    pub parts: usize,
-    /// Tetrahedra that it began with.
-    pub tets: usize,
-    /// Vertices of the parts after it; one on several counts for each.
-    pub vertices: usize,
-    /// Wall time, s.
-    pub seconds: f64,
-}
-
 /// What a part became, as all ranks know it.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -89,6 +77,17 @@ pub struct Became {
     pub vertices: u64,
     /// Vertices with those that are finished.
     pub all: u64,
+    /// What it took, s.
+    pub seconds: f64,
+}
+
+impl Became {
+    /// For who asks what it took; `work` is what was expected of each part.
+    fn told(&self, work: &[f64]) -> ToldPart {
+        let Self { part, rank, tets: active_tets, vertices: active, all: vertices, seconds } = *self;
+        let work = work.get(part as usize).copied().unwrap_or(0.0);
+        ToldPart { rank, work, vertices, active, active_tets, seconds }
+    }
 }
 
 /// The pieces of a round that are not finished, and samples of their tetrahedra, in the order of the parts.
@@ -281,13 +280,16 @@ impl<'a> Rounds<'a> {
         divides: bool,
     ) -> Result<(), Error> {
         let began = Instant::now();
+        let mut since = began;
         let round = self.active.round + 1;
         let cuts = Cuts::of(std::mem::take(&mut self.active.samples), parts);
+        let cutting = lap(&mut since);
         let tets = self.active.pieces.iter().map(|piece| piece.tets as usize).sum();
         self.common.observer.begin(crate::adapt::Kind::Split, self.told.len(), parts);
         let owners = self.owners(parts, &cuts.work);
         let (owners, list) = self.without_done(round, owners);
         let mine = self.deal(round, &cuts, log_factor, &owners)?;
+        let dealing = lap(&mut since);
         let adapted = self.adapt_parts(round, source, (parts, &mine), (is_zone, divides), &list);
         self.agreed(adapted)?;
         self.next_id += (parts as u64) << 33;
@@ -296,7 +298,9 @@ impl<'a> Rounds<'a> {
         self.become_active(round, list)?;
         let vertices = self.active.pieces.iter().map(|piece| piece.all as usize).sum();
         self.common.observer.vertices(self.vertices());
-        self.told.push(Told { parts, tets, vertices, seconds: began.elapsed().as_secs_f64() });
+        let of_parts = self.active.pieces.iter().map(|piece| piece.told(&cuts.work)).collect();
+        let seconds = began.elapsed().as_secs_f64();
+        self.told.push(Told { parts, tets, vertices, seconds, cutting, dealing, of_parts });
         // Parts that were ended halfway are good for the mesh that is written now, and not for a run that goes on.
         if self.is_stopped() {
             return Ok(());
@@ -332,15 +336,17 @@ impl<'a> Rounds<'a> {
         let options = Options { scheduler, is_draft: false, ..options.clone() };
         let quiet = Quiet(observer);
         let adapt = |at: usize, pool: &Pool| {
+            let watch = Stopwatch::start(pool.threads() == 1);
             let (part, of) = &mine[at];
             let part = *part;
             let share = |&of: &u32| shelf.take(Key::Share { round, part, of });
             let piece = join(of.iter().map(share).collect::<Result<Vec<_>, _>>()?);
             let tools = Tools { model, source, refs: &self.refs, options: &options, pool, observer: &quiet };
             let first_id = self.next_id + (u64::from(part) << 33);
-            let (piece, done) = adapt_piece(tools, piece, Round { is_zone, is_alone: parts == 1 }, first_id)?;
+            let (piece, mut done) = adapt_piece(tools, piece, Round { is_zone, is_alone: parts == 1 }, first_id)?;
             of.iter().for_each(|&of| shelf.forget(Key::Share { round, part, of }));
             let pieces = if divides { divide(&piece) } else { [piece, Piece::default()] };
+            done.seconds = watch.seconds();
             self.put_away(round, part, pieces, done, list)?;
             observer.advance(1);
             Ok(())
@@ -370,6 +376,7 @@ impl<'a> Rounds<'a> {
             tets: active.len() as u64,
             vertices: active.ids.len() as u64,
             all: (active.ids.len() + finished.ids.len()) as u64,
+            seconds: done.seconds,
         };
         let told = (became, samples(&active, most), done);
         if active.len() > 0 {

@@ -3,8 +3,9 @@ use super::Error;
 use super::outline::{Numbering, Numbers};
 use super::part::Done;
 use super::piece::{Piece, SHARED};
-use super::rounds::{Common, Rounds, Told};
+use super::rounds::{Common, Rounds};
 use super::sizes::wanted_vertices;
+use super::times::{Numbered, Told, lap};
 use crate::adapt::forecast::Forecast;
 use crate::adapt::{Extracted, References, held_vertices};
 use crate::geometry::Entity;
@@ -19,6 +20,7 @@ use crate::metric::{Source, Sym3};
 use crate::tasks::{GRAIN, Team, stage};
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 /// How many pairs of crossing triangles are told.
 const TOLD: usize = 3;
@@ -29,6 +31,7 @@ pub struct Adapted<'a> {
     numbering: Numbering,
     /// The boundary of the mesh with all that is listed of it, and no tetrahedra: its vertices are the first ones of the mesh.
     skin: Extracted,
+    numbered: Numbered,
 }
 
 /// Adapts a mesh by parts. `source` is as it was afterwards. `run` names what is adapted and how. If the scratch folder has a journal of that name,
@@ -60,10 +63,15 @@ pub fn adapt<'a>(
     common.observer.forecast(&forecast(&common, complexity, mesh.vertices.len()));
     rounds.run(source, team, complexity, mesh.vertices.len())?;
     stage("rounds");
-    let mut numbering = rounds.numbering()?;
+    let mut since = Instant::now();
+    let found = rounds.outlines()?;
+    let outlines = lap(&mut since);
+    let mut numbering = Numbering::of(found);
+    let numbers = lap(&mut since);
     let skin = skin(team, &mut numbering, &refs, &common);
     stage("vertices numbered");
-    Ok(Adapted { rounds, numbering, skin })
+    let numbered = Numbered { outlines, numbers, boundary: lap(&mut since) };
+    Ok(Adapted { rounds, numbering, skin, numbered })
 }
 
 /// What the run will take; of memory as much as it may.
@@ -216,6 +224,11 @@ impl Adapted<'_> {
     /// What each round did.
     pub fn told(&self) -> &[Told] {
         &self.rounds.told
+    }
+
+    /// What it took to number the vertices.
+    pub fn numbered(&self) -> Numbered {
+        self.numbered
     }
 
     /// Vertices and tetrahedra.

@@ -2,20 +2,19 @@
 use super::input::{Error, Input};
 use super::progress::{self, Progress};
 use super::report::Report;
+use super::rounds::Parts;
 use super::scratch::Scratch;
 use super::{Arguments, Targets, parts};
 use crate::adapt::Options;
 use crate::cli::amount::bytes;
-use crate::cli::table::Table;
 use crate::cli::terminal;
 use crate::cli::waiting::Waiting;
 use crate::cli::{BAD_INPUT, INVALID, Outcome, interrupt, note};
-use crate::decomposition::{self, Adapted, Common, Shelf, Sizes, Told, wanted_vertices};
+use crate::decomposition::{self, Adapted, Common, Shelf, Sizes, wanted_vertices};
 use crate::memory;
 use crate::metric::statistics::Statistics;
-use crate::ranks::{Ranks, Traffic, agree};
+use crate::ranks::{Ranks, agree};
 use crate::tasks::{Plan, Pool, Team, stage};
-use serde::Serialize;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -196,51 +195,6 @@ impl Arguments {
         let how = format!("{criterion:?} {points:?} {freeze:?} {surface:?} {:?}", self.parts.sizes());
         (how, env!("CARGO_PKG_VERSION")).hash(&mut name);
         name.finish()
-    }
-}
-
-/// What the report says of a run part by part.
-#[derive(Clone, Serialize)]
-pub struct Parts {
-    rounds: Vec<Told>,
-    processes: Vec<Process>,
-}
-
-/// What a process did.
-#[derive(Clone, Copy, Serialize)]
-struct Process {
-    /// Bytes sent to others.
-    sent: u64,
-    /// Time spent in sending, and in waiting for others, s.
-    waited: f64,
-}
-
-impl Parts {
-    /// Of all processes. Collective.
-    fn of(adapted: &Adapted<'_>, ranks: &dyn Ranks) -> Self {
-        let Traffic { sent, waited } = ranks.traffic();
-        let own = [sent.to_le_bytes(), waited.to_le_bytes()].concat();
-        let read = |bytes: Vec<u8>| {
-            let [sent, waited] = [0, 8].map(|at| bytes[at..at + 8].try_into().unwrap_or_default());
-            Process { sent: u64::from_le_bytes(sent), waited: f64::from_le_bytes(waited) }
-        };
-        Self { rounds: adapted.told().to_vec(), processes: ranks.gather(&own).into_iter().map(read).collect() }
-    }
-
-    /// What the table says of it.
-    pub fn rows(&self, table: &mut Table) {
-        let parts: Vec<String> = self.rounds.iter().map(|told| told.parts.to_string()).collect();
-        table.row("parts, round by round", parts.join(", "));
-        if self.processes.len() > 1 {
-            let sent: u64 = self.processes.iter().map(|process| process.sent).sum();
-            let waited = self.processes.iter().map(|process| process.waited).fold(0.0, f64::max);
-            let figures = format_args!(
-                "{}; {:.1} MB sent, {waited:.2} s waited at the most",
-                self.processes.len(),
-                sent as f64 / 1e6
-            );
-            table.row("processes", figures);
-        }
     }
 }
 

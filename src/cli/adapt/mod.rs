@@ -8,6 +8,7 @@ mod meet;
 pub mod parts;
 pub mod progress;
 pub mod report;
+mod rounds;
 mod scratch;
 mod source;
 
