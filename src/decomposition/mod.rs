@@ -20,6 +20,7 @@ mod rounds;
 mod run;
 mod shelf;
 mod sizes;
+mod slices;
 mod split;
 #[cfg(test)]
 mod tests;
@@ -28,9 +29,10 @@ mod times;
 mod zones;
 
 pub use rounds::Common;
-pub use run::{Adapted, Measured, Slice, adapt};
+pub use run::{Adapted, adapt};
 pub use shelf::{JOURNAL, Shelf};
 pub use sizes::{Sizes, wanted_vertices};
+pub use slices::{Measured, Slice};
 pub use times::{Numbered, Told};
 
 /// A run by parts that failed.

@@ -11,7 +11,7 @@ use super::piece::Piece;
 use super::shelf::{Key, Shelf};
 use super::sizes::{Sizes, growth, wanted_vertices};
 use super::threads::{Shared, add, on_threads, sorted};
-use super::times::{Stopwatch, Told, ToldPart, lap};
+use super::times::{Stopwatch, Told, ToldPart};
 use super::zones::divide;
 use crate::adapt::{Observer, Options, References, Scheduler};
 use crate::geometry::Model;
@@ -279,17 +279,18 @@ impl<'a> Rounds<'a> {
         is_zone: bool,
         divides: bool,
     ) -> Result<(), Error> {
-        let began = Instant::now();
-        let mut since = began;
+        let (began, is_alone) = (Instant::now(), self.common.pool.threads() == 1);
+        let watch = Stopwatch::start(true);
         let round = self.active.round + 1;
         let cuts = Cuts::of(std::mem::take(&mut self.active.samples), parts);
-        let cutting = lap(&mut since);
+        let cutting = watch.seconds();
+        let watch = Stopwatch::start(is_alone);
         let tets = self.active.pieces.iter().map(|piece| piece.tets as usize).sum();
         self.common.observer.begin(crate::adapt::Kind::Split, self.told.len(), parts);
         let owners = self.owners(parts, &cuts.work);
         let (owners, list) = self.without_done(round, owners);
         let mine = self.deal(round, &cuts, log_factor, &owners)?;
-        let dealing = lap(&mut since);
+        let dealing = watch.seconds();
         let adapted = self.adapt_parts(round, source, (parts, &mine), (is_zone, divides), &list);
         self.agreed(adapted)?;
         self.next_id += (parts as u64) << 33;

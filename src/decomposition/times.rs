@@ -12,9 +12,9 @@ pub struct Told {
     pub vertices: usize,
     /// Wall time, s.
     pub seconds: f64,
-    /// Of it the time for finding the cuts, which every rank does, s.
+    /// Of it those for finding the cuts, which every rank does, s.
     pub cutting: f64,
-    /// The time for giving the parts their shares, with the waiting in it, s.
+    /// And for giving the parts their shares, with the waiting in it, s.
     pub dealing: f64,
     /// What each part was.
     pub of_parts: Vec<ToldPart>,
@@ -56,13 +56,7 @@ pub struct Numbered {
     pub boundary: f64,
 }
 
-/// The seconds since the last call or the begin; this is one.
-pub fn lap(since: &mut Instant) -> f64 {
-    let now = Instant::now();
-    (now - std::mem::replace(since, now)).as_secs_f64()
-}
-
-/// Measures what one thread does: the time that the thread has run, where the system tells it (Linux), else by the clock.
+/// Measures what one thread does: the time that it has run, where the system tells it (Linux), else by the clock.
 pub struct Stopwatch {
     began: Instant,
     ran: Option<f64>,
@@ -78,6 +72,13 @@ impl Stopwatch {
     pub fn seconds(&self) -> f64 {
         let ran = self.ran.and_then(|before| Some(thread_seconds()? - before));
         ran.unwrap_or_else(|| self.began.elapsed().as_secs_f64())
+    }
+
+    /// Seconds so far; from now on they are counted anew.
+    pub fn lap(&mut self) -> f64 {
+        let seconds = self.seconds();
+        *self = Self::start(self.ran.is_some());
+        seconds
     }
 }
 

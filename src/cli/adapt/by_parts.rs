@@ -4,7 +4,7 @@ use super::progress::{self, Progress};
 use super::report::Report;
 use super::rounds::Parts;
 use super::scratch::Scratch;
-use super::{Arguments, Targets, parts};
+use super::{Arguments, Targets, parts, slices};
 use crate::adapt::Options;
 use crate::cli::amount::bytes;
 use crate::cli::terminal;
@@ -119,8 +119,9 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     let result = Ending { arguments, team, progress: &progress, threads, told };
     let code = match targets {
         Some(targets) if place.is_whole => result.in_memory(&input, adapted, &targets, (start, prepared)),
-        Some(targets) => result.by_slices(&input, adapted, &targets, (start, prepared)),
-        None => adapted.for_each_slice(|_| Ok(())).map_err(Error::from).map(|()| ExitCode::SUCCESS),
+        Some(targets) => result.by_slices(&input, adapted, &targets, ranks, (start, prepared)),
+        None if place.is_whole => adapted.give_slices().map_err(Error::from).map(|()| ExitCode::SUCCESS),
+        None => slices::help(ranks, &adapted).map(|()| ExitCode::SUCCESS),
     };
     let code = agreed(ranks, code)?;
     if let (Some(scratch), 0) = (place.scratch, ranks.rank()) {
@@ -223,12 +224,13 @@ impl Ending<'_> {
         self.told(&report)
     }
 
-    /// The boundary is measured and written in memory, all else by slices.
+    /// The boundary is measured and written in memory, all else by slices, by all ranks.
     fn by_slices(
         &self,
         input: &Input,
         mut adapted: Adapted<'_>,
         targets: &Targets,
+        ranks: &dyn Ranks,
         from: (Instant, Duration),
     ) -> Outcome {
         let finished = from.0.elapsed();
@@ -237,8 +239,10 @@ impl Ending<'_> {
         let skin = adapted.done().clone().with(adapted.take_skin());
         let mut report =
             Report::new(self.team, &asked, input, skin, (self.progress.forecast(), Some(Statistics::default())));
-        report.parts = Some(self.told.clone());
-        let report = targets.by_slices(self.team, report, &adapted, (from.0, [from.1, finished]))?;
+        let mut told = self.told.clone();
+        told.boundary_measured = (from.0.elapsed() - finished).as_secs_f64();
+        report.parts = Some(told);
+        let report = targets.by_slices((self.team, ranks), report, &adapted, (from.0, [from.1, finished]))?;
         drop(line);
         self.told(&report)
     }

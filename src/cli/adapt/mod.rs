@@ -10,6 +10,7 @@ pub mod progress;
 pub mod report;
 mod rounds;
 mod scratch;
+mod slices;
 mod source;
 
 use super::figures::FigureArguments;

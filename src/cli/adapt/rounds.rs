@@ -9,6 +9,8 @@ use serde::Serialize;
 pub struct Parts {
     rounds: Vec<Told>,
     numbering: Numbered,
+    /// Time for measuring the boundary before the rest is written, by rank 0, s.
+    pub boundary_measured: f64,
     processes: Vec<Process>,
 }
 
@@ -39,7 +41,7 @@ impl Parts {
                 process.worked += part.seconds;
             }
         }
-        Self { rounds: adapted.told().to_vec(), numbering: adapted.numbered(), processes }
+        Self { rounds: adapted.told().to_vec(), numbering: adapted.numbered(), boundary_measured: 0.0, processes }
     }
 
     /// What the table says of it.
