@@ -5,6 +5,7 @@
 //! that last. [`cuts`] finds planes that cross few tetrahedra, [`split`] and [`join`] bring the tetrahedra to their parts, [`part`] adapts
 //! one, [`zones`] finds what the cuts have left to be done, and [`outline`] numbers the vertices as one mesh. Pieces lie on a [`shelf`], in
 //! memory or on a disk, and go from rank to rank as [`bytes`]. [`times`] says what parts took.
+mod adapting;
 mod bytes;
 mod cuts;
 mod deal;

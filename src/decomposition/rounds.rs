@@ -4,16 +4,14 @@
 //! where they lie meanwhile does not matter: every list is in the order of the parts.
 use super::Error;
 use super::cuts::{Cuts, Sample, samples};
-use super::join::join;
 use super::journal::{self, Journal, PartDone, write_done};
-use super::part::{Done, Round, Tools, adapt_piece};
+use super::part::Done;
 use super::piece::Piece;
 use super::shelf::{Key, Shelf};
 use super::sizes::{Sizes, growth, wanted_vertices};
-use super::threads::{Shared, add, on_threads, sorted};
+use super::threads::{Shared, add, sorted};
 use super::times::{Stopwatch, Told, ToldPart};
-use super::zones::divide;
-use crate::adapt::{Observer, Options, References, Scheduler};
+use crate::adapt::{Observer, Options, References};
 use crate::geometry::Model;
 use crate::metric::Source;
 use crate::metric::field::complexity_factor;
@@ -27,20 +25,11 @@ const SAMPLES: usize = 1 << 18;
 /// The least of a piece.
 const LEAST_SAMPLES: usize = 1 << 10;
 
-/// From so many parts on, each is one thread's; fewer are adapted by all threads, one after the other.
-const OF_ONE_THREAD: usize = 4;
-
-/// From a round around former cuts to the next there are fewer parts by this factor at least.
-const FEWER: usize = 3;
-
 /// Most rounds around former cuts.
-const MOST_ZONES: usize = 8;
+const MOST_ZONES: usize = 12;
 
 /// Bytes behind a piece that is sent, which say which one it is.
 pub const KEY: usize = 16;
-
-/// Memory for a vertex that is being adapted, bytes.
-const BYTES_A_VERTEX: f64 = 1_200.0;
 
 /// What the parts of a run have in common.
 #[derive(Clone, Copy)]
@@ -114,24 +103,15 @@ pub struct Rounds<'a> {
     /// What is not finished.
     pub active: Active,
     /// The first id that is free.
-    next_id: u64,
+    pub(super) next_id: u64,
     /// Steps of the plan that are done.
     steps: usize,
     /// What the run is known by.
     run: u64,
     /// The references of the mesh, with all triangles outwards.
-    refs: References,
+    pub(super) refs: References,
     /// Vertices of the finished pieces.
     finished_vertices: u64,
-}
-
-/// The observer of a part: it hears of an end alone.
-struct Quiet<'a>(&'a dyn Observer);
-
-impl Observer for Quiet<'_> {
-    fn stop(&self) -> bool {
-        self.0.stop()
-    }
 }
 
 impl<'a> Rounds<'a> {
@@ -233,9 +213,8 @@ impl<'a> Rounds<'a> {
             if vertices == 0 || self.is_stopped() {
                 break;
             }
-            // Fewer and fewer, so that none is left to cut.
-            let most = self.told.last().map_or(1, |told| told.parts.div_ceil(FEWER));
-            self.round(source, sizes.parts(vertices as f64).min(most), 0.0, true, true)?;
+            let before = self.told.last().map_or((1, 0.0), |told| (told.parts, told.vertices as f64));
+            self.round(source, sizes.zone_parts(vertices as f64, before), 0.0, true, true)?;
         }
         self.finish_all();
         Ok(())
@@ -282,14 +261,18 @@ impl<'a> Rounds<'a> {
         let (began, is_alone) = (Instant::now(), self.common.pool.threads() == 1);
         let watch = Stopwatch::start(true);
         let round = self.active.round + 1;
-        let cuts = Cuts::of(std::mem::take(&mut self.active.samples), parts);
+        let samples = std::mem::take(&mut self.active.samples);
+        let cuts = Cuts::of(samples, parts, self.common.pool.threads());
         let cutting = watch.seconds();
         let watch = Stopwatch::start(is_alone);
         let tets = self.active.pieces.iter().map(|piece| piece.tets as usize).sum();
         self.common.observer.begin(crate::adapt::Kind::Split, self.told.len(), parts);
         let owners = self.owners(parts, &cuts.work);
         let (owners, list) = self.without_done(round, owners);
-        let mine = self.deal(round, &cuts, log_factor, &owners)?;
+        let mut mine = self.deal(round, &cuts, log_factor, &owners)?;
+        // The heaviest first, so that none is left for the end.
+        let work = |part: u32| cuts.work[part as usize];
+        mine.sort_by(|a, b| work(b.0).total_cmp(&work(a.0)).then(a.0.cmp(&b.0)));
         let dealing = watch.seconds();
         let adapted = self.adapt_parts(round, source, (parts, &mine), (is_zone, divides), &list);
         self.agreed(adapted)?;
@@ -315,53 +298,8 @@ impl<'a> Rounds<'a> {
         Ok(())
     }
 
-    /// How many parts of so many vertices may be in memory at once.
-    pub fn at_once(&self, vertices: f64) -> usize {
-        let threads = self.common.pool.threads();
-        let Some(memory) = self.common.memory else { return threads };
-        ((memory as f64 / (BYTES_A_VERTEX * vertices.max(1.0))) as usize).clamp(1, threads)
-    }
-
-    /// Adapts the parts of this rank.
-    fn adapt_parts(
-        &self,
-        round: u32,
-        source: &Source,
-        (parts, mine): (usize, &[(u32, Vec<u32>)]),
-        (is_zone, divides): (bool, bool),
-        list: &Shared<PartDone>,
-    ) -> Result<(), Error> {
-        let Common { model, options, pool, shelf, observer, sizes, .. } = self.common;
-        let is_shared = parts < OF_ONE_THREAD;
-        let scheduler = if is_shared { Scheduler::Deterministic } else { Scheduler::Sequential };
-        let options = Options { scheduler, is_draft: false, ..options.clone() };
-        let quiet = Quiet(observer);
-        let adapt = |at: usize, pool: &Pool| {
-            let watch = Stopwatch::start(pool.threads() == 1);
-            let (part, of) = &mine[at];
-            let part = *part;
-            let share = |&of: &u32| shelf.take(Key::Share { round, part, of });
-            let piece = join(of.iter().map(share).collect::<Result<Vec<_>, _>>()?);
-            let tools = Tools { model, source, refs: &self.refs, options: &options, pool, observer: &quiet };
-            let first_id = self.next_id + (u64::from(part) << 33);
-            let (piece, mut done) = adapt_piece(tools, piece, Round { is_zone, is_alone: parts == 1 }, first_id)?;
-            of.iter().for_each(|&of| shelf.forget(Key::Share { round, part, of }));
-            let pieces = if divides { divide(&piece) } else { [piece, Piece::default()] };
-            done.seconds = watch.seconds();
-            self.put_away(round, part, pieces, done, list)?;
-            observer.advance(1);
-            Ok(())
-        };
-        if is_shared {
-            return (0..mine.len()).try_for_each(|at| adapt(at, pool));
-        }
-        on_threads(self.at_once(sizes.part), mine.len(), |at| {
-            adapt(at, &Pool::new(1).map_err(|error| Error::Told(error.to_string()))?)
-        })
-    }
-
     /// Puts away what a part became: what is not finished, and what is.
-    fn put_away(
+    pub(super) fn put_away(
         &self,
         round: u32,
         part: u32,
