@@ -29,8 +29,8 @@ impl Rounds<'_> {
         if self.active.pieces.len() < 2 {
             return Ok(Vec::new());
         }
-        let Common { sizes, shelf, ranks, .. } = self.common;
-        let cuts = Cuts::of(std::mem::take(&mut self.active.samples), sizes.parts(vertices as f64));
+        let Common { sizes, shelf, ranks, pool, .. } = self.common;
+        let cuts = Cuts::of(std::mem::take(&mut self.active.samples), sizes.parts(vertices as f64), pool.threads());
         let owners = self.owners(cuts.work.len(), &cuts.work);
         let (round, own) = (self.active.round + 1, ranks.rank() as u32);
         let (mine, _) = self.deal(round, &cuts, 0.0, (&owners, None))?;

@@ -5,7 +5,7 @@ use crate::mesh::vector::{Vec3, volume6};
 /// A tetrahedron at a former cut counts as so many where it is crossed: cuts move to where none was.
 const FORMER_CUT: f64 = 8.0;
 
-/// A cut leaves each side its share of the work, within this share of all.
+/// A cut between two parts leaves each its share of the work, within this share of both; one that others follow is so much nearer to its share.
 const SLACK: f64 = 0.06;
 
 /// So many places are tried for a cut, along each axis.
@@ -89,10 +89,10 @@ enum Tree {
 }
 
 impl Cuts {
-    /// Into so many parts. Where the samples leave no choice, some parts have nothing.
-    pub fn of(mut samples: Vec<Sample>, parts: usize) -> Self {
+    /// Into so many parts. Where the samples leave no choice, some parts have nothing. It is the same on any number of threads.
+    pub fn of(mut samples: Vec<Sample>, parts: usize, threads: usize) -> Self {
         let parts = parts.max(1);
-        let tree = Tree::of(&mut samples, 0, parts as u32);
+        let tree = Tree::of(&mut samples, 0, parts as u32, threads);
         let mut work = vec![0.0; parts];
         samples.iter().for_each(|sample| work[tree.part_at(sample.centre) as usize] += sample.work);
         Self { tree, work }
@@ -112,16 +112,21 @@ impl Cuts {
 }
 
 impl Tree {
-    fn of(samples: &mut [Sample], first: u32, parts: u32) -> Self {
+    fn of(samples: &mut [Sample], first: u32, parts: u32, threads: usize) -> Self {
         let half = parts / 2;
-        let Some((axis, at)) = (half > 0).then(|| best_cut(samples, f64::from(half) / f64::from(parts))).flatten()
-        else {
+        if half == 0 {
+            return Self::Part(first);
+        }
+        let slack = SLACK / f64::from(parts).log2();
+        let Some((axis, at)) = best_cut(samples, (f64::from(half) / f64::from(parts), slack), threads) else {
             return Self::Part(first);
         };
         samples.sort_by_key(|sample| sample.centre[axis] >= at);
         let middle = samples.partition_point(|sample| sample.centre[axis] < at);
         let (below, above) = samples.split_at_mut(middle);
-        let sides = [Self::of(below, first, half), Self::of(above, first + half, parts - half)];
+        let below = |threads| Self::of(below, first, half, threads);
+        let above = |threads| Self::of(above, first + half, parts - half, threads);
+        let sides = at_once(threads, below, above);
         Self::Plane(axis, at, Box::new(sides))
     }
 
@@ -149,29 +154,38 @@ impl Tree {
     }
 }
 
-/// The plane that crosses the fewest tetrahedra of those that leave about this share of the work below, or where there is none such the
-/// nearest to that share; none where all samples are at one place.
-fn best_cut(samples: &[Sample], share: f64) -> Option<(usize, f64)> {
-    let mut best: Option<([f64; 2], (usize, f64))> = None;
-    let mut order = Vec::with_capacity(samples.len());
-    for axis in 0..3 {
-        order.clear();
-        order.extend(samples.iter().map(|sample| (sample.centre[axis], sample.work)));
+/// The plane that crosses the fewest tetrahedra of those that leave this share of the work below, within the slack, or where there is none such
+/// the nearest to that share; none where all samples are at one place.
+fn best_cut(samples: &[Sample], share: (f64, f64), threads: usize) -> Option<(usize, f64)> {
+    let best = |axis: usize| {
+        let mut order: Vec<_> = samples.iter().map(|sample| (sample.centre[axis], sample.work)).collect();
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let (excess, places) = places(&order, share);
-        for (at, crossed) in places.iter().zip(crossed(samples, axis, &places)) {
-            let cost = [excess, crossed];
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, (axis, *at)));
-            }
-        }
+        let crossed = crossed(samples, axis, &places);
+        let cuts = places.into_iter().zip(crossed).map(|(at, crossed)| ([excess, crossed], (axis, at)));
+        cuts.reduce(|best, cut| if cut.0 < best.0 { cut } else { best })
+    };
+    let [x, yz] = at_once(threads, |_| [best(0), None], |threads| at_once(threads, |_| best(1), |_| best(2)));
+    let found = [x, yz].into_iter().flatten().flatten();
+    found.reduce(|best, cut| if cut.0 < best.0 { cut } else { best }).map(|(_, cut)| cut)
+}
+
+/// The results of both, on as many threads as they are told they have.
+fn at_once<T: Send>(threads: usize, a: impl FnOnce(usize) -> T + Send, b: impl FnOnce(usize) -> T) -> [T; 2] {
+    let half = threads / 2;
+    if half == 0 {
+        return [a(1), b(1)];
     }
-    best.map(|(_, cut)| cut)
+    std::thread::scope(|scope| {
+        let a = scope.spawn(move || a(half));
+        let b = b(threads - half);
+        [a.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), b]
+    })
 }
 
 /// Places for a cut, ascending, and how much farther they are from the share than they should be. `order` has the places and the work of the
 /// samples, ascending.
-fn places(order: &[(f64, f64)], share: f64) -> (f64, Vec<f64>) {
+fn places(order: &[(f64, f64)], (share, slack): (f64, f64)) -> (f64, Vec<f64>) {
     let all: f64 = order.iter().map(|sample| sample.1).sum();
     let (mut below, mut last) = (0.0, order.first().map_or(0.0, |first| first.0));
     let (mut window, mut nearest) = (Vec::new(), None);
@@ -179,7 +193,7 @@ fn places(order: &[(f64, f64)], share: f64) -> (f64, Vec<f64>) {
         // What has its centre at the cut lies above.
         if at > last {
             let off = f64::abs(below / all - share);
-            if off <= SLACK {
+            if off <= slack {
                 window.push(at);
             } else if nearest.is_none_or(|(least, _)| off < least) {
                 nearest = Some((off, at));
@@ -189,7 +203,7 @@ fn places(order: &[(f64, f64)], share: f64) -> (f64, Vec<f64>) {
         below += work;
     }
     if window.is_empty() {
-        return nearest.map_or((0.0, Vec::new()), |(off, at)| (off - SLACK, vec![at]));
+        return nearest.map_or((0.0, Vec::new()), |(off, at)| (off - slack, vec![at]));
     }
     let step = window.len().div_ceil(PLACES);
     (0.0, window.into_iter().skip(step / 2).step_by(step).collect())

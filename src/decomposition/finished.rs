@@ -1,7 +1,7 @@
 //! The finished pieces of all ranks.
 use super::Error;
 use super::bytes::{decoded, encoded, put, take};
-use super::outline::{Numbering, Outline};
+use super::outline::Outline;
 use super::piece::Piece;
 use super::rounds::{Common, Rounds};
 use super::threads::{Shared, add, on_threads, sorted};
@@ -10,11 +10,11 @@ use super::threads::{Shared, add, on_threads, sorted};
 const KEY: usize = 16;
 
 impl Rounds<'_> {
-    /// The numbers of all vertices in the whole mesh.
+    /// What must be known of all finished pieces to number their vertices.
     ///
     /// # Errors
     /// Where a piece cannot be read.
-    pub fn numbering(&self) -> Result<Numbering, Error> {
+    pub fn outlines(&self) -> Result<Vec<Outline>, Error> {
         let Common { shelf, ranks, .. } = self.common;
         let own = ranks.rank() as u32;
         let list = Shared::default();
@@ -42,18 +42,29 @@ impl Rounds<'_> {
             }
         }
         outlines.sort_by_key(|(at, _)| at[0]);
-        Ok(Numbering::of(outlines.into_iter().map(|(_, outline)| outline).collect()))
+        Ok(outlines.into_iter().map(|(_, outline)| outline).collect())
+    }
+
+    /// Calls f with each finished piece of this rank and its place in the order of all, on all threads.
+    ///
+    /// # Errors
+    /// That of f, and where a piece cannot be read.
+    pub fn for_each_own(&self, f: impl Fn(usize, Piece) -> Result<(), Error> + Sync) -> Result<(), Error> {
+        let Common { shelf, ranks, pool, .. } = self.common;
+        let own: Vec<usize> =
+            (0..self.finished.len()).filter(|&at| self.finished[at].1 as usize == ranks.rank()).collect();
+        on_threads(pool.threads(), own.len(), |i| f(own[i], shelf.take(self.finished[own[i]].0)?))
     }
 
     /// Calls f on rank 0 with each finished piece of all ranks and its place in their order: on all threads where there is one rank, else one
-    /// after the other.
+    /// after the other. Collective.
     ///
     /// # Errors
     /// That of f, and where a piece cannot be read.
     pub fn for_each_finished(&self, f: impl Fn(usize, Piece) -> Result<(), Error> + Sync) -> Result<(), Error> {
-        let Common { shelf, ranks, pool, .. } = self.common;
+        let Common { shelf, ranks, .. } = self.common;
         if ranks.count() == 1 {
-            return on_threads(pool.threads(), self.finished.len(), |at| f(at, shelf.take(self.finished[at].0)?));
+            return self.for_each_own(f);
         }
         // One piece of each rank at a time.
         let mut of_rank = vec![Vec::new(); ranks.count()];

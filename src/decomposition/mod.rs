@@ -5,7 +5,8 @@
 //! [`rounds`] says what is done when. A [`piece`] is some of the mesh with all that is known there; vertices of several pieces are known by ids
 //! that last. [`cuts`] finds planes that cross few tetrahedra, [`split`] and [`join`] bring the tetrahedra to their parts, [`part`] adapts
 //! one, [`zones`] finds what the cuts have left to be done, and [`outline`] numbers the vertices as one mesh. Pieces lie on a [`shelf`], in
-//! memory or on a disk, and go from rank to rank as [`bytes`].
+//! memory or on a disk, and go from rank to rank as [`bytes`]. [`times`] says what parts took.
+mod adapting;
 mod begin;
 mod bytes;
 mod cuts;
@@ -25,17 +26,21 @@ mod rounds;
 mod run;
 mod shelf;
 mod sizes;
+mod slices;
 mod split;
 #[cfg(test)]
 mod tests;
 mod threads;
+mod times;
 mod zones;
 
 pub use input::{Files, InMemory, Input, MetricOf, Shell, Skin, logs_on};
-pub use rounds::{Common, Told};
-pub use run::{Adapted, Given, Measured, Slice, adapt};
+pub use rounds::Common;
+pub use run::{Adapted, Given, adapt};
 pub use shelf::{JOURNAL, Shelf};
 pub use sizes::{Sizes, wanted_vertices};
+pub use slices::{Measured, Slice};
+pub use times::{Numbered, Told};
 
 /// A run by parts that failed.
 #[derive(Debug, thiserror::Error)]

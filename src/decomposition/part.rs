@@ -24,12 +24,14 @@ pub struct Done {
     pub deviating: usize,
     /// Time in the model's evaluators.
     pub geometry: Duration,
+    /// Seconds that all took ([`super::times::ToldPart`]).
+    pub seconds: f64,
 }
 
 impl Done {
     /// With a mesh, as the kernel gives it.
     pub fn with(self, extracted: Extracted) -> Adapted {
-        let Self { work, growth_end, unrepaired, deviating, geometry } = self;
+        let Self { work, growth_end, unrepaired, deviating, geometry, .. } = self;
         Adapted { extracted, work, growth_end, unrepaired, deviating, geometry }
     }
 
@@ -44,6 +46,7 @@ impl Done {
         self.unrepaired += other.unrepaired;
         self.deviating += other.deviating;
         self.geometry += other.geometry;
+        self.seconds += other.seconds;
     }
 }
 
@@ -161,7 +164,8 @@ fn adapt_manifold(
     };
     let adapted = adapt::adapt_part(&piece.mesh, &piece.place, Some(part), model, source, options, pool, observer)?;
     let Adapted { extracted, work, growth_end, unrepaired, deviating, geometry } = adapted;
-    Ok((put_back(&piece, &held, extracted, first_id), Done { work, growth_end, unrepaired, deviating, geometry }))
+    let done = Done { work, growth_end, unrepaired, deviating, geometry, seconds: 0.0 };
+    Ok((put_back(&piece, &held, extracted, first_id), done))
 }
 
 /// The adapted part as a piece: what was held is called as before.

@@ -4,17 +4,17 @@
 //! where they lie meanwhile does not matter: every list is in the order of the parts.
 use super::Error;
 use super::cuts::{Cuts, Sample, samples};
-use super::ground::{Around, Block, Ground};
+use super::ground::{Block, Ground};
 use super::input::{Input, Skin};
 use super::join::join;
 use super::journal::{self, Journal, Lists, PartDone, write_done};
-use super::part::{Done, Round, Tools, adapt_piece};
+use super::part::Done;
 use super::piece::Piece;
 use super::shelf::{Key, Shelf};
 use super::sizes::{Sizes, growth, wanted_vertices};
-use super::threads::{Shared, add, on_threads, sorted};
-use super::zones::divide;
-use crate::adapt::{Observer, Options, References, Scheduler};
+use super::threads::{Shared, add, sorted};
+use super::times::{Stopwatch, Told, ToldPart};
+use crate::adapt::{Observer, Options, References};
 use crate::geometry::Model;
 use crate::metric::field::complexity_factor;
 use crate::ranks::{Ranks, agree};
@@ -27,20 +27,8 @@ const SAMPLES: usize = 1 << 18;
 /// The least of a piece.
 const LEAST_SAMPLES: usize = 1 << 10;
 
-/// From so many parts on, each is one thread's; fewer are adapted by all threads, one after the other.
-const OF_ONE_THREAD: usize = 4;
-
-/// From a round around former cuts to the next there are fewer parts by this factor at least.
-const FEWER: usize = 3;
-
 /// Most rounds around former cuts.
-const MOST_ZONES: usize = 8;
-
-/// Memory for a vertex that is being adapted, bytes.
-const BYTES_A_VERTEX: f64 = 1_200.0;
-
-/// What a part takes of a metric in blocks is so much of its own memory.
-const GROUND: f64 = 0.6;
+const MOST_ZONES: usize = 12;
 
 /// What the parts of a run have in common.
 #[derive(Clone, Copy)]
@@ -63,19 +51,6 @@ pub struct Common<'a> {
     pub observer: &'a dyn Observer,
 }
 
-/// A round.
-#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
-pub struct Told {
-    /// Parts.
-    pub parts: usize,
-    /// Tetrahedra that it began with.
-    pub tets: usize,
-    /// Vertices of the parts after it; one on several counts for each.
-    pub vertices: usize,
-    /// Wall time, s.
-    pub seconds: f64,
-}
-
 /// What a part became, as all ranks know it.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -90,6 +65,17 @@ pub struct Became {
     pub vertices: u64,
     /// Vertices with those that are finished.
     pub all: u64,
+    /// What it took, s.
+    pub seconds: f64,
+}
+
+impl Became {
+    /// For who asks what it took; `work` is what was expected of each part.
+    fn told(&self, work: &[f64]) -> ToldPart {
+        let Self { part, rank, tets: active_tets, vertices: active, all: vertices, seconds } = *self;
+        let work = work.get(part as usize).copied().unwrap_or(0.0);
+        ToldPart { rank, work, vertices, active, active_tets, seconds }
+    }
 }
 
 /// The pieces of a round that are not finished, and samples of their tetrahedra, in the order of the parts.
@@ -116,24 +102,15 @@ pub struct Rounds<'a> {
     /// What is not finished.
     pub active: Active,
     /// The first id that is free.
-    next_id: u64,
+    pub(super) next_id: u64,
     /// Steps of the plan that are done.
     steps: usize,
     /// What the run is known by.
     run: u64,
     /// The references of the mesh, with all triangles outwards.
-    refs: References,
+    pub(super) refs: References,
     /// Vertices of the finished pieces.
     finished_vertices: u64,
-}
-
-/// The observer of a part: it hears of an end alone.
-struct Quiet<'a>(&'a dyn Observer);
-
-impl Observer for Quiet<'_> {
-    fn stop(&self) -> bool {
-        self.0.stop()
-    }
 }
 
 impl<'a> Rounds<'a> {
@@ -245,9 +222,8 @@ impl<'a> Rounds<'a> {
             if vertices == 0 || self.is_stopped() {
                 break;
             }
-            // Fewer and fewer, so that none is left to cut.
-            let most = self.told.last().map_or(1, |told| told.parts.div_ceil(FEWER));
-            self.round(ground, sizes.parts(vertices as f64).min(most), 0.0, true, true)?;
+            let before = self.told.last().map_or((1, 0.0), |told| (told.parts, told.vertices as f64));
+            self.round(ground, sizes.zone_parts(vertices as f64, before), 0.0, true, true)?;
         }
         self.finish_all();
         Ok(())
@@ -291,17 +267,25 @@ impl<'a> Rounds<'a> {
         is_zone: bool,
         divides: bool,
     ) -> Result<(), Error> {
-        let began = Instant::now();
+        let (began, is_alone) = (Instant::now(), self.common.pool.threads() == 1);
+        let watch = Stopwatch::start(true);
         let round = self.active.round + 1;
         let whole = Sample::box_of(&self.active.samples);
-        let cuts = Cuts::of(std::mem::take(&mut self.active.samples), parts);
+        let samples = std::mem::take(&mut self.active.samples);
+        let cuts = Cuts::of(samples, parts, self.common.pool.threads());
+        let cutting = watch.seconds();
+        let watch = Stopwatch::start(is_alone);
         let tets = self.active.pieces.iter().map(|piece| piece.tets as usize).sum();
         self.common.observer.begin(crate::adapt::Kind::Split, self.told.len(), parts);
         let owners = self.owners(parts, &cuts.work);
         let (owners, list) = self.without_done(round, owners);
         let boxes = matches!(ground, Ground::Blocks(..)).then(|| cuts.boxes(whole));
-        let (mine, regions) = self.deal(round, &cuts, log_factor, (&owners, boxes.as_deref()))?;
+        let (mut mine, regions) = self.deal(round, &cuts, log_factor, (&owners, boxes.as_deref()))?;
         let around = self.deal_ground(round, ground, regions, &owners)?;
+        // The heaviest first, so that none is left for the end.
+        let work = |part: u32| cuts.work[part as usize];
+        mine.sort_by(|a, b| work(b.0).total_cmp(&work(a.0)).then(a.0.cmp(&b.0)));
+        let dealing = watch.seconds();
         let adapted = self.adapt_parts(round, (ground, &around), (parts, &mine), (is_zone, divides), &list);
         self.agreed(adapted)?;
         self.next_id += (parts as u64) << 33;
@@ -310,7 +294,9 @@ impl<'a> Rounds<'a> {
         self.become_active(round, list)?;
         let vertices = self.active.pieces.iter().map(|piece| piece.all as usize).sum();
         self.common.observer.vertices(self.vertices());
-        self.told.push(Told { parts, tets, vertices, seconds: began.elapsed().as_secs_f64() });
+        let of_parts = self.active.pieces.iter().map(|piece| piece.told(&cuts.work)).collect();
+        let seconds = began.elapsed().as_secs_f64();
+        self.told.push(Told { parts, tets, vertices, seconds, cutting, dealing, of_parts });
         // Parts that were ended halfway are good for the mesh that is written now, and not for a run that goes on.
         if self.is_stopped() {
             return Ok(());
@@ -324,53 +310,8 @@ impl<'a> Rounds<'a> {
         Ok(())
     }
 
-    /// How many parts of so many vertices may be in memory at once.
-    pub fn at_once(&self, vertices: f64) -> usize {
-        let threads = self.common.pool.threads();
-        let Some(memory) = self.common.memory else { return threads };
-        ((memory as f64 / (BYTES_A_VERTEX * vertices.max(1.0))) as usize).clamp(1, threads)
-    }
-
-    /// Adapts the parts of this rank.
-    fn adapt_parts(
-        &self,
-        round: u32,
-        (ground, around): (&Ground, &Around),
-        (parts, mine): (usize, &[(u32, Vec<u32>)]),
-        (is_zone, divides): (bool, bool),
-        list: &Shared<PartDone>,
-    ) -> Result<(), Error> {
-        let Common { model, options, pool, shelf, observer, sizes, .. } = self.common;
-        let is_shared = parts < OF_ONE_THREAD;
-        let scheduler = if is_shared { Scheduler::Deterministic } else { Scheduler::Sequential };
-        let options = Options { scheduler, is_draft: false, ..options.clone() };
-        let quiet = Quiet(observer);
-        let adapt = |at: usize, pool: &Pool| {
-            let (part, of) = &mine[at];
-            let part = *part;
-            let piece = self.joined(round, part, of)?;
-            let under = ground.under(shelf, round, part, around)?;
-            let source = under.source();
-            let tools = Tools { model, source, refs: &self.refs, options: &options, pool, observer: &quiet };
-            let first_id = self.next_id + (u64::from(part) << 33);
-            let (piece, done) = adapt_piece(tools, piece, Round { is_zone, is_alone: parts == 1 }, first_id)?;
-            of.iter().for_each(|&of| shelf.forget(Key::Share { round, part, of }));
-            let pieces = if divides { divide(&piece) } else { [piece, Piece::default()] };
-            self.put_away((round, part, self.active.pieces.len()), pieces, done, list)?;
-            observer.advance(1);
-            Ok(())
-        };
-        if is_shared {
-            return (0..mine.len()).try_for_each(|at| adapt(at, pool));
-        }
-        let beside = if ground.blocks().is_empty() { 1.0 } else { 1.0 + GROUND };
-        on_threads(self.at_once(beside * sizes.part), mine.len(), |at| {
-            adapt(at, &Pool::new(1).map_err(|error| Error::Told(error.to_string()))?)
-        })
-    }
-
     /// Puts away what a part became, one of so many: what is not finished, and what is.
-    pub fn put_away(
+    pub(super) fn put_away(
         &self,
         (round, part, parts): (u32, u32, usize),
         [active, finished]: [Piece; 2],
@@ -385,6 +326,7 @@ impl<'a> Rounds<'a> {
             tets: active.len() as u64,
             vertices: active.ids.len() as u64,
             all: (active.ids.len() + finished.ids.len()) as u64,
+            seconds: done.seconds,
         };
         let told = (became, samples(&active, most), done);
         if active.len() > 0 {

@@ -2,24 +2,23 @@
 use super::Error;
 use super::ground::{self, Ground};
 use super::input::{Input, Skin};
-use super::outline::{Numbering, Numbers};
+use super::outline::Numbering;
 use super::part::Done;
-use super::piece::{Piece, SHARED};
-use super::rounds::{Common, Rounds, Told};
+use super::piece::Piece;
+use super::rounds::{Common, Rounds};
 use super::sizes::wanted_vertices;
+use super::slices::Slice;
+use super::threads::{Shared, add, sorted};
+use super::times::{Numbered, Stopwatch, Told};
 use crate::adapt::forecast::Forecast;
 use crate::adapt::{Extracted, References, held_vertices};
 use crate::geometry::Entity;
-use crate::mesh::adjacency::{sorted2, sorted3};
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::sorted3;
 use crate::mesh::crossing::{self, Crossings};
-use crate::mesh::vector::{Vec3, sub};
-use crate::mesh::{Elements, TetMesh};
-use crate::metric::quality::edge_length;
-use crate::metric::statistics::{Figures, Part, Statistics};
 use crate::metric::{Source, Sym3};
 use crate::tasks::{Team, stage};
 use std::collections::HashSet;
-use std::sync::{Mutex, PoisonError};
 
 /// How many pairs of crossing triangles are told.
 const TOLD: usize = 3;
@@ -30,6 +29,7 @@ pub struct Adapted<'a> {
     numbering: Numbering,
     /// The boundary of the mesh with all that is listed of it, and no tetrahedra: its vertices are the first ones of the mesh.
     skin: Extracted,
+    numbered: Numbered,
 }
 
 /// What is adapted.
@@ -68,10 +68,15 @@ pub fn adapt<'a>(common: Common<'a>, given: Given<'_>, told: impl FnOnce(usize))
     };
     rounds.run(&mut ground, team, complexity, vertices)?;
     stage("rounds");
-    let mut numbering = rounds.numbering()?;
+    let mut watch = Stopwatch::start(common.pool.threads() == 1);
+    let found = rounds.outlines()?;
+    let outlines = watch.lap();
+    let mut numbering = Numbering::of(found);
+    let numbers = watch.lap();
     let skin = outer(team, &mut numbering, &refs, &common);
     stage("vertices numbered");
-    Ok(Adapted { rounds, numbering, skin })
+    let numbered = Numbered { outlines, numbers, boundary: watch.lap() };
+    Ok(Adapted { rounds, numbering, skin, numbered })
 }
 
 /// What the run will take; of memory as much as it may.
@@ -120,101 +125,6 @@ fn crossings(team: Team<'_>, mesh: &TetMesh, inner: Vec<[u32; 3]>) -> Crossings 
     found
 }
 
-/// Some of the whole mesh: vertices inside, and tetrahedra, each from a number on.
-pub struct Slice {
-    /// The number of the first vertex.
-    pub first: usize,
-    /// Coordinates.
-    pub vertices: Vec<Vec3>,
-    /// References.
-    pub vertex_refs: Vec<i32>,
-    /// M.
-    pub metrics: Vec<Sym3>,
-    /// The number of the first tetrahedron.
-    pub first_tet: usize,
-    /// Tetrahedra, by the numbers of the whole mesh.
-    pub tets: Elements<4>,
-    /// Edge lengths, mean ratios, complexity; of edges those that no other piece can have.
-    pub figures: Figures,
-    /// The other edges, by the numbers of the whole mesh, ascending, with their lengths in the metric.
-    pub doubtful: Vec<([u32; 2], f64)>,
-}
-
-impl Slice {
-    fn of(piece: Piece, numbers: &Numbers) -> Self {
-        let Numbers { numbers, written, first, first_tet } = numbers;
-        let metrics: Vec<Sym3> = piece.logs.iter().map(Sym3::exp).collect();
-        let Piece { mesh, marks, .. } = piece;
-        let is_shared = |v: u32| marks[v as usize] & SHARED != 0;
-        let doubtful = Mutex::new(Vec::new());
-        let counts = |[a, b]: [u32; 2]| {
-            if !is_shared(a) || !is_shared(b) {
-                return true;
-            }
-            let [p, q] = [a, b].map(|v| mesh.vertices[v as usize]);
-            let length = edge_length(sub(q, p), &metrics[a as usize], &metrics[b as usize]);
-            let edge = sorted2([a, b].map(|v| numbers[v as usize]));
-            doubtful.lock().unwrap_or_else(PoisonError::into_inner).push((edge, length));
-            false
-        };
-        let (none, none_tagged) = (Elements::default(), Elements::default());
-        let part = Part {
-            vertices: &mesh.vertices,
-            own_vertices: written.len(),
-            tets: &mesh.tets,
-            triangles: &none,
-            edges: &none_tagged,
-        };
-        let figures = Figures::in_metric(Team::alone(), part, &metrics, counts);
-        let doubtful = doubtful.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let mut tets = mesh.tets;
-        tets.nodes.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
-        let at = |v: &u32| *v as usize;
-        Self {
-            first: *first,
-            vertices: written.iter().map(|v| mesh.vertices[at(v)]).collect(),
-            vertex_refs: written.iter().map(|v| mesh.vertex_refs[at(v)]).collect(),
-            metrics: written.iter().map(|v| metrics[at(v)]).collect(),
-            first_tet: *first_tet,
-            tets,
-            figures,
-            doubtful,
-        }
-    }
-}
-
-/// The figures of a whole mesh from those of its boundary and of its slices.
-pub struct Measured {
-    figures: Vec<(usize, Figures)>,
-    doubtful: Vec<([u32; 2], f64)>,
-}
-
-impl Measured {
-    /// Of a boundary, whose vertices come first in the mesh.
-    pub fn of(team: Team<'_>, skin: &TetMesh, metrics: &[Sym3]) -> Self {
-        let none = Elements::default();
-        let part = Part { tets: &none, ..Part::whole(skin) };
-        Self { figures: vec![(0, Figures::in_metric(team, part, metrics, |_| false))], doubtful: Vec::new() }
-    }
-
-    /// Adds those of a slice.
-    pub fn add(&mut self, slice: &mut Slice) {
-        self.figures.push((1 + slice.first_tet, slice.figures.clone()));
-        self.doubtful.append(&mut slice.doubtful);
-    }
-
-    /// The statistics.
-    pub fn statistics(self) -> Statistics {
-        let Self { mut figures, mut doubtful } = self;
-        figures.sort_by_key(|(at, _)| *at);
-        doubtful.sort_unstable_by_key(|edge| edge.0);
-        doubtful.dedup_by_key(|(edge, _)| *edge);
-        let mut all = figures.into_iter().map(|(_, figures)| figures);
-        let first = all.next().expect("the boundary is there");
-        all.fold(first, Figures::and).with_lengths(doubtful.into_iter().map(|(_, length)| length)).statistics()
-    }
-}
-
 impl Adapted<'_> {
     /// What came of all parts.
     pub fn done(&self) -> &Done {
@@ -226,20 +136,35 @@ impl Adapted<'_> {
         &self.rounds.told
     }
 
+    /// What it took to number the vertices.
+    pub fn numbered(&self) -> Numbered {
+        self.numbered
+    }
+
     /// Vertices and tetrahedra.
     pub fn size(&self) -> [usize; 2] {
         [self.numbering.vertices(), self.numbering.tets()]
     }
 
-    /// Calls f on rank 0 with each slice of all ranks: on all threads, where there is one rank, else one after the other.
+    /// Calls f with each slice of this rank, on all threads.
     ///
     /// # Errors
     /// That of f, and where a piece cannot be read.
     pub fn for_each_slice(&self, f: impl Fn(Slice) -> Result<(), Error> + Sync) -> Result<(), Error> {
-        self.rounds.for_each_finished(|at, piece| {
-            let numbers = self.numbering.of_piece(at, &piece);
-            f(Slice::of(piece, &numbers))
-        })
+        self.rounds.for_each_own(|at, piece| f(self.slice(at, piece)))
+    }
+
+    /// Gives all slices of this rank to rank 0, which puts the mesh [together in memory](Self::into_memory). Collective.
+    ///
+    /// # Errors
+    /// That of any rank.
+    pub fn give_slices(&self) -> Result<(), Error> {
+        self.rounds.for_each_finished(|_, _| Ok(()))
+    }
+
+    fn slice(&self, at: usize, piece: Piece) -> Slice {
+        let numbers = self.numbering.of_piece(at, &piece);
+        Slice::of(piece, &numbers)
     }
 
     /// The boundary of the mesh, of which the caller may make what it likes: nothing here asks for it again.
@@ -256,18 +181,17 @@ impl Adapted<'_> {
         }
     }
 
-    /// The whole mesh in memory, as the kernel gives it.
+    /// The whole mesh in memory, as the kernel gives it: on rank 0, to which the others [give their slices](Self::give_slices).
     ///
     /// # Errors
     /// Where a piece cannot be read.
     pub fn into_memory(mut self) -> Result<crate::adapt::Adapted, Error> {
-        let slices = Mutex::new(Vec::new());
-        self.for_each_slice(|slice| {
-            slices.lock().unwrap_or_else(PoisonError::into_inner).push(slice);
+        let slices = Shared::default();
+        self.rounds.for_each_finished(|at, piece| {
+            add(&slices, self.slice(at, piece));
             Ok(())
         })?;
-        let mut slices = slices.into_inner().unwrap_or_else(PoisonError::into_inner);
-        slices.sort_by_key(|slice| slice.first_tet);
+        let slices = sorted(slices, |slice| slice.first_tet);
         let [vertices, tets] = self.size();
         let Extracted { mesh, classification: place, metrics, .. } = &mut self.skin;
         let more = vertices - mesh.vertices.len();

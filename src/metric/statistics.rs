@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use std::ops::Range;
 
+mod words;
+
 /// Bounds of the classes of edge lengths in the metric; the last class is open.
 pub const LENGTH_CLASSES: [f64; 11] = [0.0, 0.1, 0.25, 0.5, FRAC_1_SQRT_2, 1.0, SQRT_2, 2.0, 4.0, 10.0, f64::INFINITY];
 

@@ -27,6 +27,7 @@ mod with_mpi {
     use super::*;
     use crate::mpirun::{is_there, mpirun};
     use geo_adapt::mesh::io::read_mesh;
+    use serde_json::Value;
     use std::fs;
     use std::process::{Command, Output};
 
@@ -57,14 +58,22 @@ mod with_mpi {
         let alone = [&FIELD[..], &["--memory", "4GiB", "--threads", "1"]].concat();
         ended_well(&work.command(&mesh, &alone).output().unwrap());
         let bytes = written(&work);
+        let mut figures = Vec::new();
         for (ranks, more) in
             [(2, &["--threads", "1"][..]), (3, &["--threads", "2"]), (5, &["--threads", "1", "--memory", "1MB"])]
         {
-            let run = launched(ranks, &work.command(&mesh, &[&FIELD[..], more].concat())).output().unwrap();
+            let report = text(&work.path("report.json"));
+            let words = [&FIELD[..], more, &["--report", &report]].concat();
+            let run = launched(ranks, &work.command(&mesh, &words)).output().unwrap();
             ended_well(&run);
+            let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
+            figures.push(report["statistics"].clone());
+            assert_eq!(report["parts"]["processes"].as_array().unwrap().len(), ranks);
             assert_eq!(String::from_utf8_lossy(&run.stdout).matches("unit edges").count(), 1, "one of them speaks");
             assert!(written(&work) == bytes, "{ranks} processes");
         }
+        // All processes measure, and the sums are the same to the last bit.
+        assert!(figures.iter().all(|of| of == &figures[0] && of["metric"]["unit_edges"].as_f64().unwrap() > 0.5));
         // What is no .meshb is made in the memory of one of them.
         let [vtu, back] = ["out.vtu", "back.meshb"].map(|name| text(&work.path(name)));
         let mut to_vtu = program();

@@ -2,7 +2,7 @@
 use super::Arguments;
 use super::by_parts::agreed;
 use super::input::{Error, Input, OnModel};
-use super::slices::Sliced;
+use super::sliced::Sliced;
 use crate::decomposition::{self, Adapted, Common, Given, InMemory, Skin};
 use crate::metric::{Source, Sym3};
 use crate::ranks::Ranks;

@@ -3,20 +3,19 @@ use super::begun::Begun;
 use super::input::{Error, OnModel};
 use super::progress::{self, Progress};
 use super::report::Report;
+use super::rounds::Parts;
 use super::scratch::Scratch;
-use super::{Arguments, Targets, parts};
+use super::{Arguments, Targets, parts, slices};
 use crate::adapt::Options;
 use crate::cli::amount::bytes;
-use crate::cli::table::Table;
 use crate::cli::terminal;
 use crate::cli::waiting::Waiting;
 use crate::cli::{BAD_INPUT, INVALID, Outcome, interrupt, note};
-use crate::decomposition::{Adapted, Common, Shelf, Sizes, Told, wanted_vertices};
+use crate::decomposition::{Adapted, Common, Shelf, Sizes, wanted_vertices};
 use crate::memory;
 use crate::metric::statistics::Statistics;
-use crate::ranks::{Ranks, Traffic, agree, broadcast};
+use crate::ranks::{Ranks, agree, broadcast};
 use crate::tasks::{Plan, Pool, Team, stage};
-use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -122,8 +121,9 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     let result = Ending { arguments, team, progress: &progress, threads, told };
     let code = match targets {
         Some(targets) if place.is_whole => result.in_memory(on, adapted, &targets, (start, prepared)),
-        Some(targets) => result.by_slices(on, adapted, &targets, (start, prepared)),
-        None => adapted.for_each_slice(|_| Ok(())).map_err(Error::from).map(|()| ExitCode::SUCCESS),
+        Some(targets) => result.by_slices(on, adapted, &targets, ranks, (start, prepared)),
+        None if place.is_whole => adapted.give_slices().map_err(Error::from).map(|()| ExitCode::SUCCESS),
+        None => slices::help(ranks, &adapted).map(|()| ExitCode::SUCCESS),
     };
     let code = agreed(ranks, code)?;
     if let (Some(scratch), 0) = (place.scratch, ranks.rank()) {
@@ -208,51 +208,6 @@ impl Arguments {
     }
 }
 
-/// What the report says of a run part by part.
-#[derive(Clone, Serialize)]
-pub struct Parts {
-    rounds: Vec<Told>,
-    processes: Vec<Process>,
-}
-
-/// What a process did.
-#[derive(Clone, Copy, Serialize)]
-struct Process {
-    /// Bytes sent to others.
-    sent: u64,
-    /// Time spent in sending, and in waiting for others, s.
-    waited: f64,
-}
-
-impl Parts {
-    /// Of all processes. Collective.
-    fn of(adapted: &Adapted<'_>, ranks: &dyn Ranks) -> Self {
-        let Traffic { sent, waited } = ranks.traffic();
-        let own = [sent.to_le_bytes(), waited.to_le_bytes()].concat();
-        let read = |bytes: Vec<u8>| {
-            let [sent, waited] = [0, 8].map(|at| bytes[at..at + 8].try_into().unwrap_or_default());
-            Process { sent: u64::from_le_bytes(sent), waited: f64::from_le_bytes(waited) }
-        };
-        Self { rounds: adapted.told().to_vec(), processes: ranks.gather(&own).into_iter().map(read).collect() }
-    }
-
-    /// What the table says of it.
-    pub fn rows(&self, table: &mut Table) {
-        let parts: Vec<String> = self.rounds.iter().map(|told| told.parts.to_string()).collect();
-        table.row("parts, round by round", parts.join(", "));
-        if self.processes.len() > 1 {
-            let sent: u64 = self.processes.iter().map(|process| process.sent).sum();
-            let waited = self.processes.iter().map(|process| process.waited).fold(0.0, f64::max);
-            let figures = format_args!(
-                "{}; {:.1} MB sent, {waited:.2} s waited at the most",
-                self.processes.len(),
-                sent as f64 / 1e6
-            );
-            table.row("processes", figures);
-        }
-    }
-}
-
 /// What a run has come to.
 struct Ending<'a> {
     arguments: &'a Arguments,
@@ -278,12 +233,13 @@ impl Ending<'_> {
         self.told(&report)
     }
 
-    /// The boundary is measured and written in memory, all else by slices.
+    /// The boundary is measured and written in memory, all else by slices, by all ranks.
     fn by_slices(
         &self,
         on: &OnModel,
         mut adapted: Adapted<'_>,
         targets: &Targets,
+        ranks: &dyn Ranks,
         from: (Instant, Duration),
     ) -> Outcome {
         let finished = from.0.elapsed();
@@ -292,8 +248,10 @@ impl Ending<'_> {
         let skin = adapted.done().clone().with(adapted.take_skin());
         let mut report =
             Report::new(self.team, &asked, on, skin, (self.progress.forecast(), Some(Statistics::default())));
-        report.parts = Some(self.told.clone());
-        let report = targets.by_slices(self.team, report, &adapted, (from.0, [from.1, finished]))?;
+        let mut told = self.told.clone();
+        told.boundary_measured = (from.0.elapsed() - finished).as_secs_f64();
+        report.parts = Some(told);
+        let report = targets.by_slices((self.team, ranks), report, &adapted, (from.0, [from.1, finished]))?;
         drop(line);
         self.told(&report)
     }

@@ -1,15 +1,16 @@
 //! The files of a run: checked before it, written after it.
 use super::report::Report;
+use super::slices;
 use crate::cli::figures::FigureArguments;
 use crate::cli::files::reading::METRIC;
 use crate::cli::files::{Files, Outputs, Target};
-use crate::decomposition::{self, Adapted, Measured};
+use crate::decomposition::Adapted;
 use crate::formats::{Dataset, NamedField};
 use crate::mesh::io::{FieldKind, MeshCounts};
 use crate::metric::Field;
+use crate::ranks::Ranks;
 use crate::tasks::Team;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 type Failure = Box<dyn std::error::Error>;
@@ -82,36 +83,24 @@ impl Targets {
         Ok((report, lost))
     }
 
-    /// The same of a mesh that is not in memory: the report has its boundary, whose vertices come first, and the rest comes by slices. `times` are
-    /// the start, and those since when the work began and when it ended.
+    /// The same of a mesh that is not in memory: the report has its boundary, whose vertices come first, and the rest comes by slices, also those
+    /// of the other ranks ([`slices::help`]). `times` are the start, and those since when the work began and when it ended.
     pub fn by_slices(
         &self,
-        team: Team<'_>,
+        (team, ranks): (Team<'_>, &dyn Ranks),
         mut report: Report,
         adapted: &Adapted<'_>,
         (start, [prepared, finished]): (Instant, [Duration; 2]),
     ) -> Result<Report, Failure> {
-        let metric = self.metric.as_ref().ok_or("a mesh by slices has its metric beside it")?;
-        let mut outputs = self.outputs()?;
+        let mut outputs = Outputs::new();
         let [vertices, tets] = adapted.size();
         let counts = MeshCounts { vertices, tets, ..MeshCounts::of(&report.mesh) };
-        let measured = Mutex::new(Measured::of(team, &report.mesh, &report.metrics));
-        let mut begun = || -> Result<_, Failure> {
-            let writer = outputs.slices(&self.mesh, metric, &counts, &report.names)?;
-            writer.put_listed(team, &report.mesh, &report.metrics)?;
-            Ok(writer)
+        let mut begin = || {
+            let metric = self.metric.as_ref().ok_or("a mesh by slices has its metric beside it")?;
+            outputs = self.outputs()?;
+            Ok(outputs.slices(&self.mesh, metric, &counts, &report.names)?)
         };
-        // Other ranks wait to give their slices, so an error is told at the first of these.
-        let writer = begun().map_err(|error| error.to_string());
-        adapted.for_each_slice(|mut slice| {
-            let told = |error: Failure| decomposition::Error::Told(error.to_string());
-            let writer = writer.as_ref().map_err(|error| decomposition::Error::Told(error.clone()))?;
-            writer.put(&slice).map_err(told)?;
-            measured.lock().unwrap_or_else(PoisonError::into_inner).add(&mut slice);
-            Ok(())
-        })?;
-        writer?.finish()?;
-        report.statistics = measured.into_inner().unwrap_or_else(PoisonError::into_inner).statistics();
+        report.statistics = slices::write(ranks, team, adapted, begin(), (&report.mesh, &report.metrics))?;
         self.finish(outputs, &mut report, [prepared, finished, start.elapsed()])?;
         Ok(report)
     }

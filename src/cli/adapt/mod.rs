@@ -9,7 +9,9 @@ mod meet;
 pub mod parts;
 pub mod progress;
 pub mod report;
+mod rounds;
 mod scratch;
+mod sliced;
 mod slices;
 mod source;
 

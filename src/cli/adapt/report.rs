@@ -1,7 +1,7 @@
 //! What was done: the table on the terminal and the JSON.
-use super::by_parts::Parts;
 use super::input::OnModel;
 use super::meet::Meeting;
+use super::rounds::Parts;
 use super::source::Chords;
 use crate::adapt::forecast::Forecast;
 use crate::adapt::{Adapted, GrowthEnd, KINDS, Kind, Refusal, Work};

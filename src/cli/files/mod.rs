@@ -9,7 +9,7 @@ pub mod reading;
 pub mod room;
 pub mod text;
 
-pub use outputs::{On, Outputs};
+pub use outputs::{Begun, On, Outputs, Slices, Written};
 
 use crate::formats::Format;
 use crate::mesh::io::check_writable;

@@ -5,13 +5,14 @@ use crate::decomposition;
 use crate::formats::vtu::pieces;
 use crate::formats::{self, Dataset, Format, Options};
 use crate::geometry::{Names, names};
-use crate::mesh::io::slices::{MeshWriter, MetricWriter};
+use crate::mesh::io::slices::{self, MeshWriter, MetricWriter};
 use crate::mesh::io::{self, Batch, MeshCounts, Slice};
 use crate::mesh::{Association, TetMesh};
 use crate::metric::{Field, Sym3};
 use crate::tasks::Team;
 use crate::view::{self, Scene, picture};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::ffi::OsString;
 use std::fs::File;
 use std::path::Path;
 
@@ -50,21 +51,24 @@ impl Outputs {
         Ok(Vec::new())
     }
 
-    /// A mesh (.meshb) of these counts with its names, and its metric beside it (.solb), which are written by slices.
+    /// A mesh (.meshb) of these counts with its names, and its metric beside it (.solb), which are written by slices; and what other processes
+    /// must know to write some of them.
     pub fn slices(
         &mut self,
         mesh: &Target,
         metric: &Target,
         counts: &MeshCounts,
         called: &Names,
-    ) -> Result<Slices, io::Error> {
+    ) -> Result<(Slices, Begun), io::Error> {
         let file = self.batch.open(&mesh.path, true)?;
         names::add(&mut self.batch, &mesh.path, called, &[])?;
         let of_metric = self.batch.open(&metric.path, false)?;
-        Ok(Slices {
+        let slices = Slices {
             mesh: MeshWriter::create(file, &mesh.path, counts)?,
             metric: MetricWriter::create(of_metric, &metric.path, counts.vertices)?,
-        })
+        };
+        let files = [mesh, metric].map(|to| self.batch.beside(&to.path).unwrap_or(&to.path).into());
+        Ok((slices, Begun { files, counts: *counts }))
     }
 
     /// A metric (.solb) at so many vertices, which is written by slices.
@@ -168,13 +172,53 @@ impl Outputs {
     }
 }
 
+/// A mesh and its metric that a process has begun, for others that write some of them.
+#[derive(Serialize, Deserialize)]
+pub struct Begun {
+    /// Where they are written.
+    files: [OsString; 2],
+    counts: MeshCounts,
+}
+
 /// A mesh and its metric that are being written by slices.
 pub struct Slices {
     mesh: MeshWriter,
     metric: MetricWriter,
 }
 
+/// The rows of both that another process has written.
+pub type Written = [Vec<slices::Written>; 2];
+
 impl Slices {
+    /// Those that another process has begun.
+    ///
+    /// # Errors
+    /// Where its files are not here.
+    pub fn join(begun: &Begun) -> Result<Self, Failure> {
+        let [mesh, metric] = begun.files.each_ref().map(Path::new);
+        let open = |path: &Path| {
+            File::options().read(true).write(true).open(path).map_err(|error| {
+                let wanted = "all processes write the output together, and it must be on a disk that all of them see";
+                format!("{}: {error}; {wanted}", path.display())
+            })
+        };
+        Ok(Self {
+            mesh: MeshWriter::join(open(mesh)?, mesh, &begun.counts)?,
+            metric: MetricWriter::join(open(metric)?, metric, begun.counts.vertices)?,
+        })
+    }
+
+    /// What this process had to write is on the disk.
+    pub fn leave(self) -> Result<Written, Failure> {
+        Ok([self.mesh.leave()?, self.metric.leave()?])
+    }
+
+    /// Another process has written this.
+    pub fn add_written(&self, [mesh, metric]: &Written) -> Done {
+        self.mesh.add_written(mesh)?;
+        Ok(self.metric.add_written(metric)?)
+    }
+
     /// What a mesh without tetrahedra lists: its vertices are the first ones, with these metrics.
     pub fn put_listed(&self, team: Team<'_>, mesh: &TetMesh, metrics: &[Sym3]) -> Done {
         let Association { vertices, edges, faces } = &mesh.association;
@@ -207,5 +251,19 @@ impl Slices {
     pub fn finish(self) -> Done {
         self.mesh.finish()?;
         Ok(self.metric.finish()?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_another_machine_does_not_see_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = ["a.meshb", "a.solb"].map(|name| folder.path().join(name).into());
+        let begun = Begun { files, counts: MeshCounts { vertices: 1, ..MeshCounts::default() } };
+        let told = Slices::join(&begun).err().unwrap().to_string();
+        assert!(told.contains("a.meshb") && told.contains("a disk that all of them see"), "{told}");
     }
 }

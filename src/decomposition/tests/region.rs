@@ -19,7 +19,7 @@ fn a_part_finds_the_metric_at_all_of_its_points() {
     };
     let found = samples(&whole, 1000);
     let whole_box = Sample::box_of(&found);
-    let cuts = Cuts::of(found, 5);
+    let cuts = Cuts::of(found, 5, 1);
     let parts = split(&whole, &cuts.owners(&whole), 5, |_, _| false);
     let blocks = split(&whole, &(0..whole.len() as u32).map(|t| t % 3).collect::<Vec<_>>(), 3, |_, _| false);
     let boxes = cuts.boxes(whole_box);

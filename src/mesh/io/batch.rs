@@ -1,7 +1,7 @@
 //! Writing files so that each is either the old one or the whole new one, and those that belong together change together.
 use super::Error;
 use super::layout::To;
-use super::place::{Place, Temporary, create_file, folder_of, new_beside, refusal};
+use super::place::{Place, Temporary, create_file, folder_of, follow, new_beside, refusal};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
@@ -97,6 +97,12 @@ impl Batch {
         let (own, file) = files.map_err(|error| Error::system(path, error))?;
         self.open.push((path.to_owned(), own));
         Ok(file)
+    }
+
+    /// Where a file of [`Batch::open`] lies until [`Batch::commit`] gives it its name: other processes find it there.
+    pub fn beside(&self, path: &Path) -> Option<&Path> {
+        let follow = follow(path).ok()?;
+        self.files.iter().chain(&self.main).find(|staged| staged.to == follow).map(|staged| &*staged.from.path)
     }
 
     /// Removes a file of an older result, which would be taken for one of this result, before the new files come.

@@ -4,7 +4,7 @@ use super::rows::Slice;
 use crate::mesh::TetMesh;
 
 /// Numbers of the entities of a mesh and of its lists, as a file has them. Sections without rows are left out of a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct MeshCounts {
     /// Vertices, at most `u32::MAX`.
     pub vertices: usize,

@@ -80,6 +80,8 @@ fn an_open_file_is_written_until_all_come() {
     assert_eq!(file.metadata().unwrap().len(), 0);
     file.write_all(b"new").unwrap();
     assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(fs::read(batch.beside(&path).unwrap()).unwrap(), b"new");
+    assert_eq!(batch.beside(&folder.path().join("b.meshb")), None);
     batch.commit().unwrap();
     assert_eq!(fs::read(&path).unwrap(), b"new");
     drop(Batch::new().open(&path, false).unwrap());

@@ -34,6 +34,11 @@ impl Covered {
         Ok(())
     }
 
+    /// The ranges, ascending.
+    pub(super) fn ranges(&self) -> impl Iterator<Item = Range<usize>> {
+        self.0.iter().map(|(&start, &end)| start..end)
+    }
+
     /// Number of rows, and the first that is missing.
     pub(super) fn rows(&self) -> (usize, usize) {
         let count = self.0.iter().map(|(start, end)| end - start).sum();

@@ -27,6 +27,11 @@ impl Positioned {
         Ok(self.file.metadata()?.len())
     }
 
+    /// Brings what was written to the disk.
+    pub(super) fn sync(&self) -> io::Result<()> {
+        self.file.sync_all()
+    }
+
     /// Fills the buffer with the bytes from a place on.
     #[cfg(unix)]
     pub(in crate::mesh) fn read(&self, buffer: &mut [u8], place: u64) -> io::Result<()> {

@@ -91,6 +91,49 @@ fn a_mesh_by_slices_has_the_bytes_of_the_whole() {
     assert_eq!(whole(&path("small.meshb"), &small), fs::read(path("whole.meshb")).unwrap());
 }
 
+/// Two writers of one file, as two processes have them.
+#[test]
+fn who_joins_writes_rows_of_the_same_file() {
+    let (mesh, folder) = (mesh(), tempfile::tempdir().unwrap());
+    let path = |name: &str| folder.path().join(name);
+    write_mesh(&path("whole.meshb"), &mesh).unwrap();
+    let (counts, shared) = (MeshCounts::of(&mesh), path("shared.meshb"));
+    let first = MeshWriter::create(created(&shared), &shared, &counts).unwrap();
+    let again = || File::options().read(true).write(true).open(&shared).unwrap();
+    let fewer = MeshCounts { tets: counts.tets - 1, ..counts };
+    let refused = MeshWriter::join(again(), &shared, &fewer).unwrap_err();
+    assert!(refused.to_string().contains("the process that has begun it"), "{refused}");
+    let second = MeshWriter::join(again(), &shared, &counts).unwrap();
+    let half = mesh.tets.len() / 2;
+    let (nodes, refs) = (&mesh.tets.nodes, &mesh.tets.refs);
+    second.put(Team::alone(), half, Slice::Tets(&nodes[half..], &refs[half..])).unwrap();
+    first.put(Team::alone(), 0, Slice::Tets(&nodes[..half], &refs[..half])).unwrap();
+    let others = slices(&mesh).into_iter().filter(|slice| !matches!(slice, Slice::Tets(..)));
+    others.for_each(|slice| first.put(Team::alone(), 0, slice).unwrap());
+    let written = second.leave().unwrap();
+    assert_eq!(written.len(), 1);
+    first.add_written(&written).unwrap();
+    assert!(first.add_written(&written).unwrap_err().to_string().contains("a second time"));
+    assert!(first.add_written(&[[999, 0, 1]]).unwrap_err().to_string().contains("other sections"));
+    first.finish().unwrap();
+    assert!(fs::read(&shared).unwrap() == fs::read(path("whole.meshb")).unwrap());
+}
+
+/// What another process has not written is missed.
+#[test]
+fn rows_that_nobody_wrote_are_missed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shared.solb");
+    let tensors = vec![[1.0, 0.0, 1.0, 0.0, 0.0, 1.0]; 10];
+    let first = MetricWriter::create(created(&path), &path, 10).unwrap();
+    let second = MetricWriter::join(File::options().read(true).write(true).open(&path).unwrap(), &path, 10).unwrap();
+    first.put(Team::alone(), 0, &tensors[..4]).unwrap();
+    second.put(Team::alone(), 5, &tensors[5..]).unwrap();
+    first.add_written(&second.leave().unwrap()).unwrap();
+    let missed = first.finish().unwrap_err().to_string();
+    assert!(missed.contains("9 rows of 10") && missed.contains("row 5 is missing"), "{missed}");
+}
+
 #[test]
 fn a_metric_by_slices_has_the_bytes_of_the_whole() {
     let folder = tempfile::tempdir().unwrap();

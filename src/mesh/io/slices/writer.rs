@@ -17,6 +17,9 @@ use std::sync::{Mutex, PoisonError};
 /// Rows that are encoded at once: some hundred kilobytes.
 const ROWS: usize = GRAIN;
 
+/// Rows that were written: the section, the first row, and the one behind the last.
+pub type Written = [u64; 3];
+
 /// A mesh file (.meshb) whose rows come in any order, from any thread.
 #[derive(Debug)]
 pub struct MeshWriter(Writer);
@@ -32,6 +35,14 @@ impl MeshWriter {
         Writer::create(file, path, &sections(|keyword| counts.rows(keyword)), *counts).map(Self)
     }
 
+    /// As [`MeshWriter::create`], of a file that another process has begun, for the same counts.
+    ///
+    /// # Errors
+    /// As there, and [`Error::Content`] where the file is not that one.
+    pub fn join(file: File, path: &Path, counts: &MeshCounts) -> Result<Self, Error> {
+        Writer::join(file, path, &sections(|keyword| counts.rows(keyword)), *counts).map(Self)
+    }
+
     /// Writes the rows of a slice, from row `start` (from 0) of its section on.
     ///
     /// # Errors
@@ -39,6 +50,22 @@ impl MeshWriter {
     /// finite; [`Error::System`] when the file cannot be written. After an error the file is of no use.
     pub fn put(&self, team: Team<'_>, start: usize, slice: Slice<'_>) -> Result<(), Error> {
         self.0.put(team, start, slice)
+    }
+
+    /// Ends what a process that joined has to write: all of it is on the disk. Returns which rows these are, for [`MeshWriter::add_written`].
+    ///
+    /// # Errors
+    /// [`Error::System`] when the disk refuses.
+    pub fn leave(self) -> Result<Vec<Written>, Error> {
+        self.0.leave()
+    }
+
+    /// Another process has written these rows.
+    ///
+    /// # Errors
+    /// [`Error::Content`] where one is not in the file, or was written before.
+    pub fn add_written(&self, rows: &[Written]) -> Result<(), Error> {
+        self.0.add_written(rows)
     }
 
     /// Ends the file.
@@ -60,9 +87,15 @@ impl MetricWriter {
     /// # Errors
     /// [`Error::System`] when it cannot be written.
     pub fn create(file: File, path: &Path, vertices: usize) -> Result<Self, Error> {
-        let kinds = vec![FieldKind::SymmetricTensor];
-        let section = Section { keyword: Keyword::SolAtVertices, count: vertices, body: 0..0, kinds };
-        Writer::create(file, path, &[section], MeshCounts { vertices, ..MeshCounts::default() }).map(Self)
+        Writer::create(file, path, &[tensors(vertices)], MeshCounts { vertices, ..MeshCounts::default() }).map(Self)
+    }
+
+    /// As [`MeshWriter::join`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn join(file: File, path: &Path, vertices: usize) -> Result<Self, Error> {
+        Writer::join(file, path, &[tensors(vertices)], MeshCounts { vertices, ..MeshCounts::default() }).map(Self)
     }
 
     /// The file's name, for errors.
@@ -78,6 +111,22 @@ impl MetricWriter {
         self.0.put(team, start, Slice::Tensors(tensors))
     }
 
+    /// As [`MeshWriter::leave`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn leave(self) -> Result<Vec<Written>, Error> {
+        self.0.leave()
+    }
+
+    /// As [`MeshWriter::add_written`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn add_written(&self, rows: &[Written]) -> Result<(), Error> {
+        self.0.add_written(rows)
+    }
+
     /// Ends the file.
     ///
     /// # Errors
@@ -85,6 +134,11 @@ impl MetricWriter {
     pub fn finish(self) -> Result<(), Error> {
         self.0.finish()
     }
+}
+
+/// The section of a metric.
+fn tensors(vertices: usize) -> Section {
+    Section { keyword: Keyword::SolAtVertices, count: vertices, body: 0..0, kinds: vec![FieldKind::SymmetricTensor] }
 }
 
 /// A file and where the rows of its sections are.
@@ -111,20 +165,41 @@ struct Body {
 }
 
 impl Writer {
+    /// The last head ends the file, so it has its whole length from now on.
     fn create(file: File, path: &Path, sections: &[Section], counts: MeshCounts) -> Result<Self, Error> {
-        let version = version(sections);
-        let (file, mut bodies) = (Positioned::new(file), Vec::new());
-        for Framed { place, head, rows } in frame(version, sections) {
-            file.write(&head, place).map_err(|error| Error::system(path, error))?;
-            bodies.extend(rows.map(|(section, row)| Body {
+        let frame = frame(version(sections), sections);
+        let writer = Self::of(file, path, &frame, sections, counts);
+        let heads = frame.iter().try_for_each(|framed| writer.file.write(&framed.head, framed.place));
+        heads.map_err(|error| Error::system(path, error))?;
+        Ok(writer)
+    }
+
+    fn join(file: File, path: &Path, sections: &[Section], counts: MeshCounts) -> Result<Self, Error> {
+        let frame = frame(version(sections), sections);
+        let wanted = frame.last().map_or(0, |end| end.place + end.head.len() as u64);
+        let writer = Self::of(file, path, &frame, sections, counts);
+        let size = writer.file.size().map_err(|error| Error::system(path, error))?;
+        if size != wanted {
+            let message = format!("it has {size} bytes, and the process that has begun it says {wanted}");
+            return Err(Error::content(path, "the file", message));
+        }
+        Ok(writer)
+    }
+
+    fn of(file: File, path: &Path, frame: &[Framed<'_>], sections: &[Section], counts: MeshCounts) -> Self {
+        let body = |framed: &Framed<'_>| {
+            let (section, row) = framed.rows?;
+            Some(Body {
                 keyword: section.keyword,
                 count: section.count,
-                place: place + head.len() as u64,
+                place: framed.place + framed.head.len() as u64,
                 row,
                 written: Mutex::default(),
-            }));
-        }
-        Ok(Self { file, path: path.into(), words: Words::of_version(version, false), counts, bodies })
+            })
+        };
+        let words = Words::of_version(version(sections), false);
+        let bodies = frame.iter().filter_map(body).collect();
+        Self { file: Positioned::new(file), path: path.into(), words, counts, bodies }
     }
 
     fn put(&self, team: Team<'_>, start: usize, slice: Slice<'_>) -> Result<(), Error> {
@@ -141,10 +216,34 @@ impl Writer {
             let message = format!("rows {} to {end} are given, but the file is for {count}", start + 1);
             return Err(fail((keyword.name().into(), message)));
         };
-        let taken = body.written.lock().unwrap_or_else(PoisonError::into_inner).add(start..end);
-        taken.map_err(|row| fail((format!("{} {}", keyword.name(), row + 1), "the row comes a second time".into())))?;
+        self.take(body, start..end)?;
         let written = team.chunks(ROWS, slice.len(), |rows| self.write(body, start, &slice, rows));
         written.into_iter().collect()
+    }
+
+    /// These rows are written.
+    fn take(&self, body: &Body, rows: Range<usize>) -> Result<(), Error> {
+        let taken = body.written.lock().unwrap_or_else(PoisonError::into_inner).add(rows);
+        let place = |row: usize| format!("{} {}", body.keyword.name(), row + 1);
+        taken.map_err(|row| Error::content(&self.path, place(row), "the row comes a second time"))
+    }
+
+    fn leave(self) -> Result<Vec<Written>, Error> {
+        self.file.sync().map_err(|error| Error::system(&self.path, error))?;
+        let of_body = |(section, body): (u64, Body)| {
+            let written = body.written.into_inner().unwrap_or_else(PoisonError::into_inner);
+            written.ranges().map(|rows| [section, rows.start as u64, rows.end as u64]).collect::<Vec<_>>()
+        };
+        Ok((0..).zip(self.bodies).flat_map(of_body).collect())
+    }
+
+    fn add_written(&self, rows: &[Written]) -> Result<(), Error> {
+        rows.iter().try_for_each(|rows| {
+            let [section, start, end] = rows.map(|number| usize::try_from(number).unwrap_or(usize::MAX));
+            let body = self.bodies.get(section).filter(|body| start <= end && end <= body.count);
+            let unknown = || Error::content(&self.path, "the file", "another process has written other sections");
+            self.take(body.ok_or_else(unknown)?, start..end)
+        })
     }
 
     /// Writes some rows of a slice that begins at row `start`.
