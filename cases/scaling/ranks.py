@@ -244,7 +244,7 @@ def main():
     parser.add_argument("--threads", type=int, default=1, help="threads of each (default: 1)")
     parser.add_argument("--vertices", type=float, nargs="+", help="forecast meshes of so many vertices")
     parser.add_argument("--part-vertices", type=float, default=300_000, help="of a part, with --vertices (default: 300 000)")
-    parser.add_argument("--zone-vertices", type=float, default=40_000, help="of a part around former cuts, with --vertices (default: 40 000)")
+    parser.add_argument("--zone-vertices", type=float, default=100_000, help="of a part around former cuts, with --vertices (default: 100 000)")
     parser.add_argument("--latency", type=float, default=2e-6, help="of a message, s (default: 2e-6)")
     parser.add_argument("--bandwidth", type=float, default=1e10, help="of a process, bytes/s (default: 1e10)")
     parser.add_argument("--disk", type=float, default=2e9, help="of the file system, bytes/s (default: 2e9)")
