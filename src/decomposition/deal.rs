@@ -19,6 +19,9 @@ const KEY: usize = 24;
 /// The owner of a part that is done.
 pub const NOBODY: u32 = u32::MAX;
 
+/// The parts of a rank, ascending, each with the pieces that it has a share of.
+pub type Dealt = Vec<(u32, Vec<u32>)>;
+
 impl Rounds<'_> {
     /// The rank of each part: the heaviest first, each to the rank with the least work so far.
     pub fn owners(&self, parts: usize, work: &[f64]) -> Vec<u32> {
@@ -56,7 +59,7 @@ impl Rounds<'_> {
         cuts: &Cuts,
         log_factor: f64,
         (owners, boxes): (&[u32], Option<&[[Vec3; 2]]>),
-    ) -> Result<(Vec<(u32, Vec<u32>)>, BTreeMap<u32, Region>), Error> {
+    ) -> Result<(Dealt, BTreeMap<u32, Region>), Error> {
         let Common { shelf, ranks, .. } = self.common;
         let (own, parts) = (ranks.rank() as u32, owners.len());
         let shares = Shares::new(self.common, owners);

@@ -63,7 +63,7 @@ impl Region {
         }
         for step in [1, CELLS] {
             let before = self.cells.clone();
-            let is_first = |at: usize| at / step % CELLS == 0;
+            let is_first = |at: usize| (at / step).is_multiple_of(CELLS);
             for (at, cells) in self.cells.iter_mut().enumerate() {
                 *cells |= if is_first(at) { 0 } else { before[at - step] };
                 *cells |= if at + step < ROWS && !is_first(at + step) { before[at + step] } else { 0 };

@@ -2,26 +2,28 @@
 use super::Arguments;
 use super::by_parts::agreed;
 use super::input::{Error, Input, OnModel};
-use super::sliced::Sliced;
-use crate::decomposition::{self, Adapted, Common, Given, InMemory, Skin};
+use crate::decomposition::{self, Adapted, Common, Files, Given, InMemory, Shell, Skin};
 use crate::metric::{Source, Sym3};
 use crate::ranks::Ranks;
 use crate::tasks::Team;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// What a run begins with.
-pub enum Begun {
-    /// A mesh in memory.
-    Whole {
-        /// The mesh on its model.
-        on: OnModel,
-        /// The complexity of its metric.
-        complexity: f64,
-        /// ln M at its vertices.
-        logs: Vec<Sym3>,
-    },
-    /// A mesh that is read by slices.
-    Slices(Sliced),
+pub struct Begun {
+    /// The mesh, or its boundary, on the model.
+    pub on: OnModel,
+    /// The complexity of the metric.
+    pub complexity: f64,
+    /// All else of the mesh.
+    pub content: Content,
+}
+
+/// A mesh with its metric.
+pub enum Content {
+    /// In memory, with ln M at its vertices.
+    Whole(Vec<Sym3>),
+    /// In files, with what is known of them as a whole.
+    Slices(Box<Files>, Shell),
 }
 
 impl Begun {
@@ -36,9 +38,9 @@ impl Begun {
         if agreed(ranks, input.is_sliced(ranks.count(), memory))? {
             let told = notices.len();
             match input.read_slices(team, ranks, notices)? {
-                Ok(sliced) => {
-                    let source = sliced.files.analytic();
-                    return Ok((Self::Slices(sliced), source));
+                Ok(begun) => {
+                    let source = begun.analytic();
+                    return Ok((begun, source));
                 }
                 // The triangles are added where the mesh is read as a whole.
                 Err(decomposition::Error::Incomplete) if memory.is_none() => notices.truncate(told),
@@ -50,40 +52,32 @@ impl Begun {
         let Input { on, source, .. } = agreed(ranks, prepared)?;
         let complexity = input.amount.complexity().unwrap_or_else(|| source.complexity(team, &on.mesh));
         let logs = decomposition::logs_on(team, &on.mesh, &source);
-        Ok((Self::Whole { on, complexity, logs }, Some(source)))
+        Ok((Self { on, complexity, content: Content::Whole(logs) }, Some(source)))
     }
 
-    /// The mesh, or its boundary, on the model.
-    pub fn on(&self) -> &OnModel {
-        match self {
-            Self::Whole { on, .. } => on,
-            Self::Slices(sliced) => &sliced.on,
-        }
-    }
-
-    /// The complexity of the metric.
-    pub fn complexity(&self) -> f64 {
-        match self {
-            Self::Whole { complexity, .. } => *complexity,
-            Self::Slices(sliced) => sliced.complexity,
+    /// The analytic field of a mesh in files, if that is where its metric comes from.
+    fn analytic(&self) -> Option<Source> {
+        match &self.content {
+            Content::Whole(_) => None,
+            Content::Slices(files, _) => files.analytic(),
         }
     }
 
     /// A name for it, and for how it is adapted.
     pub fn name(&self, how: &str) -> u64 {
-        let on = self.on();
+        let Self { on, complexity, content } = self;
         let mut name = DefaultHasher::new();
         how.hash(&mut name);
-        self.complexity().to_bits().hash(&mut name);
+        complexity.to_bits().hash(&mut name);
         on.place.entities.hash(&mut name);
         on.place.faces.hash(&mut name);
         name.write(bytemuck::cast_slice(&on.mesh.vertices));
         name.write(bytemuck::cast_slice(&on.mesh.tets.nodes));
         name.write(bytemuck::cast_slice(&on.mesh.tets.refs));
         name.write(bytemuck::cast_slice(&on.mesh.triangles.nodes));
-        match self {
-            Self::Whole { logs, .. } => logs.iter().for_each(|log| name.write(bytemuck::bytes_of(&log.0))),
-            Self::Slices(sliced) => sliced.shell.name.hash(&mut name),
+        match content {
+            Content::Whole(logs) => logs.iter().for_each(|log| name.write(bytemuck::bytes_of(&log.0))),
+            Content::Slices(_, shell) => shell.name.hash(&mut name),
         }
         name.finish()
     }
@@ -97,16 +91,17 @@ impl Begun {
         goes_on: impl FnOnce(usize),
     ) -> Result<Adapted<'a>, decomposition::Error> {
         let team = Team::new(common.pool, common.options.plan);
-        let (on, complexity) = (self.on(), self.complexity());
-        match self {
-            Self::Whole { logs, .. } => {
+        let Self { on, content, .. } = self;
+        let complexity = self.complexity;
+        match content {
+            Content::Whole(logs) => {
                 let input = InMemory { mesh: &on.mesh, logs };
                 let skin = Skin::of(team, &on.mesh, &on.place);
                 decomposition::adapt(common, Given { input: &input, skin: &skin, source, complexity, name }, goes_on)
             }
-            Self::Slices(Sliced { shell, files, .. }) => {
+            Content::Slices(files, shell) => {
                 let skin = shell.skin(team, &on.place);
-                decomposition::adapt(common, Given { input: files, skin: &skin, source, complexity, name }, goes_on)
+                decomposition::adapt(common, Given { input: &**files, skin: &skin, source, complexity, name }, goes_on)
             }
         }
     }

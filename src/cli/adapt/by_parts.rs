@@ -87,7 +87,7 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     drop(line);
     let prepared = start.elapsed();
     let named = |error: String| -> Error { format!("{}: {error}", arguments.input.mesh.display()).into() };
-    let on = begun.on();
+    let on = &begun.on;
     let freeze = parts::frozen(&arguments.freeze, &on.mesh, &on.names).map_err(named)?;
     if !freeze.surfaces.is_empty() {
         arguments.check_references(on).map_err(named)?;
@@ -95,7 +95,7 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     let options = arguments.options(plan, freeze);
     let run = begun.name(&arguments.how(&options));
     agreed(ranks, is_same(ranks, run))?;
-    let vertices = wanted_vertices(begun.complexity()).max(on.size[0] as f64);
+    let vertices = wanted_vertices(begun.complexity).max(on.size[0] as f64);
     let place = agreed(ranks, arguments.parts.place(&arguments.output, vertices, threads, ranks))?;
     let is_alone = ranks.count() == 1;
     let stop = if is_alone { progress::finish_on_interrupt() } else { progress::finish_on_interrupt_of_mpirun() };

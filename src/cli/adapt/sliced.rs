@@ -1,4 +1,5 @@
 //! A mesh that is larger than memory, or that several processes share: read by slices, with its boundary alone in memory.
+use super::begun::{Begun, Content};
 use super::by_parts::{agreed, is_same};
 use super::input::{Error, InputArguments, OnModel};
 use super::source::of_size;
@@ -22,18 +23,6 @@ const BYTES_A_VERTEX: f64 = 700.0;
 /// So many blocks of a file are compared, of so many bytes.
 const BLOCKS: u64 = 64;
 const BLOCK: usize = 1 << 12;
-
-/// What a run begins with.
-pub struct Sliced {
-    /// The boundary on the model.
-    pub on: OnModel,
-    /// All that is known of the mesh as a whole.
-    pub shell: Shell,
-    /// The mesh and its metric.
-    pub files: Files,
-    /// The complexity that is asked for.
-    pub complexity: f64,
-}
 
 fn is_of(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
@@ -60,7 +49,7 @@ impl InputArguments {
         team: Team<'_>,
         ranks: &dyn Ranks,
         notices: &mut Vec<String>,
-    ) -> Result<Result<Sliced, decomposition::Error>, Error> {
+    ) -> Result<Result<Begun, decomposition::Error>, Error> {
         let files = agreed(ranks, self.open_files(notices))?;
         let print = agreed(ranks, self.fingerprint())?;
         agreed(ranks, is_same(ranks, print))?;
@@ -114,7 +103,7 @@ impl InputArguments {
         shell: Shell,
         mut files: Files,
         notices: &mut Vec<String>,
-    ) -> Result<Sliced, Error> {
+    ) -> Result<Begun, Error> {
         let named = |error: String| -> Error { format!("{}: {error}", self.mesh.display()).into() };
         let mesh = Arc::clone(&shell.mesh);
         let crossings = crossing::crossings(team, &shell.outer(team), |v| mesh.vertices[v as usize], 1);
@@ -133,6 +122,6 @@ impl InputArguments {
         let counts = files.reader().counts();
         let size = [counts.vertices, counts.tets];
         let on = OnModel { mesh, size, place, model, names, how: Default::default(), meeting: None };
-        Ok(Sliced { on, shell, files, complexity })
+        Ok(Begun { on, complexity, content: Content::Slices(Box::new(files), shell) })
     }
 }

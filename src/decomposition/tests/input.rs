@@ -127,5 +127,6 @@ fn a_missing_triangle_and_an_inverted_tetrahedron_are_told() {
 fn slices_are_of_one_size_and_all_of_the_mesh() {
     let found = slices(1000, &Sizes::of(50.0));
     assert_eq!(found, [0..300, 300..600, 600..900, 900..1000]);
-    assert_eq!(slices(0, &Sizes::of(50.0)), [0..0]);
+    let of_nothing = slices(0, &Sizes::of(50.0));
+    assert!(of_nothing.len() == 1 && of_nothing[0].is_empty());
 }
