@@ -39,6 +39,9 @@ pub struct PartArguments {
 /// Memory for a vertex of a mesh whose pieces and result are in memory, bytes.
 const BYTES_A_VERTEX: f64 = 500.0;
 
+/// Memory for a vertex of a metric in blocks, in these and in what the parts of a round take of them, bytes.
+const BYTES_OF_GROUND: f64 = 500.0;
+
 /// Memory for a vertex that is being adapted, bytes.
 const BYTES_AT_WORK: f64 = 1_200.0;
 
@@ -95,7 +98,8 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     let options = arguments.options(plan, freeze);
     let run = begun.name(&arguments.how(&options));
     agreed(ranks, is_same(ranks, run))?;
-    let vertices = wanted_vertices(begun.complexity).max(on.size[0] as f64);
+    let given = on.size[0] as f64;
+    let vertices = (wanted_vertices(begun.complexity).max(given), given);
     let place = agreed(ranks, arguments.parts.place(&arguments.output, vertices, threads, ranks))?;
     let is_alone = ranks.count() == 1;
     let stop = if is_alone { progress::finish_on_interrupt() } else { progress::finish_on_interrupt_of_mpirun() };
@@ -152,11 +156,19 @@ impl PartArguments {
         self.part_vertices.map_or_else(Sizes::default, |vertices| Sizes::of(f64::from(vertices)))
     }
 
-    /// Where the pieces of a mesh of so many vertices lie.
-    fn place(&self, output: &Path, vertices: f64, threads: usize, ranks: &dyn Ranks) -> Result<Place, Error> {
+    /// Where the pieces of a mesh of so many vertices lie, which is made of one of so many.
+    fn place(
+        &self,
+        output: &Path,
+        (vertices, given): (f64, f64),
+        threads: usize,
+        ranks: &dyn Ranks,
+    ) -> Result<Place, Error> {
         let is_binary = output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("meshb"));
         let at_work = BYTES_AT_WORK * self.sizes().part.min(vertices) * threads as f64;
-        let needed = BYTES_A_VERTEX * vertices / ranks.count() as f64 + at_work;
+        // The metric of a larger one lies in blocks.
+        let ground = if given > self.sizes().part { given } else { 0.0 };
+        let needed = (BYTES_A_VERTEX * vertices + BYTES_OF_GROUND * ground) / ranks.count() as f64 + at_work;
         if self.memory.is_none_or(|memory| memory as f64 >= needed) {
             return Ok(Place { scratch: None, is_whole: ranks.count() == 1 || !is_binary });
         }
@@ -170,7 +182,7 @@ impl PartArguments {
             .into());
         }
         let folder = Scratch::folder(self.scratch.as_deref(), output);
-        let scratch = if ranks.rank() == 0 { Scratch::open(folder, vertices)? } else { Scratch::of(folder) };
+        let scratch = if ranks.rank() == 0 { Scratch::open(folder, vertices, ground)? } else { Scratch::of(folder) };
         Ok(Place { scratch: Some(scratch), is_whole: false })
     }
 }

@@ -19,6 +19,9 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Bytes that a vertex takes in pieces, of which a round has old and new ones.
 const BYTES_A_VERTEX: f64 = 600.0;
 
+/// Bytes that a vertex of the input takes, where its metric lies in blocks: in these, and in what the parts of a round take of them.
+const BYTES_OF_GROUND: f64 = 700.0;
+
 /// A scratch folder. It is removed at the end of a run, and stays when that is killed, so that it may go on.
 pub struct Scratch {
     folder: PathBuf,
@@ -38,14 +41,14 @@ impl Scratch {
         Self { folder, _lock: None }
     }
 
-    /// Opens or makes it, with room for a mesh of so many vertices.
+    /// Opens or makes it, with room for a mesh of so many vertices, and for a metric in blocks on so many.
     ///
     /// # Errors
     /// When it cannot be made, is another's, another run is at it, or there is not enough room.
-    pub fn open(folder: PathBuf, vertices: f64) -> Result<Self, Error> {
+    pub fn open(folder: PathBuf, vertices: f64, ground: f64) -> Result<Self, Error> {
         let lock = held(&folder).map_err(|what| format!("{}: {what}", folder.display()))?;
         let scratch = Self { folder, _lock: Some(lock) };
-        if let Some(why) = room::lacking_bytes(&scratch.folder, BYTES_A_VERTEX * vertices) {
+        if let Some(why) = room::lacking_bytes(&scratch.folder, BYTES_A_VERTEX * vertices + BYTES_OF_GROUND * ground) {
             if !scratch.folder.join(JOURNAL).exists() {
                 scratch.remove();
             }
