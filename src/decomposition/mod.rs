@@ -59,8 +59,8 @@ pub enum Error {
     Metric(#[from] crate::metric::Error),
     /// Triangles are missing.
     #[error(
-        "triangles are missing on its boundary or between its regions, which are added where the mesh is read as a whole: leave --memory away, \
-         or adapt a result of geo-adapt"
+        "triangles are missing on its boundary or between its regions, which are added where the mesh is read as a whole: give more --memory, or \
+         adapt a result of geo-adapt"
     )]
     Incomplete,
     /// Another rank's error, or one of the caller's.

@@ -2,7 +2,7 @@
 #![cfg(target_os = "linux")]
 use crate::common::adapting::{Adapted, Workplace, areas, complaint, cube, stderr, text, volumes};
 use geo_adapt::mesh::TetMesh;
-use geo_adapt::mesh::io::read_mesh;
+use geo_adapt::mesh::io::{read_mesh, write_mesh};
 use geo_adapt::mesh::vector::{Vec3, norm, sub};
 use geo_adapt::metric::Sym3;
 use std::collections::BTreeSet;
@@ -63,6 +63,12 @@ fn a_mesh_that_is_larger_than_memory_is_read_by_slices_and_adapted_to_the_same_b
             assert!(now == known, "{field:?}, {threads} threads");
         }
     }
+    // The same mesh in a format that is read as a whole.
+    let field = &["--metric", &metric, "--complexity", "6000"][..];
+    let known = written(&work, &mesh, &[field, &PARTS, &MUCH]);
+    let whole = work.path("whole.mesh");
+    write_mesh(&whole, &read_mesh(&mesh).unwrap().content).unwrap();
+    assert!(written(&work, &whole, &[field, &PARTS, &MUCH]) == known);
     let run =
         work.command(&mesh, &[&FIELD[..], &PARTS, &LITTLE].concat()).env("GEO_ADAPT_STAGES", "1").output().unwrap();
     assert!(stderr(&run).contains("stage files opened"), "it was read by slices: {}", stderr(&run));

@@ -35,7 +35,7 @@ impl Begun {
         notices: &mut Vec<String>,
     ) -> Result<(Self, Option<Source>), Error> {
         let (input, memory) = (&arguments.input, arguments.parts.memory);
-        if agreed(ranks, input.is_sliced(ranks.count(), memory))? {
+        if input.can_be_sliced() {
             let told = notices.len();
             match input.read_slices(team, ranks, notices)? {
                 Ok(begun) => {
@@ -43,7 +43,7 @@ impl Begun {
                     return Ok((begun, source));
                 }
                 // The triangles are added where the mesh is read as a whole.
-                Err(decomposition::Error::Incomplete) if memory.is_none() => notices.truncate(told),
+                Err(decomposition::Error::Incomplete) if agreed(ranks, input.fits(memory))? => notices.truncate(told),
                 Err(error) => return Err(format!("{}: {error}", input.mesh.display()).into()),
             }
         }

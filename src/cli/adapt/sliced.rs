@@ -29,18 +29,19 @@ fn is_of(path: &Path, ending: &str) -> bool {
 }
 
 impl InputArguments {
-    /// Whether mesh and metric can be read by slices, and are to be: so many processes of this memory adapt the mesh.
-    pub fn is_sliced(&self, processes: usize, memory: Option<u64>) -> Result<bool, Error> {
+    /// Whether mesh and metric can be read by slices. Neither memory nor processes count: a run that goes on may have others.
+    pub fn can_be_sliced(&self) -> bool {
         let metric = self.field.metric.as_deref();
-        let can_be = is_of(&self.mesh, "meshb")
+        is_of(&self.mesh, "meshb")
             && metric.is_none_or(|path| is_of(path, "solb") && path.exists())
             && self.field.field.is_empty()
-            && !self.is_bounded();
-        if !can_be {
-            return Ok(false);
-        }
+            && !self.is_bounded()
+    }
+
+    /// Whether a mesh in a file can be read as a whole within this memory.
+    pub fn fits(&self, memory: Option<u64>) -> Result<bool, Error> {
         let vertices = MeshReader::open(&self.mesh)?.counts().vertices;
-        Ok(processes > 1 || memory.is_some_and(|memory| BYTES_A_VERTEX * vertices as f64 > memory as f64))
+        Ok(memory.is_none_or(|memory| BYTES_A_VERTEX * vertices as f64 <= memory as f64))
     }
 
     /// Opens mesh and metric, reads them once, and puts the boundary on its model. Collective.
