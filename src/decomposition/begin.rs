@@ -24,8 +24,9 @@ impl Rounds<'_> {
         self.become_active(0, list)
     }
 
-    /// Cuts the input into blocks, where it has several slices. They become the pieces.
-    pub fn cut_ground(&mut self, vertices: usize) -> Result<Vec<Block>, Error> {
+    /// Cuts the input into blocks, where it has several slices. They become the pieces, and are returned as those of the metric if that
+    /// `lies_on_it`.
+    pub fn cut_ground(&mut self, vertices: usize, lies_on_it: bool) -> Result<Vec<Block>, Error> {
         if self.active.pieces.len() < 2 {
             return Ok(Vec::new());
         }
@@ -38,8 +39,10 @@ impl Rounds<'_> {
         let joined = on_threads(self.at_once(sizes.part), mine.len(), |at| {
             let (part, of) = &mine[at];
             let piece = self.joined(round, *part, of)?;
-            add(&blocks, Block::of(*part, own, &piece));
-            shelf.put(Key::Ground { block: *part }, ground::of_piece(&piece))?;
+            if lies_on_it {
+                add(&blocks, Block::of(*part, own, &piece));
+                shelf.put(Key::Ground { block: *part }, ground::of_piece(&piece))?;
+            }
             of.iter().for_each(|&of| shelf.forget(Key::Share { round, part: *part, of }));
             self.put_away((round, *part, owners.len()), [piece, Piece::default()], Done::default(), &list)
         });

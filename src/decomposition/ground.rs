@@ -67,24 +67,6 @@ pub fn of_piece(piece: &Piece) -> Piece {
     split_tets(piece, &(0..piece.len() as u32).collect::<Vec<_>>())
 }
 
-impl Ground {
-    /// The blocks; none where all have a source as a whole.
-    pub fn blocks(&self) -> &[Block] {
-        match self {
-            Self::Whole(_) => &[],
-            Self::Blocks(blocks, _) => blocks,
-        }
-    }
-
-    /// Scales M by e^`log_factor`.
-    pub fn scale(&mut self, team: Team<'_>, log_factor: f64) {
-        match self {
-            Self::Whole(source) => source.scale(team, log_factor),
-            Self::Blocks(_, log) => *log += log_factor,
-        }
-    }
-}
-
 /// What a part takes its metric from.
 pub enum Under<'s> {
     /// What all have.
@@ -107,6 +89,22 @@ impl Under<'_> {
 pub type Around = BTreeMap<u32, Vec<u32>>;
 
 impl Ground {
+    /// The blocks; none where all have a source as a whole.
+    pub fn blocks(&self) -> &[Block] {
+        match self {
+            Self::Whole(_) => &[],
+            Self::Blocks(blocks, _) => blocks,
+        }
+    }
+
+    /// Scales M by e^`log_factor`.
+    pub fn scale(&mut self, team: Team<'_>, log_factor: f64) {
+        match self {
+            Self::Whole(source) => source.scale(team, log_factor),
+            Self::Blocks(_, log) => *log += log_factor,
+        }
+    }
+
     /// What a part takes its metric from, in a round.
     pub fn under(&self, shelf: &Shelf, round: u32, part: u32, around: &Around) -> Result<Under<'_>, Error> {
         let (source, log) = match self {

@@ -42,6 +42,8 @@ pub use sizes::{Sizes, wanted_vertices};
 pub use slices::{Measured, Slice};
 pub use times::{Numbered, Told};
 
+use std::path::Path;
+
 /// A run by parts that failed.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -69,4 +71,16 @@ pub enum Error {
     /// Another rank sent what this one does not understand.
     #[error("a message of another process is not understood: do all run the same program on machines of one kind?")]
     Message,
+}
+
+impl Error {
+    /// As it is told of the mesh in this file: some name their file themselves.
+    pub fn of(&self, mesh: &Path) -> String {
+        match self {
+            Self::Kernel(_) | Self::Incomplete | Self::Metric(crate::metric::Error::Sizes { .. }) => {
+                format!("{}: {self}", mesh.display())
+            }
+            _ => self.to_string(),
+        }
+    }
 }

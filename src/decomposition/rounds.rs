@@ -115,7 +115,7 @@ pub struct Rounds<'a> {
 
 impl<'a> Rounds<'a> {
     /// Before the first, of an input and its skin. Or after those that are in the journal of a run of this name. Also the blocks of the metric,
-    /// where it is larger than a part.
+    /// if it `lies_on_it` and is larger than a part.
     ///
     /// # Errors
     /// Where the input cannot be read, or put away.
@@ -124,6 +124,7 @@ impl<'a> Rounds<'a> {
         run: u64,
         refs: References,
         (input, skin): (&dyn Input, &Skin<'_>),
+        lies_on_it: bool,
     ) -> Result<(Self, Vec<Block>), Error> {
         let active = Active::default();
         let (done, told, finished) = (Done::default(), Vec::new(), Vec::new());
@@ -138,7 +139,7 @@ impl<'a> Rounds<'a> {
         }
         rounds.agreed(Ok(()))?;
         rounds.read(input, skin)?;
-        let blocks = rounds.cut_ground(input.size()[0])?;
+        let blocks = rounds.cut_ground(input.size()[0], lies_on_it)?;
         rounds.note(&blocks)?;
         Ok((rounds, blocks))
     }

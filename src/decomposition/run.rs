@@ -55,14 +55,15 @@ pub fn adapt<'a>(common: Common<'a>, given: Given<'_>, told: impl FnOnce(usize))
     let team = Team::new(common.pool, common.options.plan);
     let Given { input, skin, source, complexity, name } = given;
     let refs = skin.references(team, common.model);
-    let (mut rounds, blocks) = Rounds::new(common, name, refs.outwards(), (input, skin))?;
+    let is_analytic = matches!(source, Some(Source::Analytic { .. }));
+    let (mut rounds, blocks) = Rounds::new(common, name, refs.outwards(), (input, skin), !is_analytic)?;
     if rounds.rounds_before() > 0 {
         told(rounds.rounds_before());
     }
     let vertices = input.size()[0];
     common.observer.forecast(&forecast(&common, complexity, vertices));
     let mut ground = match source {
-        Some(source) if blocks.is_empty() || matches!(source, Source::Analytic { .. }) => Ground::Whole(source),
+        Some(source) if blocks.is_empty() => Ground::Whole(source),
         None if blocks.is_empty() => Ground::Whole(ground::whole(team, input)?),
         _ => Ground::Blocks(blocks, 0.0),
     };

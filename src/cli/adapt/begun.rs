@@ -44,7 +44,7 @@ impl Begun {
                 }
                 // The triangles are added where the mesh is read as a whole.
                 Err(decomposition::Error::Incomplete) if agreed(ranks, input.fits(memory))? => notices.truncate(told),
-                Err(error) => return Err(format!("{}: {error}", input.mesh.display()).into()),
+                Err(error) => return Err(error.of(&input.mesh).into()),
             }
         }
         let given = input.read(team, notices);

@@ -105,7 +105,6 @@ impl InputArguments {
         mut files: Files,
         notices: &mut Vec<String>,
     ) -> Result<Begun, Error> {
-        let named = |error: String| -> Error { format!("{}: {error}", self.mesh.display()).into() };
         let mesh = Arc::clone(&shell.mesh);
         let crossings = crossing::crossings(team, &shell.outer(team), |v| mesh.vertices[v as usize], 1);
         notices.extend(self.crossings_told(&crossings));
@@ -116,7 +115,7 @@ impl InputArguments {
             names = on_mesh(&mesh, &place, &model);
         }
         let wanted = self.amount.complexity();
-        let complexity = self.checked_complexity(shell.complexity, wanted).map_err(named)?;
+        let complexity = self.checked_complexity(shell.complexity, wanted)?;
         if wanted.is_some() {
             files.scale(complexity_factor(shell.complexity, complexity).ln());
         }

@@ -51,12 +51,12 @@ struct Scanned {
 }
 
 impl Shell {
-    /// Reads all of a mesh once, a slice at a time; each rank its share. Collective.
+    /// Reads all of a mesh once, a slice at a time; each rank its share. Errors name its file. Collective.
     ///
     /// # Errors
     /// When a file cannot be read, a tetrahedron is inverted, sizes cannot be computed with, or a triangle is missing on the boundary.
     pub fn read(team: Team<'_>, ranks: &dyn Ranks, files: &Files) -> Result<Self, Error> {
-        let agreed = |error: String| Error::Told(error);
+        let told = |error: Error| error.of(files.reader().path());
         let own = Self::skin_of(team, files).and_then(|mesh| {
             let index = TriangleIndex::new(team, &mesh.triangles.nodes, files.size()[0]);
             let scans = files.size()[1].div_ceil(SCAN);
@@ -64,7 +64,7 @@ impl Shell {
             let found = team.chunks(1, own.len(), |at| files.scan(&index, own[at.start]));
             Ok((mesh, own.into_iter().zip(found.into_iter().collect::<Result<Vec<_>, _>>()?).collect::<Vec<_>>()))
         });
-        let (mut mesh, own) = agree(ranks, own.map_err(|error| error.to_string())).map_err(agreed)?;
+        let (mut mesh, own) = agree(ranks, own.map_err(told)).map_err(Error::Told)?;
         let bytes: Vec<u8> = own.iter().flat_map(|(scan, found)| found.encoded(*scan)).collect();
         drop(own);
         let mut scanned = Vec::new();
@@ -90,8 +90,7 @@ impl Shell {
         all.names.iter().for_each(|part| name.write_u64(*part));
         let numbers = renumber(&mut mesh);
         let vertices = files.vertices(&numbers);
-        let Vertices { points, refs, .. } =
-            agree(ranks, vertices.map_err(|error| error.to_string())).map_err(agreed)?;
+        let Vertices { points, refs, .. } = agree(ranks, vertices.map_err(told)).map_err(Error::Told)?;
         (mesh.vertices, mesh.vertex_refs) = (points, refs);
         Ok(Self { mesh: Arc::new(mesh), numbers, sides, complexity, name: name.finish() })
     }

@@ -41,6 +41,11 @@ impl MeshReader {
         .map(|(reader, (counts, notices))| Self { reader, counts, notices })
     }
 
+    /// The file's name, for errors.
+    pub fn path(&self) -> &Path {
+        &self.reader.path
+    }
+
     /// Number of rows of each section.
     pub fn counts(&self) -> &MeshCounts {
         &self.counts
