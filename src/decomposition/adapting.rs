@@ -23,11 +23,11 @@ const BYTES_A_VERTEX: f64 = 1_200.0;
 const GROUND: f64 = 0.6;
 
 /// The observer of a part: it hears of an end alone.
-struct Quiet<'a>(&'a dyn Observer);
+struct Quiet<'a>(&'a Rounds<'a>);
 
 impl Observer for Quiet<'_> {
     fn stop(&self) -> bool {
-        self.0.stop()
+        self.0.ends()
     }
 }
 
@@ -52,7 +52,7 @@ impl Rounds<'_> {
         let is_shared = parts < OF_ONE_THREAD;
         let scheduler = if is_shared { Scheduler::Deterministic } else { Scheduler::Sequential };
         let options = Options { scheduler, is_draft: false, ..options.clone() };
-        let quiet = Quiet(observer);
+        let quiet = Quiet(self);
         let beside = if ground.blocks().is_empty() { 1.0 } else { 1.0 + GROUND };
         let (threads, at_once) = (pool.threads(), self.at_once(beside * sizes.part).min(mine.len()).max(1));
         on_threads(at_once, mine.len(), |at| {

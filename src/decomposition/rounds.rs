@@ -111,6 +111,8 @@ pub struct Rounds<'a> {
     pub(super) refs: References,
     /// Vertices of the finished pieces.
     finished_vertices: u64,
+    /// Whether the user has ended the run, on any rank: since the end of the last round all know it.
+    is_ended: bool,
 }
 
 impl<'a> Rounds<'a> {
@@ -128,8 +130,9 @@ impl<'a> Rounds<'a> {
     ) -> Result<(Self, Vec<Block>), Error> {
         let active = Active::default();
         let (done, told, finished) = (Done::default(), Vec::new(), Vec::new());
+        let (next_id, steps, finished_vertices, is_ended) = (1 << 40, 0, 0, false);
         let mut rounds =
-            Self { common, done, told, finished, active, next_id: 1 << 40, steps: 0, run, refs, finished_vertices: 0 };
+            Self { common, done, told, finished, active, next_id, steps, run, refs, finished_vertices, is_ended };
         if let Some(blocks) = rounds.goes_on() {
             return Ok((rounds, blocks));
         }
@@ -220,7 +223,7 @@ impl<'a> Rounds<'a> {
         }
         while self.steps < stages.len() + MOST_ZONES {
             let vertices: u64 = self.active.pieces.iter().map(|piece| piece.vertices).sum();
-            if vertices == 0 || self.is_stopped() {
+            if vertices == 0 || self.is_ended {
                 break;
             }
             let before = self.told.last().map_or((1, 0.0), |told| (told.parts, told.vertices as f64));
@@ -236,10 +239,14 @@ impl<'a> Rounds<'a> {
         active as usize + self.finished_vertices as usize
     }
 
-    /// Whether the user has ended the run, on any rank.
-    fn is_stopped(&self) -> bool {
-        let own = [u8::from(self.common.observer.stop())];
-        self.common.ranks.gather(&own).iter().any(|stopped| stopped == &[1])
+    /// Whether the user has ended the run, as far as this rank knows.
+    pub(super) fn ends(&self) -> bool {
+        self.is_ended || self.common.observer.stop()
+    }
+
+    /// All ranks hear whether the run has ended on any of them.
+    fn agree_on_end(&mut self) {
+        self.is_ended = self.common.ranks.gather(&[u8::from(self.ends())]).contains(&vec![1]);
     }
 
     /// What is left is finished as it is.
@@ -299,7 +306,8 @@ impl<'a> Rounds<'a> {
         let seconds = began.elapsed().as_secs_f64();
         self.told.push(Told { parts, tets, vertices, seconds, cutting, dealing, of_parts });
         // Parts that were ended halfway are good for the mesh that is written now, and not for a run that goes on.
-        if self.is_stopped() {
+        self.agree_on_end();
+        if self.is_ended {
             return Ok(());
         }
         self.note(ground.blocks())?;
@@ -336,7 +344,7 @@ impl<'a> Rounds<'a> {
         if finished.len() > 0 {
             shelf.put(Key::Finished { round, part }, finished)?;
         }
-        if !self.common.observer.stop() {
+        if !self.ends() {
             write_done(shelf, round, &told)?;
         }
         add(list, told);

@@ -173,10 +173,12 @@ impl Shelf {
 
 /// Writes a file beside and renames it.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let beside = path.with_extension("part");
-    let written = fs::write(&beside, bytes).and_then(|()| fs::rename(&beside, path));
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    let beside = Path::new(&beside);
+    let written = fs::write(beside, bytes).and_then(|()| fs::rename(beside, path));
     written.map_err(|error| {
-        drop(fs::remove_file(&beside));
+        drop(fs::remove_file(beside));
         Error::Disk { path: path.to_owned(), error }
     })
 }

@@ -171,19 +171,41 @@ fn a_disk_that_fills_up_is_told() {
     let fill = r#"while [ ! -e "$disk/parts/journal.json" ]; do sleep 0.01; done; head -c 64M /dev/zero > "$disk/fill" 2> "$disk.said""#;
     let said = complaint(&mut on_a_small_disk(&work, "8m", fill, &to_scratch).unwrap());
     assert!(said.contains(&scratch) && said.contains("--scratch chooses another disk"), "{said}");
-    // The output, at the end of the work.
+}
+
+/// What a run waits for in sh: a round of the journal of its scratch folder.
+const FIRST_ROUND: &str = r#"while ! grep -qs '"steps":[1-9]' "${disk%/*}/parts/journal.json"; do sleep 0.01; done"#;
+const BEFORE_ROUNDS: &str = r#"while [ ! -e "${disk%/*}/parts/journal.json" ]; do sleep 0.01; done"#;
+
+#[test]
+fn a_full_disk_for_the_output_loses_no_work() {
+    if !is_there() {
+        return;
+    }
+    let work = Workplace::new();
+    let mesh = work.mesh(&cube(3, |_| 1));
+    run(&mut work.command(&mesh, &ARGUMENTS));
+    let known = taken(&work);
+    let (disk, scratch) = (work.path("disk"), text(&work.path("parts")));
     let mut to_disk = crate::common::program();
     to_disk.arg("adapt").arg(&mesh).arg("-o").arg(disk.join("out.meshb")).args(ARGUMENTS);
-    to_disk.args(["--scratch", &text(&work.path("parts"))]);
+    to_disk.args(["--scratch", &scratch]);
     let fill = r#"head -c 64M /dev/zero > "$disk/fill" 2> "$disk.said""#;
-    let fill = format!(r#"while [ ! -e "${{disk%/*}}/parts/journal.json" ]; do sleep 0.01; done; {fill}"#);
-    let said = complaint(&mut on_a_small_disk(&work, "8m", &fill, &to_disk).unwrap());
-    assert!(said.contains("out.meshb") && left().is_empty(), "{said} {}", left());
-    // The work is not lost: with room there it goes on.
-    let mut again = work.command(&mesh, &ARGUMENTS);
-    let run = again.args(["--scratch", &text(&work.path("parts"))]).output().unwrap();
-    assert!(run.status.success() && stderr(&run).contains("goes on after round"), "{}", stderr(&run));
-    assert!(OUTPUTS.iter().all(|name| work.path(name).exists()) && !work.path("parts").exists());
+    let ranks = "$(cat /proc/$run/task/*/children)";
+    let at_the_end = format!("{FIRST_ROUND}; {fill}");
+    // What one rank leaves half done counts for nothing, and what the others make of it.
+    let interrupted = format!("{BEFORE_ROUNDS}; {fill}; for rank in {ranks}; do kill -USR1 $rank; break; done");
+    for (fill, goes_on) in [(at_the_end, true), (interrupted, false)] {
+        let Some(mut command) = on_a_small_disk(&work, "8m", &fill, &to_disk) else { return };
+        let said = complaint(&mut command);
+        let left = fs::read_to_string(work.path("disk.left")).unwrap();
+        assert!(said.contains("out.meshb") && left.is_empty(), "{said} {left}");
+        // With room there it goes on.
+        let run = work.command(&mesh, &[&ARGUMENTS[..], &["--scratch", &scratch]].concat()).output().unwrap();
+        assert!(run.status.success(), "{}", stderr(&run));
+        assert!(!goes_on || stderr(&run).contains("goes on after round"), "{}", stderr(&run));
+        assert!(taken(&work) == known && !work.path("parts").exists());
+    }
 }
 
 /// mpirun hands SIGUSR1 on, and waits; after SIGTERM and SIGINT it leaves a rank one second.
