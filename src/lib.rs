@@ -103,6 +103,12 @@ pub mod metric;
 pub mod process;
 #[doc(hidden)]
 pub mod ranks;
+#[cfg(feature = "serve")]
+#[doc(hidden)]
+pub mod remote;
+#[cfg(all(feature = "serve", target_os = "linux"))]
+#[doc(hidden)]
+pub mod serve;
 #[doc(hidden)]
 pub mod sizing;
 #[cfg(feature = "occt")]

@@ -82,6 +82,12 @@ extern "C" fn ask(_: libc::c_int) {
     STOP.asked.store(true, SeqCst);
 }
 
+/// From now on an interrupt does nothing here: the command listens itself.
+#[cfg(all(feature = "serve", target_os = "linux"))]
+pub fn let_commands_end() {
+    *FINISHES.lock().unwrap_or_else(PoisonError::into_inner) = Some("what is at work waits for the next start");
+}
+
 /// From now on an interrupt ends the program at once again. The flag returned is set when that has to wait for a program that runs.
 pub fn end_at_once() -> &'static AtomicBool {
     *FINISHES.lock().unwrap_or_else(PoisonError::into_inner) = None;

@@ -7,8 +7,9 @@ use super::workplace::Workplace;
 use crate::geometry::{Error, Geometry, Model, names};
 use std::error;
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 
 /// First argument of the child; then the model and the file for what was read.
 const CHILD: &str = "read-model-and-exit";
@@ -39,10 +40,9 @@ fn read(file: &OsString, target: &OsString) -> Result<(), String> {
 /// # Errors
 /// When the file is no readable model, also when OpenCASCADE crashes on it, or never comes back; when memory ends; when it is interrupted.
 pub fn model(path: &Path) -> Result<Model, Box<dyn error::Error>> {
-    let _line = Waiting::for_what(&format!("OpenCASCADE reads {}", path.display()));
-    let mut model = match in_child(path)? {
+    let mut model = match kept(path) {
         Some(model) => model,
-        None => Model::read(path)?,
+        None => from_file(path)?,
     };
     for wall in model.double_walls() {
         super::note(format_args!(
@@ -54,6 +54,39 @@ pub fn model(path: &Path) -> Result<Model, Box<dyn error::Error>> {
     }
     give_names(&mut model, path)?;
     Ok(model)
+}
+
+fn from_file(path: &Path) -> Result<Model, Box<dyn error::Error>> {
+    let _line = Waiting::for_what(&format!("OpenCASCADE reads {}", path.display()));
+    match in_child(path)? {
+        Some(model) => Ok(model),
+        None => Ok(Model::read(path)?),
+    }
+}
+
+/// A model that was read before it was asked for, and the path that it will be asked for by.
+static KEPT: Mutex<Option<(PathBuf, Model)>> = Mutex::new(None);
+
+/// Reads a model and keeps it in memory, without the names of a file beside it.
+///
+/// # Errors
+/// As [`model`].
+pub fn keep(path: &Path) -> Result<(), Box<dyn error::Error>> {
+    let model = from_file(path)?;
+    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some((path.to_owned(), model));
+    Ok(())
+}
+
+/// The model that is kept is what will be asked for by this path, once.
+pub fn call(path: &Path) {
+    if let Some((name, _)) = &mut *KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
+        *name = path.to_owned();
+    }
+}
+
+fn kept(path: &Path) -> Option<Model> {
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    kept.take_if(|(name, _)| name == path).map(|(_, model)| model)
 }
 
 /// Gives a model the names and colours of the file beside it ([`names::beside_model`]), which come before those in the model itself.

@@ -15,6 +15,7 @@ mod classify;
 mod completions;
 mod convert;
 mod cycle;
+mod events;
 mod examples;
 mod field;
 mod figures;
@@ -28,6 +29,10 @@ mod man;
 mod metric;
 mod model;
 mod openfoam;
+#[cfg(feature = "serve")]
+mod remote;
+#[cfg(all(feature = "serve", target_os = "linux"))]
+mod serve;
 mod surface;
 mod table;
 mod terminal;
@@ -45,6 +50,9 @@ mod workplace;
 struct Arguments {
     #[command(flatten, next_help_heading = "Of all commands")]
     how: terminal::How,
+    #[cfg(feature = "serve")]
+    #[command(flatten)]
+    place: remote::Where,
     #[command(subcommand)]
     command: Command,
 }
@@ -81,6 +89,9 @@ enum Command {
     /// Start as one of several processes, meet the others, and end
     #[command(hide = true)]
     Ranks,
+    /// Serve models, meshes and jobs over HTTP, with a workbench for the browser
+    #[cfg(all(feature = "serve", target_os = "linux"))]
+    Serve(serve::Arguments),
     /// Bring fields from one mesh to another
     Transfer(transfer::Arguments),
     /// Measure which back-end, strategy and grain are the fastest on a case
@@ -90,11 +101,26 @@ enum Command {
 }
 
 impl Command {
+    /// Whether a service can run it. What is about this machine, or runs a solver here, it cannot.
+    #[cfg(feature = "serve")]
+    fn may_be_elsewhere(&self) -> bool {
+        match self {
+            Self::Completions(_) | Self::Man(_) | Self::Ranks | Self::Openfoam(_) | Self::Tune(_) | Self::Cycle(_) => {
+                false
+            }
+            #[cfg(target_os = "linux")]
+            Self::Serve(_) => false,
+            _ => true,
+        }
+    }
+
     /// What the terminal says while it works, of a command that has no progress of its own.
     fn line(&self) -> Option<Waiting> {
         let what = match self {
             Self::Adapt(_) | Self::Bootstrap(_) | Self::Cycle(_) | Self::Openfoam(_) | Self::Tune(_) => return None,
             Self::Completions(_) | Self::Man(_) | Self::Ranks => return None,
+            #[cfg(all(feature = "serve", target_os = "linux"))]
+            Self::Serve(_) => return None,
             Self::Classify(_) => "putting the mesh on the model",
             Self::Convert(_) => "converting",
             Self::Field(_) => "working on fields",
@@ -135,9 +161,11 @@ pub fn main() -> ExitCode {
             return ExitCode::from(BAD_INPUT);
         }
     };
-    let parsed = command().try_get_matches_from(words).and_then(|matches| Arguments::from_arg_matches(&matches));
-    let arguments = match parsed {
-        Ok(arguments) => arguments,
+    let all = command();
+    let parsed = all.clone().try_get_matches_from(words);
+    let parsed = parsed.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, matches)));
+    let (arguments, matches) = match parsed {
+        Ok(parsed) => parsed,
         Err(said) => return usage(&said),
     };
     arguments.how.set();
@@ -150,6 +178,14 @@ pub fn main() -> ExitCode {
         return ExitCode::from(BAD_INPUT);
     }
     let line = arguments.command.line();
+    #[cfg(feature = "serve")]
+    if let Some(server) = arguments.place.server.filter(|_| arguments.command.may_be_elsewhere()) {
+        let outcome = remote::run(&server, &all, &matches);
+        drop(line);
+        return ended(outcome);
+    }
+    #[cfg(not(feature = "serve"))]
+    drop((all, matches));
     let outcome = match arguments.command {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::Bootstrap(arguments) => bootstrap::run(&arguments),
@@ -165,11 +201,18 @@ pub fn main() -> ExitCode {
         Command::Model(arguments) => model::run(&arguments),
         Command::Openfoam(arguments) => openfoam::run(&arguments),
         Command::Ranks => ranks::start().map(drop).map(|()| ExitCode::SUCCESS).map_err(Into::into),
+        #[cfg(all(feature = "serve", target_os = "linux"))]
+        Command::Serve(arguments) => serve::run(&arguments),
         Command::Transfer(arguments) => transfer::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::View(arguments) => view::run(&arguments),
     };
     drop(line);
+    ended(outcome)
+}
+
+/// Prints the error of a command.
+fn ended(outcome: Outcome) -> ExitCode {
     outcome.unwrap_or_else(|error| {
         terminal::error(&error);
         ExitCode::from(code_of(&*error))
@@ -185,6 +228,10 @@ fn command() -> clap::Command {
 fn words() -> Result<(Vec<OsString>, Vec<String>), String> {
     let mut given = std::env::args_os();
     let program = given.next().unwrap_or_default();
+    #[cfg(all(feature = "serve", target_os = "linux"))]
+    if let Some(words) = serve::warm::words() {
+        return Ok((std::iter::once(program).chain(words).collect(), Vec::new()));
+    }
     let mut words: Vec<OsString> = given.collect();
     let mut notices = Vec::new();
     if let Some(translated) = habits::translated(&words) {

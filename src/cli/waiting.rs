@@ -1,4 +1,5 @@
 //! A line on the terminal while something runs that tells nothing by itself: what, and for how long.
+use super::events;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -27,6 +28,7 @@ pub struct Waiting {
 impl Waiting {
     /// Draws it if standard error is a terminal, and not with --quiet.
     pub fn for_what(what: &str) -> Self {
+        events::tell(|| serde_json::json!({ "kind": "stage", "what": what }));
         if super::terminal::is_quiet() || !std::io::stderr().is_terminal() {
             return Self { before: None, is_first: false };
         }

@@ -2,8 +2,9 @@
 use crate::adapt::forecast::{Forecast, seconds_left};
 use crate::adapt::{Counts, KINDS, Kind, Observer};
 use crate::cli::files::room;
-use crate::cli::{interrupt, terminal};
+use crate::cli::{events, interrupt, terminal};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -165,6 +166,7 @@ impl Observer for Progress {
         state.expected = vertices.round() as u64;
         state.forecast = Some(*forecast);
         state.passes = (Instant::now(), seconds, 0.0);
+        events::tell(|| json!({ "kind": "forecast", "vertices": vertices, "seconds": seconds, "bytes": bytes }));
         let written = state.most.map_or(vertices, |most| vertices.min(most as f64));
         state.no_room = state.output.as_deref().and_then(|output| room::lacking(output, written));
         self.is_in_vain.store(state.no_room.is_some(), Relaxed);
@@ -193,6 +195,14 @@ impl Observer for Progress {
         let mut state = self.state.lock().expect("no panic while drawing");
         state.kind = kind;
         state.began = Instant::now();
+        events::tell_often(|| {
+            let (began, forecast, share) = state.passes;
+            let left = seconds_left(began.elapsed().as_secs_f64(), share, forecast) + state.further as f64 * forecast;
+            json!({
+                "kind": "pass", "pass": pass + 1, "operation": kind.name(), "vertices": state.vertices,
+                "expected": state.expected, "share": share, "left": left,
+            })
+        });
         if self.shown && state.pass != Some(pass) {
             state.leave();
             let style = ProgressStyle::with_template("pass {prefix:>2} [{bar:8}] {elapsed:>4}, {wide_msg}");

@@ -156,6 +156,12 @@ impl Outputs {
         Ok(self.batch.add(&to.path, |file| file.write_all(text))?)
     }
 
+    /// A file that comes from elsewhere.
+    #[cfg(feature = "serve")]
+    pub fn fetched(&mut self, to: &Target, fetch: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>) -> Done {
+        Ok(self.batch.add(&to.path, fetch)?)
+    }
+
     /// A page for the browser.
     pub fn page(&mut self, team: Team<'_>, to: &Target, scene: &Scene<'_>, options: &picture::Options) -> Done {
         Ok(view::add_page(&mut self.batch, team, scene, options, &to.path)?)

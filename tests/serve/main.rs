@@ -1,0 +1,11 @@
+//! What `geo-adapt serve` promises, of the built program over its socket.
+#![cfg(all(feature = "serve", target_os = "linux"))]
+#[path = "../common/mod.rs"]
+#[allow(dead_code)]
+mod common;
+
+mod client;
+mod jobs;
+mod owners;
+mod service;
+mod uploads;
