@@ -27,6 +27,9 @@ const SERVED: [&str; 11] = [
 /// Options that are the service's to decide, or that mean a terminal.
 const NOT_SERVED: [&str; 7] = ["server", "threads", "scratch", "backend", "strategy", "verbose", "quiet"];
 
+/// Arguments that name what is written.
+const WRITTEN: [&str; 3] = ["output", "report", "png"];
+
 /// Most words of a request.
 const MOST_WORDS: usize = 400;
 
@@ -293,6 +296,9 @@ fn check_argument(
         if is_path(argument) {
             if !is_file_name(value) {
                 return refused(format!("{value:?}: give the plain name of a file, with no folder"));
+            }
+            if WRITTEN.contains(&id) && files.contains_key(value) {
+                return refused(format!("{value:?}: is an input and would be overwritten; give another output"));
             }
             let ending = value.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
             let is_model =

@@ -6,7 +6,7 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 /// What the program itself makes of a mesh.
-fn made(mesh: &[u8], arguments: &[&str]) -> Vec<u8> {
+pub fn made(mesh: &[u8], arguments: &[&str]) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("in.meshb"), mesh).unwrap();
     let mut command = program();

@@ -6,6 +6,10 @@ mod common;
 
 mod client;
 mod jobs;
+mod kills;
+mod load;
+mod mutations;
 mod owners;
+mod postgres;
 mod service;
 mod uploads;

@@ -158,8 +158,10 @@ impl Catalogue {
     /// # Errors
     /// When the database refuses.
     pub async fn is_forgotten(&self, id: &str) -> Result<bool, sqlx::Error> {
+        // A job that has not ended may read them.
         let text =
-            "SELECT 1 WHERE EXISTS (SELECT 1 FROM files WHERE id = $1) OR EXISTS (SELECT 1 FROM results WHERE id = $1)";
-        Ok(sqlx::query(text).bind(id).fetch_optional(&self.pool).await?.is_none())
+            "SELECT 1 WHERE EXISTS (SELECT 1 FROM files WHERE id = $1) OR EXISTS (SELECT 1 FROM results WHERE id = $1)
+            OR EXISTS (SELECT 1 FROM jobs WHERE state IN ('queued', 'running') AND request LIKE $2)";
+        Ok(sqlx::query(text).bind(id).bind(format!("%{id}%")).fetch_optional(&self.pool).await?.is_none())
     }
 }

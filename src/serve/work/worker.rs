@@ -202,6 +202,9 @@ impl Shop {
             Ok(cancelled) => cancelled.iter().for_each(|id| self.cancel(id)),
             Err(error) => tracing::error!(%error, "jobs cannot be renewed"),
         }
+        if !catalogue.is_shared() {
+            return;
+        }
         match catalogue.take_back(false).await {
             Ok(0) => {}
             Ok(jobs) => tracing::warn!(jobs, "jobs of a worker that is gone wait again"),
@@ -233,6 +236,7 @@ impl Shop {
             memory: claim.needs.max(UNKNOWN),
         });
         self.lock().push(Arc::clone(&job));
+        self.service.hub.tell(&claim.id, |seen| seen.progress = None);
         let began = Instant::now();
         let end = self.brought_to_end(&claim, &job).await;
         let name = (claim.id.as_str(), claim.attempt);
