@@ -1,7 +1,7 @@
 //! Services that are killed at any moment lose nothing that they have acknowledged: every job ends, once, with the result of the program.
 use crate::jobs::made;
 use crate::postgres::Postgres;
-use crate::service::{Service, cube, send};
+use crate::service::{PATIENCE, Service, cube, send};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
@@ -25,7 +25,7 @@ fn ask_on(address: &str, id: &str, accepted: &Accepted, ends: &AtomicBool) {
             "POST /v1/jobs HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Type: application/json\r\nContent-Length: {}\r\n\r\n",
             body.len()
         );
-        if let Some(answer) = send(address, (head + &body).as_bytes()).filter(|answer| answer.status == 202) {
+        if let Some(answer) = send(address, (head + &body).as_bytes(), PATIENCE).filter(|answer| answer.status == 202) {
             let job: Value = answer.json();
             accepted.lock().unwrap().push((job["id"].as_str().unwrap().to_owned(), at));
         }

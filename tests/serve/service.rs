@@ -87,7 +87,7 @@ impl Service {
 
     /// Bytes as they are, and the answer to them.
     pub fn send(&self, request: &[u8]) -> Answer {
-        send(&self.address, request).expect("the service is there")
+        send(&self.address, request, PATIENCE).expect("the service is there")
     }
 
     /// A request with headers, each a line of its own.
@@ -153,13 +153,12 @@ impl Drop for Service {
     }
 }
 
-/// Sends bytes as they are; none where nobody answers.
-pub fn send(address: &str, request: &[u8]) -> Option<Answer> {
+/// Sends bytes as they are; none where nobody answers for so long.
+pub fn send(address: &str, request: &[u8], patience: Duration) -> Option<Answer> {
     let mut stream = TcpStream::connect(address).ok()?;
-    stream.set_read_timeout(Some(PATIENCE)).ok()?;
+    stream.set_read_timeout(Some(patience)).ok()?;
     // What is refused early need not be read to its end.
     let _ = stream.write_all(request);
-    let _ = stream.shutdown(std::net::Shutdown::Write);
     let mut answer = Vec::new();
     let _ = stream.read_to_end(&mut answer);
     let split = answer.windows(4).position(|at| at == b"\r\n\r\n")?;
