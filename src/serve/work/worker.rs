@@ -291,11 +291,13 @@ impl Shop {
             Ended::Vanished if claim.attempt < MOST_ATTEMPTS => return Err(claim.needs),
             _ => {}
         }
+        // What is collected goes: the log too.
+        let log = tail(&folder.path().join(LOG), 4096);
         let (results, lost) = match folder.collect(&self.service.blobs).await {
             Ok(results) => (results, None),
             Err(error) => (Vec::new(), Some(format!("what it made cannot be kept: {error}"))),
         };
-        Ok(end_of(ended, ends == CANCELLED, lost, results, &tail(&folder.path().join(LOG), 4096)))
+        Ok(end_of(ended, ends == CANCELLED, lost, results, &log))
     }
 
     async fn run(&self, request: &Request, checked: &Checked, folder: &Folder, job: &Running) -> io::Result<Ended> {
@@ -425,7 +427,7 @@ fn end_of(ended: Ended, is_cancelled: bool, lost: Option<String>, results: Vec<P
 
 /// What an exit code means, in the words of the program where it has said some.
 fn why(code: i32, log: &str) -> String {
-    let said = log.lines().rev().find_map(|line| line.strip_prefix("geo-adapt: error: "));
+    let said = log.rsplit_once("geo-adapt: error: ").map(|(_, said)| said.trim());
     match (said, code) {
         (Some(said), _) => said.to_owned(),
         (None, 1) => "the mesh is not valid, or not on its model: see the report".into(),
