@@ -7,7 +7,7 @@ import io
 import os
 import re
 import warnings
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO, Union
 
@@ -29,10 +29,16 @@ _MESHB = (".mesh", ".meshb")
 
 
 class Inputs:
-    """The files of a job that is to be asked for, by their names."""
+    """The files of a job that is to be asked for, by their names.
 
-    def __init__(self, transport: Transport) -> None:
+    Names that begin as one of `written` are for what the job writes. What a job has made is there, but is no upload: where one is wanted it is
+    sent all the same.
+    """
+
+    def __init__(self, transport: Transport, written: Collection[str] = (), are_uploads: bool = False) -> None:
         self._transport = transport
+        self._written = {name.partition(".")[0] for name in written}
+        self._are_uploads = are_uploads
         self.ids: dict[str, str] = {}
 
     def free(self, name: str) -> str:
@@ -40,7 +46,7 @@ class Inputs:
         plain = re.sub(r"[^0-9A-Za-z._+()=,-]", "_", name).lstrip(".-")[-100:] or "file"
         stem, dot, ending = plain.partition(".")
         found, number = plain, 2
-        while found in self.ids:
+        while found in self.ids or found.partition(".")[0] in self._written:
             found, number = f"{stem}-{number}{dot}{ending}", number + 1
         return found
 
@@ -101,7 +107,8 @@ class Inputs:
     def send(self, file: BinaryIO, name: str) -> str:
         """The id of contents that the service has, now or since long."""
         digest = digest_of(file)
-        if digest not in self._transport.made and not self._transport.has(digest):
+        is_made = digest in self._transport.made and not self._are_uploads
+        if not is_made and not self._transport.has(digest):
             self._transport.upload(file, name)
         return digest
 

@@ -34,6 +34,8 @@ from .work import _method
 _URL, _TOKEN = "http://127.0.0.1:7878", "GEO_ADAPT_TOKEN"
 #: Seconds that a job may take to end with its last valid mesh when it is asked to.
 _PATIENCE = 90.0
+#: Arguments that name what is written.
+_WRITTEN = ("output", "report", "png")
 
 MeshSource = Union[Mesh, File, str, "os.PathLike[str]"]
 Progress = Callable[[JobProgress], Union[bool, None]]
@@ -111,7 +113,8 @@ class Adaptation:
         self.metric: Floats = found.fields()[0] if found is not None else np.empty((0, 6))
         report = job.results.get("report.json")
         self.report: dict[str, Any] = report.json() if report is not None else {}
-        self.complexity: float | None = self.report.get("complexity_wanted")
+        wanted = self.report.get("vertices_wanted") or {}
+        self.complexity: float | None = self.report.get("complexity_wanted") or wanted.get("complexity")
         self.complete: bool = job.state != "cancelled"
         self.growth_end: str | None = self.report.get("growth_end")
         self.overgrown: bool = self.growth_end is not None
@@ -218,8 +221,8 @@ class Server:
 
         Parameters
         ----------
-        given : Mesh, Model, path, bytes or array
-            A mesh goes as its name tells, by default .meshb; an array as .solb.
+        given : Mesh, Model, path, bytes, array or File
+            A `File` is there, and stays as it is. A mesh goes as its name tells, by default .meshb; an array as .solb.
         name : str, optional
             What it shall be called. By default its own name.
 
@@ -236,7 +239,9 @@ class Server:
         ServerError
             When it has no room, or does not answer.
         """
-        inputs = Inputs(self._transport)
+        if isinstance(given, File):
+            return given
+        inputs = Inputs(self._transport, are_uploads=True)
         if name is None:
             name = inputs.add(given, _usual(given))
         else:
@@ -248,13 +253,7 @@ class Server:
 
     def _of_id(self, id: str, name: str) -> File:
         """An upload under the name that it was sent with; the service knows it by its last one."""
-        try:
-            told = self._transport.json("GET", f"/v1/files/{id}")
-        except Exception:
-            # It was made by a job.
-            if id not in self._transport.made:
-                raise
-            told = {"id": id, "bytes": 0}
+        told = self._transport.json("GET", f"/v1/files/{id}")
         return File(self._transport, f"/v1/files/{id}/content", {**told, "name": name})
 
     def files(self, kind: str | None = None) -> list[File]:
@@ -357,7 +356,7 @@ class Server:
     ) -> Job:
         """Runs a command to its end. `given` are the arguments that name files, with what they are and what they are called where they have no name; a
         list of files for an argument of several."""
-        inputs = Inputs(self._transport)
+        inputs = Inputs(self._transport, [arguments[name] for name in _WRITTEN if isinstance(arguments.get(name), str)])
         named: dict[str, Any] = {}
         for name, one in given.items():
             if one is not None:
@@ -403,12 +402,13 @@ class Server:
         ...     [face.kind for face in model.faces]
         ['cylinder', 'plane', 'plane']
         """
-        file = self.upload(source)
+        sent = self.upload(source)
         known = {}
-        if file._beside:
-            found = file._beside[0].json()
+        if sent._beside:
+            found = sent._beside[0].json()
             known = {kind: found[kind] for kind in ("triangles", "edges", "tetrahedra") if found.get(kind)}
-            file._beside = ()
+        # Its names go with the model, which may get others.
+        file = File(self._transport, sent._path, {"name": sent.name, "id": sent.id, "bytes": sent.size})
         model = ServedModel(self, file, known)
         if labels:
             model.name(labels)

@@ -9,7 +9,7 @@ use crate::serve::catalogue::{Claim, End, Produced, State};
 use crate::serve::commands::{Checked, Request};
 use crate::serve::ids::{new_id, now};
 use std::io;
-use std::sync::atomic::{AtomicI32, AtomicU8, Ordering::SeqCst};
+use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU8, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::{Notify, watch};
@@ -49,6 +49,8 @@ struct Running {
     id: String,
     group: AtomicI32,
     ends: AtomicU8,
+    /// Whether its process was interrupted: a second time it would end at once, without its last valid mesh.
+    is_interrupted: AtomicBool,
     memory: u64,
 }
 
@@ -56,7 +58,16 @@ impl Running {
     fn end(&self, why: u8) {
         // What was asked first counts.
         let _ = self.ends.compare_exchange(GOES_ON, why, SeqCst, SeqCst);
-        self.signal(if why == CANCELLED { libc::SIGINT } else { libc::SIGKILL });
+        self.tell(why);
+    }
+
+    /// Has its process end, once there is one.
+    fn tell(&self, why: u8) {
+        if why != CANCELLED {
+            self.signal(libc::SIGKILL);
+        } else if self.group.load(SeqCst) > 1 && !self.is_interrupted.swap(true, SeqCst) {
+            self.signal(libc::SIGINT);
+        }
     }
 
     fn signal(&self, signal: i32) {
@@ -230,6 +241,7 @@ impl Shop {
             id: claim.id.clone(),
             group: AtomicI32::new(0),
             ends: AtomicU8::new(GOES_ON),
+            is_interrupted: AtomicBool::new(false),
             memory: claim.needs.max(UNKNOWN),
         });
         self.lock().push(Arc::clone(&job));
@@ -344,7 +356,7 @@ impl Shop {
                     job.group.store(process, SeqCst);
                     match job.ends.load(SeqCst) {
                         GOES_ON => {}
-                        why => job.end(why),
+                        why => job.tell(why),
                     }
                 }
                 Some(Answer::Ended { code, signal, .. }) => {
