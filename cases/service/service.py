@@ -96,6 +96,17 @@ class Service:
                 continue
         return found
 
+    def processor(self):
+        """Seconds of the processor that its processes have taken, with those that have ended."""
+        ticks = 0
+        for pid in self.processes():
+            try:
+                figures = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+            except OSError:
+                continue
+            ticks += sum(map(int, figures[11:15]))
+        return ticks / os.sysconf("SC_CLK_TCK")
+
     def memory(self):
         """Memory in MB: what is the service's own, and that of all its processes, shared pages once."""
         own, all_of_it = 0.0, 0.0

@@ -67,9 +67,9 @@ def jobs(count, cad):
     for number in range(count):
         at, turn = number % 10, number // 10
         if at == 4:
-            found.append(Job("inspect", ("even.meshb", "--report", "report.json"), ("even.meshb",), ("report.json",), ("--threads", "1")))
+            found.append(Job("inspect", ("even.meshb", "--report", "report.json"), ("even.meshb",), ("report.json",)))
         elif at == 9:
-            found.append(Job("convert", ("layer.meshb", "out.vtu"), ("layer.meshb",), ("out.vtu",), ("--threads", "1")))
+            found.append(Job("convert", ("layer.meshb", "out.vtu"), ("layer.meshb",), ("out.vtu",)))
         else:
             mesh, analytic, complexity, on_cad = ADAPTED[at - (at > 4)]
             words = (mesh, "-o", "out.meshb", "--analytic", analytic, "--complexity", str(complexity + 5 * turn))

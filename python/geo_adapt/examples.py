@@ -91,7 +91,7 @@ def service(*options: str) -> Iterator[str]:
     """
     with program.folder() as folder:
         place = [] if any(option.startswith("--data") for option in options) else ["--data", folder]
-        words = [program.PATH, "serve", "--listen", "127.0.0.1:0", *place, *options]
+        words = [str(program.PATH), "serve", "--listen", "127.0.0.1:0", *place, *options]
         # A group of its own: Ctrl-C at the terminal is for this process, which ends it.
         with subprocess.Popen(words, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True) as process:
             assert process.stderr is not None

@@ -163,9 +163,11 @@ class ServedModel(Model):
             self._listed = json.loads(job.printed)
         return self._listed
 
-    @property
-    def _kernel(self) -> Any:
-        raise InputError(f"{self.path}: this model is on a service: give it to a call of the server, or geo_adapt.Model here")
+    def __getattr__(self, name: str) -> Any:
+        # What OpenCASCADE has in memory here.
+        if name == "_kernel":
+            raise InputError(f"{self.path}: this model is on a service: give it to a call of the server, or geo_adapt.Model here")
+        raise AttributeError(name)
 
     def closest(self, points: npt.ArrayLike, face: int | None = None, threads: int | None = None) -> Closest:
         """Is for models here: `geo_adapt.Model`."""
@@ -578,9 +580,9 @@ class Server:
         try:
             job = self._call("adapt", options, given, check=False, progress=progress)
         except BaseException as error:
-            job = getattr(error, "job", None)
-            if job is not None and job._is_over and "out.meshb" in job.results:
-                error.partial = Adaptation(job)  # type: ignore[attr-defined]
+            ended: Job | None = getattr(error, "job", None)
+            if ended is not None and ended._is_over and "out.meshb" in ended.results:
+                error.partial = Adaptation(ended)  # type: ignore[attr-defined]
             raise
         if "out.meshb" not in job.results:
             raise job._failure()

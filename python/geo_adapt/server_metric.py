@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,7 +30,7 @@ class ServerMetric:
     def __init__(self, server: Server) -> None:
         self._server = server
 
-    def _made(self, command: str, options: dict[str, Any], given: dict[str, tuple[Any, str] | None]) -> Floats:
+    def _made(self, command: str, options: dict[str, Any], given: Mapping[str, tuple[Any, str] | None]) -> Floats:
         from .server import _made
 
         job = self._server._call(f"metric {command}", {**options, "output": "out.solb"}, given)

@@ -72,9 +72,10 @@ class Jobs(unittest.TestCase):
             self.assertEqual(any("--cad" in job.words for job in found), cad)
             self.assertEqual(all(set(job.reads) <= {"start.meshb", "even.meshb", "layer.meshb", work.CAD.name} for job in found), True)
 
-    def test_the_program_is_typed_with_one_thread(self):
-        self.assertTrue(all(job.typed()[-3:-1] == ["--threads", "1"] or job.typed()[-2:] == ["--threads", "1"] for job in work.jobs(10, True)))
-        self.assertTrue(all("--threads" not in job.words for job in work.jobs(10, True)))
+    def test_the_program_adapts_on_one_thread_and_the_service_decides_itself(self):
+        for job in work.jobs(10, True):
+            self.assertEqual(job.typed()[-3:] == ["--threads", "1", "--deterministic"], job.command == "adapt")
+            self.assertNotIn("--threads", job.words)
 
 
 class Clients(unittest.TestCase):
