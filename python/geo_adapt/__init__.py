@@ -22,7 +22,8 @@ from .jobs import File, Job, JobProgress
 from .looping import Cycle, Step, cycle
 from .mesh import Mesh, read_sol, write_sol
 from .model import Closest, Edge, Face, Model, Vertex
-from .server import Adaptation, ServedModel, Server, connect
+from .served import Adaptation, ServedModel
+from .server import Server, connect
 from .server_metric import ServerMetric
 from .tensors import full, packed
 from .work import bootstrap, classify, inspect, transfer

@@ -302,6 +302,7 @@ class Job:
         for at in self.progress(timeout):
             if progress is not None and progress(at) is False:
                 self.cancel()
+                progress = None
         if check and self._told["state"] == "failed":
             raise self._failure()
         return self

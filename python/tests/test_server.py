@@ -74,6 +74,20 @@ def test_a_model_on_the_service_lists_its_faces(server, step, model, tmp_path):
     assert len(server.Model(geo_adapt.examples.cylinder()).faces) == 3
 
 
+def test_nothing_here_reads_cad(server, step, monkeypatch):
+    def none(*_):
+        raise AssertionError("a model is read here")
+
+    monkeypatch.setattr(geo_adapt.program, "run", none)
+    monkeypatch.setattr(geo_adapt.program, "read_model", none)
+    monkeypatch.setattr(geo_adapt.model._kernel, "Model", none)
+    mesh = server.bootstrap(step, heal=True)
+    m = metric.isotropic(np.full(len(mesh.points), 0.3))
+    for model in (step, server.Model(step), mesh.domain or step):
+        result = server.adapt(mesh, m, model, **MEDIT)
+        assert server.inspect(result.mesh, result.metric, model, **MEDIT)["valid"]
+
+
 def test_names_beside_a_model_go_with_it(server, tmp_path, step):
     copy = tmp_path / "part.step"
     copy.write_bytes(step.read_bytes())
