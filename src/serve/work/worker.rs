@@ -136,8 +136,9 @@ async fn run(shop: Arc<Shop>, mut stopped: watch::Receiver<bool>) {
         let has_room = shop.lock().len() < shop.service.settings.limits.jobs;
         match if has_room { shop.claim().await } else { Ok(None) } {
             Ok(Some(claim)) => {
-                let shop = Arc::clone(&shop);
-                jobs.spawn(async move { shop.work(claim).await });
+                // It counts from now on, and not once its task is at work.
+                let (shop, job) = (Arc::clone(&shop), shop.takes(&claim));
+                jobs.spawn(async move { shop.work(claim, job).await });
                 continue;
             }
             Ok(None) => {}
@@ -235,8 +236,8 @@ impl Shop {
         self.service.catalogue.claim(&self.name, lease, if is_first { i64::MAX as u64 } else { free }).await
     }
 
-    /// Brings a job to its end.
-    async fn work(self: Arc<Self>, claim: Claim) {
+    /// A job is at work here.
+    fn takes(&self, claim: &Claim) -> Arc<Running> {
         let job = Arc::new(Running {
             id: claim.id.clone(),
             group: AtomicI32::new(0),
@@ -245,6 +246,11 @@ impl Shop {
             memory: claim.needs.max(UNKNOWN),
         });
         self.lock().push(Arc::clone(&job));
+        job
+    }
+
+    /// Brings a job to its end.
+    async fn work(self: Arc<Self>, claim: Claim, job: Arc<Running>) {
         let began = Instant::now();
         let end = self.brought_to_end(&claim, &job).await;
         let name = (claim.id.as_str(), claim.attempt);
