@@ -113,7 +113,9 @@ impl Commands {
         let mut words = name.split(' ');
         words.clone().next().filter(|first| SERVED.contains(first))?;
         let found = words.try_fold(&self.root, |command, word| command.find_subcommand(word))?;
-        (!found.is_hide_set() && !found.has_subcommands()).then_some(found)
+        // `metric help scale` is for a terminal.
+        let is_help = name.split(' ').any(|word| word == "help");
+        (!found.is_hide_set() && !found.has_subcommands() && !is_help).then_some(found)
     }
 
     /// Checks a request: the words that may be run.

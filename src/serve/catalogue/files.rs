@@ -98,7 +98,7 @@ impl Catalogue {
             .bind(name)
             .bind(bytes)
             .bind(created)
-            .execute(&self.pool)
+            .execute(&self.writer)
             .await?;
         Ok(File { id: id.into(), kind, name: name.into(), bytes, created })
     }
@@ -139,7 +139,7 @@ impl Catalogue {
     /// When the database refuses.
     pub async fn remove_file(&self, owner: &str, id: &str) -> Result<bool, sqlx::Error> {
         let text = "DELETE FROM files WHERE owner = $1 AND id = $2";
-        Ok(sqlx::query(text).bind(owner).bind(id).execute(&self.pool).await?.rows_affected() > 0)
+        Ok(sqlx::query(text).bind(owner).bind(id).execute(&self.writer).await?.rows_affected() > 0)
     }
 
     /// Bytes that an owner keeps: uploads and results.
