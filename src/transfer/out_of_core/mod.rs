@@ -1,0 +1,275 @@
+//! Transfer between meshes larger than memory, to the bit that of [`super::interpolate`].
+//!
+//! Space is divided into cells such that each has few points of both meshes ([`cells`]). The new vertices are dealt out to the cells that they are
+//! in, the old tetrahedra to all whose boxes, somewhat larger, they touch ([`part`]). So each cell has what holds its vertices, by itself. A vertex
+//! outside of the old mesh has its nearest tetrahedron there too, where that is nearer than the part of the mesh reaches; for what is farther, all
+//! tetrahedra are gone through once more ([`far`]).
+//!
+//! What a vertex gets depends on the meshes alone ([`crate::mesh::locate::Searcher`]), so the cells do not matter.
+mod cells;
+mod error;
+mod far;
+mod measure;
+mod part;
+mod sizes;
+mod stored;
+#[cfg(test)]
+mod tests;
+
+pub use error::Error;
+pub use sizes::Sizes;
+
+use super::Places;
+use super::mass::Component;
+use super::places::tolerance;
+use crate::mesh::io::slices::{MeshReader, SolutionWriter};
+use crate::mesh::locate::{Location, Searcher, Size};
+use crate::mesh::ranges::{Bins, Scratch, Table};
+use crate::mesh::vector::Vec3;
+use crate::tasks::{GRAIN, Team, stage};
+use cells::{Cells, grown, longest, split};
+use far::Far;
+use part::{Part, Tet};
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+use stored::{NOTHING, Stored, bounds_of, joined};
+
+/// Vertices that are read and written at once.
+const SLICE: usize = 2 * GRAIN;
+
+/// Vertices that stand for those that are dealt at once, a thread.
+const AT_ONCE: usize = 8;
+
+/// Why a field cannot be read.
+pub type Wrong = Box<dyn std::error::Error + Send + Sync>;
+
+/// The fields at the vertices of the old mesh, in rows of all values of a vertex.
+pub trait Field: Sync {
+    /// Values of a row.
+    fn width(&self) -> usize;
+
+    /// The rows of some vertices, shape (n, width).
+    ///
+    /// # Errors
+    /// When they cannot be read, or are wrong.
+    fn rows(&self, range: Range<usize>) -> Result<Vec<f64>, Wrong>;
+
+    /// What is interpolated instead of the rows, if that is something else, of the same shape.
+    fn interpolated(&self, rows: &[f64]) -> Option<Vec<f64>>;
+
+    /// The new rows at places in tetrahedra of these nodes, given those that are interpolated at all nodes.
+    fn interpolate(&self, tets: &[[u32; 4]], places: &Places, rows: &[f64]) -> Vec<f64>;
+}
+
+/// What came of it, in a scratch folder.
+pub struct Transferred<'m> {
+    /// New vertices outside the old mesh.
+    pub outside: usize,
+    /// Greatest distance of a new vertex from the old mesh, length.
+    pub farthest: f64,
+    meshes: [Stored<'m>; 2],
+    rows: [Table; 2],
+}
+
+/// A new vertex.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Point {
+    x: Vec3,
+    number: u64,
+}
+
+/// How far outside vertices are.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    outside: usize,
+    farthest: f64,
+}
+
+impl Found {
+    fn of(distances: impl Iterator<Item = f64> + Clone, tolerance: f64) -> Self {
+        let outside = distances.clone().filter(|&distance| distance > tolerance).count();
+        Self { outside, farthest: distances.fold(0.0, f64::max) }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { outside: self.outside + other.outside, farthest: self.farthest.max(other.farthest) }
+    }
+}
+
+/// Fields of the old mesh at the vertices of the new one, by interpolation.
+///
+/// # Errors
+/// When a file cannot be read or is wrong, or the scratch folder not be written.
+pub fn interpolate<'m>(
+    team: Team<'_>,
+    [old, new]: [&'m MeshReader; 2],
+    field: &impl Field,
+    (sizes, scratch): (&Sizes, &Scratch),
+) -> Result<Transferred<'m>, Error> {
+    let old = Stored::read(team, old, scratch)?;
+    let (raw, interpolated) = store(team, field, old.counts().vertices, scratch)?;
+    let new = Stored::read(team, new, scratch)?;
+    stage("vertices read");
+    let rows = Table::new(scratch, field.width())?;
+    let found = {
+        let (points, boxes) = deal_points(team, &old, &new, (sizes, field.width()), scratch)?;
+        let tets = part::deal(team, &old, &boxes, sizes.slice, scratch)?;
+        stage("dealt");
+        let from = interpolated.as_ref().unwrap_or(&raw);
+        let far = Mutex::new(Bins::new(scratch, 1)?);
+        let work = Work { old: &old, size: old.size(), points: &points, tets: &tets, field, from, to: &rows, sizes, far };
+        let parts = team.chunks(1, points.len(), |cell| work.of_points(points.items(cell.start)?, cell.start));
+        let found = parts.into_iter().try_fold(Found::default(), |all, part| part.map(|part| all.and(part)));
+        stage("interpolated");
+        let far = work.far.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let tolerance = tolerance(&old.size());
+        found?.and(far::settle(team, &old, &far, (field, from, &rows), (sizes, tolerance))?)
+    };
+    stage("those far away");
+    Ok(Transferred { outside: found.outside, farthest: found.farthest, meshes: [old, new], rows: [raw, rows] })
+}
+
+/// The rows as they are, and what is interpolated if that is something else.
+fn store(
+    team: Team<'_>,
+    field: &impl Field,
+    vertices: usize,
+    scratch: &Scratch,
+) -> Result<(Table, Option<Table>), Error> {
+    let (raw, other) = (Table::new(scratch, field.width())?, Table::new(scratch, field.width())?);
+    let slices = team.chunks(SLICE, vertices, |range| -> Result<bool, Error> {
+        let rows = field.rows(range.clone()).map_err(Error::Field)?;
+        raw.write(range.start, &rows)?;
+        let interpolated = field.interpolated(&rows);
+        interpolated.as_ref().map_or(Ok(()), |rows| other.write(range.start, rows))?;
+        Ok(interpolated.is_some())
+    });
+    let is_other = slices.into_iter().collect::<Result<Vec<bool>, _>>()?.contains(&true);
+    Ok((raw, is_other.then_some(other)))
+}
+
+/// The new vertices in the cells that they are in, and the boxes that the old tetrahedra of each cell touch.
+fn deal_points(
+    team: Team<'_>,
+    old: &Stored<'_>,
+    new: &Stored<'_>,
+    (sizes, width): (&Sizes, usize),
+    scratch: &Scratch,
+) -> Result<(Bins<Point>, Vec<[Vec3; 2]>), Error> {
+    let tets = old.counts().tets as f64 / old.samples.0.len().max(1) as f64;
+    let cells = Cells::of(&new.samples.0, &old.samples.0, |points, samples| {
+        // Tetrahedra reach out of the box that their vertices are in.
+        let tets = (1.25 * tets * samples as f64) as usize;
+        sizes.of_part(tets, points * new.samples.1, width) <= sizes.task
+    });
+    let (mut bins, mut boxes) = (Bins::new(scratch, cells.count())?, vec![NOTHING; cells.count()]);
+    let (vertices, together) = (new.counts().vertices, SLICE * AT_ONCE);
+    for start in (0..vertices).step_by(together) {
+        let points = new.points.read(start..vertices.min(start + together))?;
+        let found = team.map(GRAIN, points.len(), |i| cells.cell(points[i]) as u32);
+        for ((&x, cell), number) in points.iter().zip(found).zip(start as u64..) {
+            bins.put(cell as usize, Point { x, number })?;
+            boxes[cell as usize] = joined(boxes[cell as usize], [x; 2]);
+        }
+    }
+    // Twice the distance at which a point may be on a face.
+    let least = 2.0 * old.size().touch();
+    Ok((bins, boxes.into_iter().map(|bounds| grown(bounds, least)).collect()))
+}
+
+/// What all cells need.
+struct Work<'w, F> {
+    old: &'w Stored<'w>,
+    size: Size,
+    points: &'w Bins<Point>,
+    tets: &'w Bins<Tet>,
+    field: &'w F,
+    from: &'w Table,
+    to: &'w Table,
+    sizes: &'w Sizes,
+    /// Vertices that are too far from the part of the old mesh about their cell.
+    far: Mutex<Bins<Far>>,
+}
+
+impl<F: Field> Work<'_, F> {
+    /// Gives some vertices of a cell their values. Where they are too many for a task, they are halved.
+    fn of_points(&self, mut points: Vec<Point>, cell: usize) -> Result<Found, Error> {
+        if points.is_empty() {
+            return Ok(Found::default());
+        }
+        let own = bounds_of(points.iter().map(|point| point.x));
+        let within = grown(own, 2.0 * self.size.touch());
+        let width = self.field.width();
+        let fits = |tets| points.len() == 1 || self.sizes.of_part(tets, points.len(), width) <= self.sizes.task;
+        let Some(part) = Part::read(self.old, self.tets, cell, &within, fits)? else {
+            let above = split(&mut points, longest(&own).1, |point| point.x);
+            return Ok(self.of_points(points, cell)?.and(self.of_points(above, cell)?));
+        };
+        points.sort_unstable_by_key(|point| point.number);
+        let Some(part) = part else {
+            let mut far = self.far.lock().unwrap_or_else(PoisonError::into_inner);
+            points.iter().try_for_each(|point| far.put(0, Far::new(point.x, point.number as u32, None)))?;
+            return Ok(Found::default());
+        };
+        let places = self.locate(&mut points, &part, &within)?;
+        let found = Found { outside: places.outside, farthest: places.farthest };
+        let rows = self.from.at(&part.vertices)?;
+        let rows = self.field.interpolate(part.locator.tets(), &places, &rows);
+        self.to.put(&points.iter().map(|point| point.number as u32).collect::<Vec<_>>(), &rows)?;
+        Ok(found)
+    }
+
+    /// The places of the points in a part that has all tetrahedra in a box. Takes away those that are nearer to the end of the part than to any of
+    /// its tetrahedra.
+    fn locate(&self, points: &mut Vec<Point>, part: &Part, within: &[Vec3; 2]) -> Result<Places, Error> {
+        let (mut searcher, touch) = (Searcher::new(&part.locator, &self.size), self.size.touch());
+        let (mut places, mut far, mut distances) = (Places::default(), Vec::new(), Vec::new());
+        points.retain(|&Point { x, number }| {
+            let found = searcher.locate(x);
+            let reach = (0..3).map(|k| (x[k] - within[0][k]).min(within[1][k] - x[k])).fold(f64::INFINITY, f64::min);
+            if found.distance > 0.0 && found.distance + 1e-9 * found.distance + touch > reach {
+                let nodes = part.locator.tets()[found.tet as usize].map(|v| part.vertices[v as usize]);
+                let nearest = Location { tet: part.tets[found.tet as usize], ..found };
+                far.push(Far::new(x, number as u32, Some((nearest, nodes))));
+                return false;
+            }
+            places.tets.push(found.tet);
+            places.weights.push(found.weights);
+            distances.push(found.distance);
+            true
+        });
+        if !far.is_empty() {
+            let mut all = self.far.lock().unwrap_or_else(PoisonError::into_inner);
+            far.into_iter().try_for_each(|far| all.put(0, far))?;
+        }
+        let found = Found::of(distances.into_iter(), tolerance(&self.size));
+        (places.outside, places.farthest) = (found.outside, found.farthest);
+        Ok(places)
+    }
+}
+
+impl Transferred<'_> {
+    /// Writes the new rows.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn put(&self, team: Team<'_>, to: &SolutionWriter) -> Result<(), Error> {
+        let rows = &self.rows[1];
+        let slices = team.chunks(SLICE, self.meshes[1].counts().vertices, |range| -> Result<(), Error> {
+            Ok(to.put(Team::alone(), range.start, (rows.width(), &rows.read(range)?))?)
+        });
+        slices.into_iter().collect()
+    }
+
+    /// Volume and components of the old and the new mesh.
+    ///
+    /// # Errors
+    /// When a mesh or the scratch folder cannot be read.
+    pub fn measure(&self, team: Team<'_>) -> Result<[(f64, Vec<Component>); 2], Error> {
+        Ok([
+            measure::measure(team, &self.meshes[0], &self.rows[0])?,
+            measure::measure(team, &self.meshes[1], &self.rows[1])?,
+        ])
+    }
+}
