@@ -14,13 +14,7 @@ pub fn interpolate(team: Team<'_>, locator: &Locator, places: &Places, width: us
 }
 
 /// As [`interpolate`], given the nodes of the tetrahedra alone.
-pub fn interpolate_in(
-    team: Team<'_>,
-    tets: &[[u32; 4]],
-    places: &Places,
-    width: usize,
-    values: &[f64],
-) -> Vec<f64> {
+pub fn interpolate_in(team: Team<'_>, tets: &[[u32; 4]], places: &Places, width: usize, values: &[f64]) -> Vec<f64> {
     let mut all = vec![0.0; width * places.len()];
     if width == 0 {
         return all;

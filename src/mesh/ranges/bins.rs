@@ -71,11 +71,7 @@ impl<T: Pod> Bins<T> {
     ///
     /// # Errors
     /// When the scratch folder cannot be read, and those of `f`.
-    pub fn each_chunk<E: From<Error>>(
-        &self,
-        bin: usize,
-        mut f: impl FnMut(&[T]) -> Result<bool, E>,
-    ) -> Result<(), E> {
+    pub fn each_chunk<E: From<Error>>(&self, bin: usize, mut f: impl FnMut(&[T]) -> Result<bool, E>) -> Result<(), E> {
         let (Bin { chunks, waiting }, mut items) = (&self.bins[bin], Vec::new());
         for &chunk in chunks {
             let start = chunk as usize * self.chunk;

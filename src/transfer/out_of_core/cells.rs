@@ -6,7 +6,12 @@ use crate::mesh::vector::Vec3;
 #[derive(Clone, Copy, Debug)]
 enum Node {
     /// What is below the plane is in the first one.
-    Plane { axis: u8, at: f64, below: u32, above: u32 },
+    Plane {
+        axis: u8,
+        at: f64,
+        below: u32,
+        above: u32,
+    },
     Cell(u32),
 }
 
@@ -95,7 +100,8 @@ mod tests {
     #[test]
     fn cells_are_small_where_points_are_many() {
         let point = |i: u32| [0, 1, 2].map(|k| f64::from(i.wrapping_mul([7919, 104_729, 1_299_709][k]) % 1000) / 1e3);
-        let new: Vec<Vec3> = (0..4000).map(|i| if i % 2 == 0 { point(i) } else { point(i).map(|x| 1e-3 * x) }).collect();
+        let new: Vec<Vec3> =
+            (0..4000).map(|i| if i % 2 == 0 { point(i) } else { point(i).map(|x| 1e-3 * x) }).collect();
         let old: Vec<Vec3> = (0..3000).map(point).collect();
         let cells = Cells::of(&new, &old, |new, old| new <= 100 && old <= 300);
         assert!((40..300).contains(&cells.count()), "{}", cells.count());

@@ -58,7 +58,11 @@ pub(super) fn settle<F: Field>(
         }
         Ok(true)
     })?;
-    if group.is_empty() { Ok(found) } else { Ok(found.and(settle_group(team, old, &mut group, (field, rows, to), (sizes, tolerance))?)) }
+    if group.is_empty() {
+        Ok(found)
+    } else {
+        Ok(found.and(settle_group(team, old, &mut group, (field, rows, to), (sizes, tolerance))?))
+    }
 }
 
 fn settle_group<F: Field>(
@@ -80,9 +84,7 @@ fn settle_group<F: Field>(
         team.fill(GRAIN / 16, group, |_, group| {
             for far in group {
                 let (x, mut best) = (far.x, far.location());
-                take_nearer(&mut best, &tree, x, |tet| {
-                    nearest_in(start as u32 + tet, &slice.corners(tet as usize), x)
-                });
+                take_nearer(&mut best, &tree, x, |tet| nearest_in(start as u32 + tet, &slice.corners(tet as usize), x));
                 if best.tet != far.tet {
                     let nodes = slice.nodes[best.tet as usize - start].map(|v| slice.numbers[v as usize]);
                     *far = Far::new(x, far.number, Some((best, nodes)));

@@ -19,10 +19,10 @@ mod tests;
 pub use error::Error;
 pub use sizes::Sizes;
 
-use super::Places;
 use super::mass::Component;
 use super::places::tolerance;
-use crate::mesh::io::slices::{MeshReader, SolutionWriter};
+use super::{Places, interpolate_in};
+use crate::mesh::io::slices::{MeshReader, SolutionReader, SolutionWriter};
 use crate::mesh::locate::{Location, Searcher, Size};
 use crate::mesh::ranges::{Bins, Scratch, Table};
 use crate::mesh::vector::Vec3;
@@ -59,6 +59,27 @@ pub trait Field: Sync {
 
     /// The new rows at places in tetrahedra of these nodes, given those that are interpolated at all nodes.
     fn interpolate(&self, tets: &[[u32; 4]], places: &Places, rows: &[f64]) -> Vec<f64>;
+}
+
+/// All fields of a file, linear in each tetrahedron.
+pub struct Linear<'f>(pub &'f SolutionReader);
+
+impl Field for Linear<'_> {
+    fn width(&self) -> usize {
+        self.0.width()
+    }
+
+    fn rows(&self, range: Range<usize>) -> Result<Vec<f64>, Wrong> {
+        Ok(self.0.rows(Team::alone(), range)?)
+    }
+
+    fn interpolated(&self, _: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
+
+    fn interpolate(&self, tets: &[[u32; 4]], places: &Places, rows: &[f64]) -> Vec<f64> {
+        interpolate_in(Team::alone(), tets, places, self.width(), rows)
+    }
 }
 
 /// What came of it, in a scratch folder.
@@ -118,7 +139,7 @@ pub fn interpolate<'m>(
         stage("dealt");
         let from = interpolated.as_ref().unwrap_or(&raw);
         let far = Mutex::new(Bins::new(scratch, 1)?);
-        let work = Work { old: &old, size: old.size(), points: &points, tets: &tets, field, from, to: &rows, sizes, far };
+        let work = Work { old: &old, size: old.size(), tets: &tets, field, from, to: &rows, sizes, far };
         let parts = team.chunks(1, points.len(), |cell| work.of_points(points.items(cell.start)?, cell.start));
         let found = parts.into_iter().try_fold(Found::default(), |all, part| part.map(|part| all.and(part)));
         stage("interpolated");
@@ -182,7 +203,6 @@ fn deal_points(
 struct Work<'w, F> {
     old: &'w Stored<'w>,
     size: Size,
-    points: &'w Bins<Point>,
     tets: &'w Bins<Tet>,
     field: &'w F,
     from: &'w Table,

@@ -146,8 +146,7 @@ impl SolutionWriter {
     /// # Errors
     /// [`Error::System`] when it cannot be written.
     pub fn create(file: File, path: &Path, vertices: usize, kinds: &[FieldKind]) -> Result<Self, Error> {
-        let section =
-            Section { keyword: Keyword::SolAtVertices, count: vertices, body: 0..0, kinds: kinds.to_vec() };
+        let section = Section { keyword: Keyword::SolAtVertices, count: vertices, body: 0..0, kinds: kinds.to_vec() };
         Writer::create(file, path, &[section], MeshCounts { vertices, ..MeshCounts::default() }).map(Self)
     }
 
