@@ -75,11 +75,7 @@ pub fn volume_of([a, b, c, d]: [Vec3; 4]) -> f64 {
 /// # Errors
 /// [`Error`] with the first one.
 pub fn check(team: Team<'_>, mesh: &TetMesh, which: Which) -> Result<(), Error> {
-    let is_inverted = |tet: &usize| {
-        let x = mesh.tets.nodes[*tet].map(|v| mesh.vertices[v as usize]);
-        // Rounding may make a sliver's volume negative: exact arithmetic decides.
-        volume6(x[0], x[1], x[2], x[3]) <= 0.0 && is_positive([x[1], x[0], x[2], x[3]])
-    };
+    let is_inverted = |tet: &usize| is_inverted(mesh.tets.nodes[*tet].map(|v| mesh.vertices[v as usize]));
     let parts = team.chunks(GRAIN, mesh.tets.len(), |range| {
         let first = range.clone().find(is_inverted);
         (first, range.map(|tet| volume(mesh, tet)).fold(0.0, f64::max))
@@ -88,6 +84,12 @@ pub fn check(team: Team<'_>, mesh: &TetMesh, which: Which) -> Result<(), Error> 
         return Err(Error::Inverted { mesh: which, tet });
     }
     if parts.iter().any(|part| part.1 > 0.0) { Ok(()) } else { Err(Error::NoVolume(which)) }
+}
+
+/// Whether a tetrahedron with these corners is inverted.
+pub fn is_inverted(x: [Vec3; 4]) -> bool {
+    // Rounding may make a sliver's volume negative: exact arithmetic decides.
+    volume6(x[0], x[1], x[2], x[3]) <= 0.0 && is_positive([x[1], x[0], x[2], x[3]])
 }
 
 /// What a component of a field is on a mesh.

@@ -17,6 +17,7 @@ mod front;
 mod interpolate;
 mod mass;
 pub mod out_of_core;
+mod pieces;
 mod places;
 
 pub use conservative::{Conserved, Keep, conservative};

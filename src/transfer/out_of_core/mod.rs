@@ -7,8 +7,10 @@
 //!
 //! What a vertex gets depends on the meshes alone ([`crate::mesh::locate::Searcher`]), so the cells do not matter.
 mod cells;
+mod conservative;
 mod error;
 mod far;
+mod gathered;
 mod measure;
 mod part;
 mod sizes;
@@ -16,6 +18,7 @@ mod stored;
 #[cfg(test)]
 mod tests;
 
+pub use conservative::{Overlap, conservative};
 pub use error::Error;
 pub use sizes::Sizes;
 
@@ -124,31 +127,44 @@ impl Found {
 /// When a file cannot be read or is wrong, or the scratch folder not be written.
 pub fn interpolate<'m>(
     team: Team<'_>,
+    meshes: [&'m MeshReader; 2],
+    field: &impl Field,
+    by: (&Sizes, &Scratch),
+) -> Result<Transferred<'m>, Error> {
+    interpolate_to(team, meshes, field, by, |_| Ok(()))
+}
+
+/// The same, if `check` likes the meshes.
+fn interpolate_to<'m>(
+    team: Team<'_>,
     [old, new]: [&'m MeshReader; 2],
     field: &impl Field,
     (sizes, scratch): (&Sizes, &Scratch),
+    check: impl FnOnce([&Stored<'m>; 2]) -> Result<(), Error>,
 ) -> Result<Transferred<'m>, Error> {
     let old = Stored::read(team, old, scratch)?;
     let (raw, interpolated) = store(team, field, old.counts().vertices, scratch)?;
     let new = Stored::read(team, new, scratch)?;
+    check([&old, &new])?;
     stage("vertices read");
     let rows = Table::new(scratch, field.width())?;
-    let found = {
-        let (points, boxes) = deal_points(team, &old, &new, (sizes, field.width()), scratch)?;
-        let tets = part::deal(team, &old, &boxes, sizes.slice, scratch)?;
-        stage("dealt");
-        let from = interpolated.as_ref().unwrap_or(&raw);
-        let far = Mutex::new(Bins::new(scratch, 1)?);
-        let work = Work { old: &old, size: old.size(), tets: &tets, field, from, to: &rows, sizes, far };
-        let parts = team.chunks(1, points.len(), |cell| work.of_points(points.items(cell.start)?, cell.start));
-        let found = parts.into_iter().try_fold(Found::default(), |all, part| part.map(|part| all.and(part)));
-        stage("interpolated");
-        let far = work.far.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let tolerance = tolerance(&old.size());
-        found?.and(far::settle(team, &old, &far, (field, from, &rows), (sizes, tolerance))?)
-    };
+    let (points, boxes) = deal_points(team, &old, &new, (sizes, field.width()), scratch)?;
+    let tets = part::deal(team, &old, &boxes, sizes.slice, scratch)?;
+    stage("dealt");
+    let from = interpolated.as_ref().unwrap_or(&raw);
+    let far = Mutex::new(Bins::new(scratch, 1)?);
+    let work = Work { old: &old, size: old.size(), tets: &tets, field, from, to: &rows, sizes, far };
+    let parts = team.chunks(1, points.len(), |cell| work.of_points(points.items(cell.start)?, cell.start));
+    let mut found = Found::default();
+    for part in parts {
+        found = found.and(part?);
+    }
+    let far = work.far.into_inner().unwrap_or_else(PoisonError::into_inner);
+    stage("interpolated");
+    let found = found.and(far::settle(team, &old, &far, (field, from, &rows), (sizes, tolerance(&old.size())))?);
     stage("those far away");
-    Ok(Transferred { outside: found.outside, farthest: found.farthest, meshes: [old, new], rows: [raw, rows] })
+    let Found { outside, farthest } = found;
+    Ok(Transferred { outside, farthest, meshes: [old, new], rows: [raw, rows] })
 }
 
 /// The rows as they are, and what is interpolated if that is something else.
@@ -170,6 +186,15 @@ fn store(
     Ok((raw, is_other.then_some(other)))
 }
 
+/// Cells whose numbers of old tetrahedra and new vertices fit.
+fn cells_of(old: &Stored<'_>, new: &Stored<'_>, fits: impl Fn(usize, usize) -> bool) -> Cells {
+    // Tetrahedra reach out of the box that their vertices are in.
+    let tets = 1.25 * old.counts().tets as f64 / old.samples.0.len().max(1) as f64;
+    Cells::of(&new.samples.0, &old.samples.0, |points, samples| {
+        fits((tets * samples as f64) as usize, points * new.samples.1)
+    })
+}
+
 /// The new vertices in the cells that they are in, and the boxes that the old tetrahedra of each cell touch.
 fn deal_points(
     team: Team<'_>,
@@ -178,12 +203,7 @@ fn deal_points(
     (sizes, width): (&Sizes, usize),
     scratch: &Scratch,
 ) -> Result<(Bins<Point>, Vec<[Vec3; 2]>), Error> {
-    let tets = old.counts().tets as f64 / old.samples.0.len().max(1) as f64;
-    let cells = Cells::of(&new.samples.0, &old.samples.0, |points, samples| {
-        // Tetrahedra reach out of the box that their vertices are in.
-        let tets = (1.25 * tets * samples as f64) as usize;
-        sizes.of_part(tets, points * new.samples.1, width) <= sizes.task
-    });
+    let cells = cells_of(old, new, |tets, points| sizes.of_part(tets, points, width) <= sizes.task);
     let (mut bins, mut boxes) = (Bins::new(scratch, cells.count())?, vec![NOTHING; cells.count()]);
     let (vertices, together) = (new.counts().vertices, SLICE * AT_ONCE);
     for start in (0..vertices).step_by(together) {

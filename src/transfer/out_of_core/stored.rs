@@ -57,6 +57,11 @@ impl<'m> Stored<'m> {
         Ok(Self { mesh, points, bounds, samples: (samples, step) })
     }
 
+    /// The file.
+    pub fn mesh(&self) -> &'m MeshReader {
+        self.mesh
+    }
+
     /// Its counts.
     pub fn counts(&self) -> &MeshCounts {
         self.mesh.counts()
