@@ -3,7 +3,9 @@
 //! When the new vertices have the values of the nearest points, the new tetrahedra are dealt out to cells by their centroids, and the old ones to all
 //! cells that their boxes touch. What each new tetrahedron gets goes to a table by its number. Then ranges of the new vertices, with all
 //! tetrahedra at them in their order, add it up, in the same parts as in memory.
-use super::part::{self, Part, Tet};
+use super::cells::{grown, longest, split};
+use super::gathered::gather;
+use super::part::{self, Part, Read, Tet};
 use super::stored::{NOTHING, Stored, bounds_of, joined};
 use super::{AT_ONCE, Cells, Error, Field, SLICE, Sizes, Transferred, cells_of, interpolate_to, measure};
 use crate::mesh::box_tree::Bounds;
@@ -52,7 +54,7 @@ pub fn conservative<'m>(
     Work { team, old, new, from: &found.rows[0], nearest: &found.rows[1], to: &on_tets, sizes }.run(scratch)?;
     stage("pieces");
     let mut overlap = covered(team, new, &on_tets)?;
-    let gathered = super::gathered::gather(team, new, (&on_tets, &found.rows[1]), (sizes, scratch))?;
+    let gathered = gather(team, new, (&on_tets, &found.rows[1]), (sizes, scratch))?;
     stage("gathered");
     let (old_volume, before) = measure::measure(team, old, &found.rows[0])?;
     let new_volume = measure::volume(team, new)?;
@@ -181,7 +183,7 @@ impl Work<'_> {
             }
         }
         let least = 2.0 * self.old.size().touch();
-        Ok((bins, boxes.into_iter().map(|bounds| super::grown(bounds, least)).collect()))
+        Ok((bins, boxes.into_iter().map(|bounds| grown(bounds, least)).collect()))
     }
 
     /// Some new tetrahedra with their cells.
@@ -201,13 +203,17 @@ impl Work<'_> {
             return Ok(());
         }
         let width = self.from.width();
-        let within = super::grown(bounds_of(tets.iter().flat_map(|tet| tet.x)), 2.0 * size.touch());
+        let within = grown(bounds_of(tets.iter().flat_map(|tet| tet.x)), 2.0 * size.touch());
         let fits = |old| tets.len() == 1 || self.bytes(old, tets.len(), width) <= self.sizes.task;
-        let Some(part) = Part::read(self.old, cell.0, cell.1, &within, fits)? else {
-            let (_, axis) = super::longest(&bounds_of(tets.iter().map(NewTet::centroid)));
-            let above = super::split(&mut tets, axis, NewTet::centroid);
-            self.of_tets(tets, cell, size)?;
-            return self.of_tets(above, cell, size);
+        let part = match Part::read(self.old, cell, &within, fits)? {
+            Read::Part(part) => Some(part),
+            Read::Nothing => None,
+            Read::TooMany => {
+                let (_, axis) = longest(&bounds_of(tets.iter().map(NewTet::centroid)));
+                let above = split(&mut tets, axis, NewTet::centroid);
+                self.of_tets(tets, cell, size)?;
+                return self.of_tets(above, cell, size);
+            }
         };
         tets.sort_unstable_by_key(|tet| tet.number);
         let mut numbers: Vec<u32> = tets.iter().flat_map(|tet| tet.nodes).collect();

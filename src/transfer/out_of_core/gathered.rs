@@ -42,7 +42,9 @@ pub(super) fn gather(
     let bits = bits.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
     let blocks = Blocks { classes, size: BLOCK, tets: counts.tets, bits };
     let mut before = 0;
-    each_range(team, new.mesh(), &blocks, sizes.waiting, |ranged| -> Result<usize, Error> {
+    // A vertex of the range has sums, bounds and values beside.
+    let bytes = sizes.waiting / (1 + width / 4);
+    each_range(team, new.mesh(), &blocks, bytes, |ranged| -> Result<usize, Error> {
         found.add(before, ranged, (on_tets, nearest))?;
         before += ranged.own.len();
         Ok(0)

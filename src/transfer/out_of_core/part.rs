@@ -89,16 +89,27 @@ pub(super) struct Part {
     pub vertices: Vec<u32>,
 }
 
+/// What came of reading a part.
+pub(super) enum Read {
+    /// The part.
+    Part(Part),
+    /// There is no tetrahedron.
+    Nothing,
+    /// There are too many.
+    TooMany,
+}
+
 impl Part {
-    /// All tetrahedra of a bin that touch a box, and maybe others; none when they are more than `fits` likes, or no part when there are none at
-    /// all.
+    /// All tetrahedra of a bin that touch a box, and maybe others, if they are no more than `fits` likes.
+    ///
+    /// # Errors
+    /// When the scratch folder cannot be read.
     pub fn read(
         old: &Stored<'_>,
-        bins: &Bins<Tet>,
-        bin: usize,
+        (bins, bin): (&Bins<Tet>, usize),
         within: &Bounds,
         fits: impl Fn(usize) -> bool,
-    ) -> Result<Option<Option<Self>>, Error> {
+    ) -> Result<Read, Error> {
         let is_whole = fits(bins.count(bin));
         let mut all = Vec::with_capacity(if is_whole { bins.count(bin) } else { 0 });
         bins.each_chunk(bin, |tets| -> Result<bool, Error> {
@@ -111,10 +122,10 @@ impl Part {
             Ok(fits(all.len()))
         })?;
         if !is_whole && !fits(all.len()) {
-            return Ok(None);
+            return Ok(Read::TooMany);
         }
         if all.is_empty() {
-            return Ok(Some(None));
+            return Ok(Read::Nothing);
         }
         let (tets, nodes) = (all.iter().map(|tet| tet.number).collect(), all.iter().map(|tet| tet.nodes).collect());
         drop(all);
@@ -122,6 +133,6 @@ impl Part {
         let faces = MatchedFaces::of(Team::alone(), &nodes);
         let tets_of_mesh = Elements { nodes, refs: Vec::new() };
         let mesh = TetMesh { vertices: points, tets: tets_of_mesh, ..TetMesh::default() };
-        Ok(Some(Some(Self { locator: Locator::on(Team::alone(), Arc::new(mesh), faces), tets, vertices })))
+        Ok(Read::Part(Self { locator: Locator::on(Team::alone(), Arc::new(mesh), faces), tets, vertices }))
     }
 }

@@ -77,6 +77,12 @@ impl<'m> Stored<'m> {
         Ok(self.mesh.tets(Team::alone(), range)?.nodes)
     }
 
+    /// Reads all tetrahedra, so that what is wrong is told.
+    pub fn check_tets(&self, team: Team<'_>) -> Result<(), Error> {
+        let slices = team.chunks(SLICE, self.counts().tets, |range| self.tets(range).map(drop));
+        slices.into_iter().collect()
+    }
+
     /// Some tetrahedra of these nodes with their vertices.
     pub fn slice(&self, mut nodes: Vec<[u32; 4]>) -> Result<Slice, Error> {
         let numbering = Numbering::of(nodes.as_flattened().iter().copied());

@@ -4,7 +4,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::io::{self, FieldKind, Solution, SolutionField};
 use crate::mesh::locate::Locator;
 use crate::mesh::samples::cube;
-use crate::mesh::vector::{add, scale};
+use crate::mesh::vector::{Vec3, add, scale};
 use crate::tasks::{Plan, Pool};
 use crate::transfer::{Keep, conservative as in_memory, interpolate as interpolate_in_memory, measure};
 use tempfile::TempDir;
