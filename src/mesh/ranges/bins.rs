@@ -34,9 +34,19 @@ impl<T: Pod> Bins<T> {
     /// # Errors
     /// When no file can be made.
     pub fn new(scratch: &Scratch, count: usize) -> Result<Self, Error> {
-        let chunk = (WAITING / (count.max(1) * size_of::<T>())).clamp(CHUNK.start, CHUNK.end);
+        let chunk = Self::chunk(count);
         let bins = vec![Bin { chunks: Vec::new(), waiting: Vec::new() }; count];
         Ok(Self { column: scratch.column()?, bins, chunk, used: 0 })
+    }
+
+    fn chunk(count: usize) -> usize {
+        (WAITING / (count.max(1) * size_of::<T>())).clamp(CHUNK.start, CHUNK.end)
+    }
+
+    /// Bytes of memory that so many items in so many bins take.
+    pub fn held(count: usize, items: usize) -> usize {
+        let chunk = Self::chunk(count);
+        count * (size_of::<Bin<T>>() + chunk * size_of::<T>()) + (items / chunk + count) * size_of::<u32>()
     }
 
     /// Puts an item behind those of a bin.
@@ -110,6 +120,7 @@ mod tests {
         let bin = |item: u32| [0, 2, 2, 2][item as usize % 4];
         all.iter().for_each(|&item| bins.put(bin(item), item).unwrap());
         assert_eq!(bins.len(), 3);
+        assert!(Bins::<u32>::held(3, 20_000) < 20_000 && Bins::<u32>::held(100_000, 20_000_000) > 10_000_000);
         for asked in 0..3 {
             let expected: Vec<u32> = all.iter().copied().filter(|&item| bin(item) == asked).collect();
             assert_eq!((bins.count(asked), bins.items(asked).unwrap()), (expected.len(), expected));

@@ -1,7 +1,8 @@
 //! How much is done at once.
 use super::Error;
+use super::part::Tet;
 use crate::mesh::io::MeshCounts;
-use crate::mesh::ranges::PROGRAM;
+use crate::mesh::ranges::{Bins, PROGRAM};
 use crate::transfer::Which;
 
 /// A tetrahedron of a part with its share of the vertices, while the part is made and searched, without the values.
@@ -16,14 +17,17 @@ const OF_POINT: usize = 140;
 /// A point that waits for its nearest tetrahedron.
 const OF_FAR: usize = 160;
 
-/// What is there besides parts: samples of both meshes, items that wait to be written, slices of tetrahedra.
-const BESIDE: usize = 22_000_000;
+/// What is there besides parts: samples of both meshes, new vertices that wait to be written, slices of tetrahedra.
+const BESIDE: usize = 18_000_000;
 
 /// Least memory of a task.
 const OF_TASK: usize = 6_000_000;
 
 /// Most memory of a task: larger parts are no better.
 const MOST: usize = 80_000_000;
+
+/// Tetrahedra of a slice.
+const SLICE: usize = 1 << 14;
 
 /// How much is done at once. Results do not depend on it.
 #[derive(Clone, Copy, Debug)]
@@ -49,15 +53,18 @@ impl Sizes {
         }
         let memory = usize::try_from(memory).unwrap_or(usize::MAX);
         let slices = threads * 24 * width * SLICE / 4;
-        // Each vertex and tetrahedron is four bytes in no more chunks than this.
-        let chunks = (old.tets + new.vertices) / 64;
-        let held = PROGRAM + BESIDE + slices + chunks;
-        let needed = held + threads * (OF_TASK + 40 * width * 1000);
+        let (held, least) = (PROGRAM + BESIDE + slices, OF_TASK + 40 * width * 1000);
+        let share = |beside: usize| (memory.saturating_sub(held + beside) / threads).clamp(least, MOST.max(least));
+        let sizes = Self { task: share(0), waiting: 0, slice: SLICE };
+        // What deals out old tetrahedra, of which many are in two cells.
+        let cells = 2 * sizes.of_part(old.tets, new.vertices, width) / sizes.task;
+        let bins = Bins::<Tet>::held(cells, 2 * old.tets);
+        let needed = held + bins + threads * least;
         if memory < needed {
             return Err(Error::Memory { width, threads, memory, needed });
         }
-        let task = ((memory - held) / threads).min(MOST);
-        Ok(Self { task, waiting: task * threads, slice: SLICE })
+        let task = share(bins);
+        Ok(Self { task, waiting: task * threads, ..sizes })
     }
 
     /// Bytes of a part with so many tetrahedra and points in it.
@@ -70,6 +77,3 @@ impl Sizes {
         (self.waiting / (OF_FAR + 40 * width)).max(1)
     }
 }
-
-/// Tetrahedra of a slice.
-const SLICE: usize = 1 << 14;
