@@ -102,7 +102,10 @@ impl<'l> Searcher<'l> {
         }
         let corners = self.locator.corners(found.tet);
         let total = volume6(corners[0], corners[1], corners[2], corners[3]);
-        (0..4).all(|k| found.weights[k] > CLEAR || found.weights[k] * total > self.touch * face_area2(&corners, k))
+        (0..4).all(|k| {
+            let (height, least) = (found.weights[k] * total, self.touch * self.touch * face_square(&corners, k));
+            found.weights[k] > CLEAR || height * height > least
+        })
     }
 
     /// Distances from p up to this may be the least one, where one is known.
@@ -190,24 +193,25 @@ impl<'l> Searcher<'l> {
         while let Some(tet) = self.open.pop() {
             let corners = locator.corners(tet);
             let volumes = sub_volumes(&corners, p);
-            let faces = [0, 1, 2, 3].map(|k| face_area2(&corners, k));
-            let away = if least > self.touch {
-                locator.nearest_in(tet, p).distance
-            } else {
-                // It is cheaper to ask how far beyond the planes p is: never farther than from the tetrahedron.
-                (0..4).map(|k| if volumes[k] < 0.0 { -volumes[k] / faces[k] } else { 0.0 }).fold(0.0, f64::max)
+            // Six times a volume to the square, and that with the radius as the height: a face is nearer than the radius where the first is not greater.
+            let reach = [0, 1, 2, 3].map(|k| radius * radius * face_square(&corners, k));
+            let is_near = |k: usize| volumes[k] * volumes[k] <= reach[k];
+            // Where p may be inside it is cheaper to ask how far beyond the planes it is: never farther than from the tetrahedron.
+            let is_beyond = match least > self.touch {
+                true => locator.nearest_in(tet, p).distance > radius,
+                false => (0..4).any(|k| volumes[k] < 0.0 && !is_near(k)),
             };
-            if away > radius {
+            if is_beyond {
                 continue;
             }
-            self.near.push((tet, away));
+            self.near.push((tet, 0.0));
             if held.is_none_or(|held| tet < held.tet)
                 && let Some(weights) = weights_inside(volumes)
             {
                 held = Some(Location { tet, weights, distance: 0.0 });
             }
             for (k, &beyond) in locator.faces.neighbours[tet as usize].iter().enumerate() {
-                if volumes[k] > radius * faces[k] {
+                if volumes[k] > 0.0 && !is_near(k) {
                     continue;
                 }
                 if beyond != NONE {
@@ -253,11 +257,12 @@ pub fn take_nearer(best: &mut Location, tree: &BoxTree, p: Vec3, of: impl Fn(u32
     });
 }
 
-/// Twice the area of a face.
+/// Twice the area of a face, to the square.
 #[inline(always)]
-fn face_area2(corners: &[Vec3; 4], face: usize) -> f64 {
+fn face_square(corners: &[Vec3; 4], face: usize) -> f64 {
     let [a, b, c] = FACES[face].map(|i| corners[i]);
-    norm(cross(sub(b, a), sub(c, a)))
+    let normal = cross(sub(b, a), sub(c, a));
+    dot(normal, normal)
 }
 
 #[cfg(test)]
