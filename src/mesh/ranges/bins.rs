@@ -67,7 +67,7 @@ impl<T: Pod> Bins<T> {
     }
 
     /// Number of bins.
-    pub fn len(&self) -> usize {
+    pub fn bins(&self) -> usize {
         self.bins.len()
     }
 
@@ -119,7 +119,7 @@ mod tests {
         let all: Vec<u32> = (0..20_000u32).map(|i| i.wrapping_mul(2_654_435_769)).collect();
         let bin = |item: u32| [0, 2, 2, 2][item as usize % 4];
         all.iter().for_each(|&item| bins.put(bin(item), item).unwrap());
-        assert_eq!(bins.len(), 3);
+        assert_eq!(bins.bins(), 3);
         assert!(Bins::<u32>::held(3, 20_000) < 20_000 && Bins::<u32>::held(100_000, 20_000_000) > 10_000_000);
         for asked in 0..3 {
             let expected: Vec<u32> = all.iter().copied().filter(|&item| bin(item) == asked).collect();

@@ -1,4 +1,4 @@
-//! The conservative transfer by slices, to the bit that of [`crate::transfer::conservative`].
+//! The conservative transfer by slices, to the bit that of [`crate::transfer::conservative()`].
 //!
 //! When the new vertices have the values of the nearest points, the new tetrahedra are dealt out to cells by their centroids, and the old ones to all
 //! cells that their boxes touch. What each new tetrahedron gets goes to a table by its number. Then ranges of the new vertices, with all
@@ -158,7 +158,7 @@ impl Work<'_> {
         let size = self.old.size();
         let done = self
             .team
-            .chunks(1, tets.len(), |cell| self.of_tets(tets.items(cell.start)?, (&old_tets, cell.start), &size));
+            .chunks(1, tets.bins(), |cell| self.of_tets(tets.items(cell.start)?, (&old_tets, cell.start), &size));
         done.into_iter().collect()
     }
 

@@ -22,7 +22,7 @@ pub(super) struct Gathered {
     weights: Table,
 }
 
-/// Adds up what the tetrahedra of each vertex give, in the parts and the order of [`crate::transfer::conservative`].
+/// Adds up what the tetrahedra of each vertex give, in the parts and the order of [`crate::transfer::conservative()`].
 pub(super) fn gather(
     team: Team<'_>,
     new: &Stored<'_>,

@@ -1,4 +1,4 @@
-//! Transfer between meshes larger than memory, to the bit that of [`super::interpolate`].
+//! Transfer between meshes larger than memory, to the bit that of [`super::interpolate()`].
 //!
 //! Space is divided into cells such that each has few points of both meshes ([`cells`]). The new vertices are dealt out to the cells that they are
 //! in, the old tetrahedra to all whose boxes, somewhat larger, they touch ([`part`]). So each cell has what holds its vertices, by itself. A vertex

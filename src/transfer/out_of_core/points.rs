@@ -32,7 +32,7 @@ pub(super) fn settle<F: Field>(
     stage("dealt");
     let far = Mutex::new(Bins::new(scratch, 1)?);
     let work = Work { old, size: old.size(), tets: &tets, field, from, to, sizes, far };
-    let parts = team.chunks(1, points.len(), |cell| work.of_points(points.items(cell.start)?, cell.start));
+    let parts = team.chunks(1, points.bins(), |cell| work.of_points(points.items(cell.start)?, cell.start));
     let mut found = Found::default();
     for part in parts {
         found = found.and(part?);
