@@ -68,7 +68,7 @@ pub(super) fn settle<F: Field>(
 fn settle_group<F: Field>(
     team: Team<'_>,
     old: &Stored<'_>,
-    group: &mut Vec<Far>,
+    group: &mut [Far],
     (field, rows, to): (&F, &Table, &Table),
     (sizes, tolerance): (&Sizes, f64),
 ) -> Result<Found, Error> {

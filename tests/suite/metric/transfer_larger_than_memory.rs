@@ -166,5 +166,5 @@ fn files_that_are_wrong_are_named() {
     refused("old.solb", &[], &["new.meshb"]);
     io::write_mesh(&path("text.mesh"), &cube(2)).unwrap();
     fs::copy(path("text.mesh"), path("new.meshb")).unwrap();
-    refused("old.solb", &[], &["new.meshb", "--memory"]);
+    refused("old.solb", &[], &["new.meshb", "no binary file"]);
 }
