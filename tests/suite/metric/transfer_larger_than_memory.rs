@@ -15,6 +15,9 @@ struct Case {
     old: TetMesh,
 }
 
+/// A field: its kind, and its values at a point.
+type Asked<'f> = (FieldKind, &'f dyn Fn(Vec3) -> Vec<f64>);
+
 impl Case {
     fn new() -> Self {
         let (work, old, mut new) = (Workplace::new(), cube(12), cube(14));
@@ -30,8 +33,8 @@ impl Case {
         case
     }
 
-    fn fields(&self, name: &str, fields: &[(FieldKind, &dyn Fn(Vec3) -> Vec<f64>)]) {
-        let field = |&(kind, at): &(FieldKind, &dyn Fn(Vec3) -> Vec<f64>)| SolutionField {
+    fn fields(&self, name: &str, fields: &[Asked<'_>]) {
+        let field = |&(kind, at): &Asked<'_>| SolutionField {
             kind,
             values: self.old.vertices.iter().flat_map(|&p| at(p)).collect(),
         };
