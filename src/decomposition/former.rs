@@ -4,10 +4,10 @@ use super::piece::{Piece, SHARED};
 use super::rounds::Rounds;
 use super::shelf::Key;
 use super::split::split_tets;
+use crate::mesh::Elements;
 use crate::mesh::vector::Vec3;
 use crate::metric::Sym3;
 use crate::metric::statistics::{Figures, Part, Statistics};
-use crate::mesh::Elements;
 use crate::tasks::Team;
 
 /// Where some of the mesh lies. The greatest counts where pieces differ about an edge that they share.

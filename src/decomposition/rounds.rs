@@ -133,8 +133,20 @@ impl<'a> Rounds<'a> {
         let active = Active::default();
         let (done, told, finished, former) = (Done::default(), Vec::new(), Vec::new(), Vec::new());
         let (next_id, steps, finished_vertices, is_ended) = (1 << 40, 0, 0, false);
-        let mut rounds =
-            Self { common, done, told, finished, active, former, next_id, steps, run, refs, finished_vertices, is_ended };
+        let mut rounds = Self {
+            common,
+            done,
+            told,
+            finished,
+            active,
+            former,
+            next_id,
+            steps,
+            run,
+            refs,
+            finished_vertices,
+            is_ended,
+        };
         if let Some(blocks) = rounds.goes_on() {
             return Ok((rounds, blocks));
         }

@@ -60,12 +60,13 @@ impl Parts {
             self.rounds.iter().map(Told::greatest_and_sum).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
         table.row("seconds of parts", format_args!("{sum:.2} in all, {greatest:.2} of the slowest of each round"));
         let NearCuts { untouched, around, at_cuts } = self.near_cuts;
-        for (name, found) in
-            [("at former cuts", at_cuts), ("around them", around), ("far from all cuts", untouched)]
-        {
+        for (name, found) in [("at former cuts", at_cuts), ("around them", around), ("far from all cuts", untouched)] {
             if let (Some(Quality { tets, mean_ratio, least_ratio, unit_edges, .. }), true) = (found, around.is_some()) {
                 let (least, mean, unit) = (figure(least_ratio), figure(mean_ratio), 100.0 * unit_edges);
-                table.row(name, format_args!("{tets} tetrahedra, mean ratio least {least} mean {mean}, {unit:.2} % unit edges"));
+                table.row(
+                    name,
+                    format_args!("{tets} tetrahedra, mean ratio least {least} mean {mean}, {unit:.2} % unit edges"),
+                );
             }
         }
         if self.processes.len() > 1 {
