@@ -1,0 +1,72 @@
+// The files that went up: dropped or chosen, listed, shown, removed.
+import { attempt, button, byId, bytes, complain, make, say, update } from "./elements.js";
+import { ACCEPTED, kindOf, ofFile } from "./things.js";
+import { upload } from "./upload.js";
+
+const KINDS = { model: "CAD model", surface: "surface", mesh: "mesh", field: "field or metric", other: "beside others" };
+
+/** `show(thing)` shows one, `use(thing)` goes on with it. */
+export function beginShelf(catalogue, { show, use }) {
+  const input = byId("file"), drop = byId("drop");
+  input.accept = ACCEPTED;
+  const take = (files) => attempt(() => takeIn(catalogue, [...files], { show, use }));
+  input.onchange = async () => {
+    const files = [...input.files];
+    await take(files);
+    input.value = "";
+  };
+  // Files may be dropped anywhere: else the browser would leave the page for them.
+  document.addEventListener("dragover", (event) => {
+    event.preventDefault();
+    drop.classList.add("over");
+  });
+  document.addEventListener("dragleave", (event) => {
+    if (!event.relatedTarget) drop.classList.remove("over");
+  });
+  document.addEventListener("drop", (event) => {
+    event.preventDefault();
+    drop.classList.remove("over");
+    if (event.dataTransfer.files.length) take(event.dataTransfer.files);
+  });
+  catalogue.addEventListener("change", () => list(catalogue, { show, use }));
+}
+
+async function takeIn(catalogue, files, { show, use }) {
+  const bar = byId("sent"), taken = [];
+  bar.hidden = false;
+  try {
+    for (const file of files) {
+      say(`Uploading ${file.name}, ${bytes(file.size)} …`);
+      bar.setAttribute("aria-label", "Upload of " + file.name);
+      const known = await upload(file, file.name, (share) => { bar.value = share; });
+      catalogue.addFile(known);
+      taken.push(ofFile(known));
+      say(`${known.name} is there.`);
+    }
+  } catch (error) {
+    complain(`${files[taken.length]?.name}: ${error.message}`);
+  } finally {
+    bar.hidden = true;
+  }
+  const first = ["model", "surface", "mesh"].map((kind) => taken.find((one) => one.kind === kind)).find(Boolean);
+  if (!first) return;
+  use(first);
+  show(first);
+}
+
+function list(catalogue, { show, use }) {
+  const lines = catalogue.files.map((file) => {
+    const one = ofFile(file), isSeen = ["model", "surface", "mesh"].includes(one.kind);
+    const build = () => make("li", {},
+      make("span", { className: "name", textContent: file.name }),
+      make("small", { textContent: `${KINDS[kindOf(file.name)]}, ${bytes(file.bytes)}` }),
+      make("span", { className: "buttons" },
+        isSeen && button("Show", () => show(one), { "data-part": "show", "aria-label": "Show " + file.name }),
+        isSeen && button("Use", () => use(one), { "data-part": "use", "aria-label": "Use " + file.name }),
+        make("a", { href: `/v1/files/${file.id}/content`, download: file.name, textContent: "Download", "aria-label": "Download " + file.name, "data-part": "get" }),
+        button("Remove", () => catalogue.removeFile(file.id), { "data-part": "remove", "aria-label": "Remove " + file.name })));
+    return [file.id, file.name, build];
+  });
+  update(byId("files"), lines);
+  byId("no-files").hidden = lines.length > 0;
+}
