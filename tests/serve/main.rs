@@ -4,8 +4,12 @@
 #[allow(dead_code)]
 mod common;
 
+#[path = "../suite/browser.rs"]
+#[allow(dead_code, reason = "other pages turn the wheel")]
+mod browser;
 mod client;
 mod jobs;
 mod owners;
 mod service;
 mod uploads;
+mod workbench;

@@ -7,7 +7,7 @@ export function arrange({ elements: { domain, extent, symmetry } }, model) {
   const isOutside = domain.value !== "inside";
   for (const field of [extent, symmetry]) field.closest("label").hidden = !isOutside;
   extent.closest("label").querySelector("span").textContent = domain.value === "sphere" ? "Its radius, in model units" : "Reaches so many times the body's extent";
-  extent.placeholder = domain.value === "sphere" ? "20" : "10";
+  extent.placeholder = domain.value === "sphere" ? "" : "10";
   domain.disabled = model?.kind !== "model";
   if (domain.disabled) domain.value = "inside";
 }
@@ -18,7 +18,9 @@ export function steps(form, catalogue, model) {
   const value = (name) => form.elements[name].value.trim();
   const output = value("output") || freeName(catalogue, stemOf(model.name), "meshb");
   const domain = value("domain");
-  const farField = domain === "inside" ? "" : `${domain}:${value("extent") || form.elements.extent.placeholder}`;
+  const extent = value("extent") || form.elements.extent.placeholder;
+  if (domain !== "inside" && !extent) return { steps: [], missing: "Give the radius of the far field." };
+  const farField = domain === "inside" ? "" : `${domain}:${extent}`;
   const chosen = { size: value("size"), complexity: value("complexity"), "far-field": farField, symmetry: farField && value("symmetry"), heal: value("heal"), segments: value("segments"), "feature-cells": value("cells") };
   const words = [model.name, "-o", output, ...options(chosen), ...split(value("more")), "--report", stemOf(output) + ".report.json"];
   return { steps: [{ command: "bootstrap", words, files: filesOf(catalogue, model), output }], missing: "" };

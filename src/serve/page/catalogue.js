@@ -19,7 +19,6 @@ export const hasEnded = (job) => !["queued", "running"].includes(job.state);
 export class Catalogue extends EventTarget {
   constructor() {
     super();
-    this.me = null;
     this.files = [];
     this.jobs = new Map();
     this.results = new Map();
@@ -35,7 +34,6 @@ export class Catalogue extends EventTarget {
 
   /** Looks at all anew. */
   async load() {
-    this.me = await ask("GET", "/v1/me");
     const [files, jobs] = await Promise.all([ask("GET", "/v1/files"), ask("GET", "/v1/jobs?limit=200")]);
     this.files = files;
     const seen = new Set(jobs.map((job) => job.id));
@@ -55,9 +53,14 @@ export class Catalogue extends EventTarget {
   async loadResults() {
     const wanted = this.list().filter((job) => hasEnded(job) && !this.results.has(job.id)).map((job) => job.id);
     const next = async () => {
-      for (let id = wanted.shift(); id; id = wanted.shift()) this.results.set(id, await ask("GET", jobPath(id, "results")).catch(() => []));
+      for (let id = wanted.shift(); id; id = wanted.shift()) await this.loadResult(id);
     };
     await Promise.all([next(), next(), next()]);
+  }
+
+  async loadResult(id) {
+    const made = await ask("GET", jobPath(id, "results")).catch((error) => (error.status === 404 ? [] : null));
+    if (made) this.results.set(id, made);
   }
 
   /** Takes over what the service says of a job. */
@@ -113,7 +116,8 @@ export class Catalogue extends EventTarget {
 
   async ended(job) {
     if (this.results.has(job.id) && hasEnded(this.jobs.get(job.id) || {})) return;
-    this.results.set(job.id, await ask("GET", jobPath(job.id, "results")).catch(() => []));
+    await this.loadResult(job.id);
+    if (!this.results.has(job.id)) this.results.set(job.id, []);
     this.note(job);
     this.changed();
     this.dispatchEvent(new CustomEvent("end", { detail: job }));

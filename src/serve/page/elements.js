@@ -21,6 +21,7 @@ export function button(text, act, properties = {}) {
 
 /** Does something that may fail, and tells why. */
 export async function attempt(act) {
+  byId("wrong").hidden = true;
   try {
     return await act();
   } catch (error) {
@@ -31,7 +32,6 @@ export async function attempt(act) {
 /** Says something in the line at the foot of the page, and to screen readers. */
 export function say(text) {
   byId("said").textContent = text;
-  byId("wrong").hidden = true;
 }
 
 /** Says what went wrong; it stays until it is put away. */

@@ -12,7 +12,7 @@ export class Pane {
   constructor(catalogue, element, told) {
     Object.assign(this, { catalogue, element, told, thing: null, job: null, frame: null, picked: null, saving: Promise.resolve() });
     const part = (name) => element.querySelector(`[data-of=${name}]`);
-    Object.assign(this, { title: part("title"), stage: part("stage"), face: part("face"), number: part("number"), name: part("name"), about: part("about") });
+    Object.assign(this, { title: part("title"), stage: part("stage"), face: part("face"), number: part("number"), name: part("name") });
     part("close").onclick = () => {
       this.clear();
       told(this, { kind: "closed" });
@@ -72,16 +72,15 @@ export class Pane {
     if (typeof told !== "object" || told === null) return;
     if (told.kind === "picked") this.pick(told);
     else if (told.kind === "names" && typeof told.content === "object") this.keep(told);
-    else if (told.kind === "look" || told.kind === "ready") this.told(this, told);
+    else if (["look", "ready", "dragging"].includes(told.kind)) this.told(this, told);
   }
 
-  pick({ reference, name, about }) {
+  pick({ reference, name }) {
     this.picked = Number.isInteger(reference) ? reference : null;
     this.face.hidden = this.picked === null;
     if (this.picked === null) return;
     this.number.textContent = String(this.picked);
     this.name.value = typeof name === "string" ? name.slice(0, LONGEST) : "";
-    this.about.textContent = typeof about === "string" ? about.slice(0, 200) : "";
   }
 
   /** Names go up as the file beside the model or the mesh. */

@@ -44,6 +44,8 @@ function list(catalogue, acts) {
   update(byId("jobs"), lines);
   // What changes often changes in place, so that the focus stays.
   for (const job of jobs) if (!hasEnded(job)) tell(job);
+  const count = jobs.filter((job) => !hasEnded(job)).length;
+  document.title = (count ? `(${count}) ` : "") + "geo-adapt workbench";
   byId("no-jobs").hidden = jobs.length > 0;
 }
 
@@ -62,7 +64,7 @@ function line(catalogue, job, { show, compare, use }) {
   const head = make("p", { className: "head" }, make("strong", { textContent: title }), " ", make("small", { textContent: job.command }), state);
   if (!hasEnded(job)) {
     const bar = make("progress", { max: 1, "aria-label": "Progress of " + title });
-    return make("li", {}, head, bar, make("p", { className: "told" }), make("span", { className: "buttons" }, named("Cancel", () => catalogue.cancel(job.id), "cancel"), logOf(job, title)));
+    return make("li", {}, head, bar, make("p", { className: "told" }), make("span", { className: "buttons" }, named("Cancel", () => catalogue.cancel(job.id), "cancel")), logOf(job, title));
   }
   return make("li", {}, head,
     job.reason && make("p", { className: "reason", textContent: job.reason }),

@@ -33,6 +33,10 @@ async function send(method, path, body) {
 /** The answer to a request, as text. */
 export async function textOf(method, path, body) {
   let answer = await send(method, path, body);
+  for (let tries = 1; answer.status === 429 && method === "GET" && tries < 9; tries++) {
+    await new Promise((resolve) => setTimeout(resolve, 500 * tries));
+    answer = await send(method, path, body);
+  }
   while (answer.status === 401 && path !== "/v1/session" && await wantsToken()) answer = await send(method, path, body);
   const text = await answer.text();
   if (!answer.ok) throw problemOf(answer.status, text);

@@ -5,33 +5,34 @@ import { upload } from "./upload.js";
 
 const KINDS = { model: "CAD model", surface: "surface", mesh: "mesh", field: "field or metric", other: "beside others" };
 
-/** `show(thing)` shows one, `use(thing)` goes on with it. */
-export function beginShelf(catalogue, { show, use }) {
-  const input = byId("file"), drop = byId("drop");
+/** `open(thing)` shows one, and goes on with it. */
+export function beginShelf(catalogue, open) {
+  const input = byId("file");
   input.accept = ACCEPTED;
-  const take = (files) => attempt(() => takeIn(catalogue, [...files], { show, use }));
+  const take = (files) => attempt(() => takeIn(catalogue, [...files], open));
   input.onchange = async () => {
     const files = [...input.files];
     await take(files);
     input.value = "";
   };
   // Files may be dropped anywhere: else the browser would leave the page for them.
+  const drag = (isOn) => document.body.classList.toggle("dragging", isOn);
   document.addEventListener("dragover", (event) => {
     event.preventDefault();
-    drop.classList.add("over");
+    drag(true);
   });
   document.addEventListener("dragleave", (event) => {
-    if (!event.relatedTarget) drop.classList.remove("over");
+    if (!event.relatedTarget) drag(false);
   });
   document.addEventListener("drop", (event) => {
     event.preventDefault();
-    drop.classList.remove("over");
+    drag(false);
     if (event.dataTransfer.files.length) take(event.dataTransfer.files);
   });
-  catalogue.addEventListener("change", () => list(catalogue, { show, use }));
+  catalogue.addEventListener("change", () => list(catalogue, open));
 }
 
-async function takeIn(catalogue, files, { show, use }) {
+async function takeIn(catalogue, files, open) {
   const bar = byId("sent"), taken = [];
   bar.hidden = false;
   try {
@@ -49,20 +50,17 @@ async function takeIn(catalogue, files, { show, use }) {
     bar.hidden = true;
   }
   const first = ["model", "surface", "mesh"].map((kind) => taken.find((one) => one.kind === kind)).find(Boolean);
-  if (!first) return;
-  use(first);
-  show(first);
+  if (first) await open(first);
 }
 
-function list(catalogue, { show, use }) {
+function list(catalogue, open) {
   const lines = catalogue.files.map((file) => {
     const one = ofFile(file), isSeen = ["model", "surface", "mesh"].includes(one.kind);
     const build = () => make("li", {},
       make("span", { className: "name", textContent: file.name }),
       make("small", { textContent: `${KINDS[kindOf(file.name)]}, ${bytes(file.bytes)}` }),
       make("span", { className: "buttons" },
-        isSeen && button("Show", () => show(one), { "data-part": "show", "aria-label": "Show " + file.name }),
-        isSeen && button("Use", () => use(one), { "data-part": "use", "aria-label": "Use " + file.name }),
+        isSeen && button("Open", () => open(one), { "data-part": "open", "aria-label": "Open " + file.name }),
         make("a", { href: `/v1/files/${file.id}/content`, download: file.name, textContent: "Download", "aria-label": "Download " + file.name, "data-part": "get" }),
         button("Remove", () => catalogue.removeFile(file.id), { "data-part": "remove", "aria-label": "Remove " + file.name })));
     return [file.id, file.name, build];

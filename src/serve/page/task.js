@@ -43,7 +43,8 @@ export class Task {
 
   things() {
     const of = (...kinds) => thingsOf(this.catalogue, kinds);
-    return { sources: [...of("model"), ...of("surface"), ...of("mesh").filter((one) => !one.job)], meshes: of("mesh"), models: of("model"), fields: of("field") };
+    const went = (kind) => of(kind).filter((one) => !one.job), made = of("model").filter((one) => one.job);
+    return { sources: [...went("model"), ...went("surface"), ...went("mesh"), ...made], meshes: of("mesh"), models: of("model"), fields: of("field") };
   }
 
   /** Goes on with a thing: a model is meshed, a mesh adapted. */

@@ -4,6 +4,7 @@ import { attempt, byId, bytes, complain, grouped, say } from "./elements.js";
 import { figuresOf, showFigures } from "./figures.js";
 import { Pane } from "./pane.js";
 import { beginQueue } from "./queue.js";
+import { ask } from "./service.js";
 import { beginSession } from "./session.js";
 import { beginShelf } from "./shelf.js";
 import { Task } from "./task.js";
@@ -17,6 +18,7 @@ const started = new Set();
 /** What a view tells: how it looks goes to the other one, so that the same is seen of both. */
 function told(pane, message) {
   if (message.kind === "closed") return arrange();
+  if (message.kind === "dragging") document.body.classList.add("dragging");
   const other = panes.find((one) => one !== pane);
   if (message.kind === "look" && other.thing && byId("together").checked) other.send(message);
   if (message.kind !== "ready") return undefined;
@@ -54,7 +56,8 @@ function showFirst(thing) {
 
 const compare = (thing) => show(panes[panes[0].thing ? 1 : 0], thing);
 
-function showUsage({ me }) {
+async function showUsage() {
+  const me = await ask("GET", "/v1/me");
   byId("about").textContent = `${me.version} · ${me.owner === "local" ? "this machine" : me.owner} · ${bytes(me.bytes)} of ${bytes(me.most_bytes)}`;
   byId("about").title = `A job may make ${grouped(me.most_vertices)} vertices`;
 }
@@ -65,10 +68,14 @@ const use = (thing) => {
   task.use(thing);
   say(`${thing.name} is chosen for the next step.`);
 };
-beginShelf(catalogue, { show: showFirst, use });
+beginShelf(catalogue, (thing) => {
+  task.use(thing);
+  return showFirst(thing);
+});
 beginQueue(catalogue, { show: showFirst, compare, use });
 
 catalogue.addEventListener("end", ({ detail: job }) => {
+  showUsage().catch(() => {});
   if (job.label === OWN) return;
   if (job.state === "failed") complain(`${job.label || job.command}: ${job.reason || "failed"}`);
   else say(`${job.label || job.command} is ${job.state}.`);
@@ -81,8 +88,9 @@ catalogue.addEventListener("end", ({ detail: job }) => {
 byId("wrong-close").onclick = () => { byId("wrong").hidden = true; };
 byId("skip").onclick = () => byId("views").focus();
 
+task.show();
 attempt(async () => {
+  await showUsage();
   await catalogue.load();
-  showUsage(catalogue);
   document.body.dataset.state = "ready";
 });

@@ -7,10 +7,21 @@ class Frame {
     this.look = null;
     if (!this.around) return;
     document.body.dataset.framed = "";
+    this.listenToDrags();
     window.addEventListener("message", (event) => {
       const message = event.source === this.around ? event.data?.geoAdapt : null;
       if (message && Object.hasOwn(heard, message.kind)) heard[message.kind](message);
     });
+  }
+
+  /** Files that are dropped are for the page around: it takes them once it knows that something is dragged. */
+  listenToDrags() {
+    for (const kind of ["dragover", "drop"]) {
+      document.addEventListener(kind, (event) => {
+        event.preventDefault();
+        this.tell("dragging", {});
+      });
+    }
   }
 
   tell(kind, content) {
