@@ -18,7 +18,7 @@ fn model() -> (&'static str, String) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("cube.meshb"), crate::service::cube(3)).unwrap();
     let mut command = program();
-    command.current_dir(&folder).args(["convert", "cube.meshb", "cube.stl", "--text"]);
+    command.current_dir(&folder).args(["convert", "cube.meshb", "cube.stl"]);
     assert!(command.output().unwrap().status.success());
     ("cube.stl", std::fs::read_to_string(folder.path().join("cube.stl")).unwrap())
 }
@@ -147,7 +147,7 @@ fn a_job_is_followed_and_cancelled() {
     browser.script(
         "document.querySelector('[name=what][value=adapt]').click();
          const form = document.getElementById('adapt').elements;
-         [form.by.value, form.target.value] = ['analytic', '60000'];
+         [form.by.value, form.target.value] = ['analytic', '200000'];
          document.getElementById('adapt').dispatchEvent(new Event('input'));
          form.analytic.value = 'polar-2'; form.start.click()",
     );
