@@ -131,8 +131,9 @@ fn from_the_drop_of_a_model_to_a_download() {
         std::thread::sleep(Duration::from_millis(50));
     }
 
+    // What cannot be undone wants to be said twice.
     browser.tab_to("#jobs li:first-child [data-part=remove]");
-    browser.keys(ENTER);
+    browser.keys(&ENTER.repeat(2));
     browser.wait("document.querySelectorAll('#jobs > li').length === 1");
     assert_eq!(browser.errors(), Vec::<Value>::new());
 }

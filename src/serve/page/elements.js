@@ -19,6 +19,23 @@ export function button(text, act, properties = {}) {
   return make("button", { type: "button", textContent: text, onclick: () => attempt(act), ...properties });
 }
 
+/** A button for what cannot be undone: it wants to be pressed twice. */
+export function carefulButton(text, what, act, properties = {}) {
+  const label = `${text} ${what}`;
+  const name = (short, long) => {
+    one.textContent = short;
+    one.setAttribute("aria-label", long);
+  };
+  const one = button(text, () => {
+    if (one.textContent !== text) return act();
+    name("Really?", `Really? ${label}`);
+    say(`Press again: ${label}`);
+    setTimeout(() => name(text, label), 5000);
+    return undefined;
+  }, { ...properties, "aria-label": label });
+  return one;
+}
+
 /** Does something that may fail, and tells why. */
 export async function attempt(act) {
   byId("wrong").hidden = true;
@@ -54,12 +71,13 @@ export function update(list, lines) {
   });
   const isSame = wanted.length === list.childElementCount && wanted.every((line, i) => list.children[i] === line);
   if (isSame) return;
-  const focus = document.activeElement?.dataset.part, of = document.activeElement?.closest("[data-key]")?.dataset.key;
+  const focused = document.activeElement, of = focused?.closest("[data-key]"), at = [...list.children].indexOf(of);
   list.replaceChildren(...wanted);
-  if (of && !list.contains(document.activeElement)) {
-    const line = [...list.children].find((one) => one.dataset.key === of);
-    (line?.querySelector(`[data-part="${CSS.escape(focus || "")}"]`) || line?.querySelector("button, summary"))?.focus({ preventScroll: true });
-  }
+  // Whoever was on a line that has changed is on the new one; on one that has gone, on the next.
+  if (at < 0) return;
+  const line = wanted.find((one) => one.dataset.key === of.dataset.key) || wanted[Math.min(at, wanted.length - 1)];
+  const part = line === of ? focused : line?.querySelector(`[data-part="${CSS.escape(focused.dataset.part || "")}"]`) || line?.querySelector("button, summary");
+  (part || list).focus({ preventScroll: true });
 }
 
 /** What was open in a line stays open. */

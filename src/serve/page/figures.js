@@ -58,8 +58,9 @@ export function showFigures(all) {
   const rows = ROWS.map(([name, text]) => [name, known.map(({ of }) => text(of))]).filter(([, texts]) => texts.some((text) => text !== "–"));
   const body = rows.map(([name, texts]) => make("tr", {}, make("th", { scope: "row", textContent: name }), ...texts.map((textContent) => make("td", { textContent }))));
   byId("sizes").replaceChildren(make("caption", { textContent: "Figures" }), head(), make("tbody", {}, ...body));
-  histogram(byId("ratios"), "Mean ratio of tetrahedra, in the metric", known.map((one) => one.of.mean_ratios), head);
-  histogram(byId("lengths"), "Length of edges, in the metric", known.map((one) => one.of.edge_lengths), head);
+  const inWhat = known.every(({ of }) => of.metric) ? "in the metric" : known.some(({ of }) => of.metric) ? "in the metric, where there is one" : "in space";
+  histogram(byId("ratios"), `Mean ratio of tetrahedra, ${inWhat}`, known.map((one) => one.of.mean_ratios), head);
+  histogram(byId("lengths"), `Length of edges, ${inWhat}`, known.map((one) => one.of.edge_lengths), head);
 }
 
 const ends = ({ low, high }) => (low === null ? "≤ 0" : high === null ? `> ${short(low)}` : `${short(low)} – ${short(high)}`);

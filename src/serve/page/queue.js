@@ -1,7 +1,7 @@
 // The jobs: how far each is, and what can be done with what it made.
 import { OWN, hasEnded } from "./catalogue.js";
 import { downloads } from "./downloads.js";
-import { button, byId, grouped, make, seconds, say, update } from "./elements.js";
+import { button, byId, carefulButton, grouped, make, seconds, say, update } from "./elements.js";
 import { jobPath, textOf } from "./service.js";
 import { meshOf } from "./things.js";
 
@@ -72,10 +72,10 @@ function line(catalogue, job, { show, compare, use }) {
       mesh && named("Show", () => show(mesh), "show"),
       mesh && named("Compare", () => compare(mesh), "compare"),
       mesh && named("Adapt", () => use(mesh), "use"),
-      named("Remove", async () => {
+      carefulButton("Remove", title, async () => {
         await catalogue.removeJob(job.id);
         say(title + " was removed.");
-      }, "remove")),
+      }, { "data-part": "remove" })),
     (catalogue.results.get(job.id) || []).length > 0 && downloads(catalogue, job, mesh, title),
     logOf(job, title));
 }

@@ -1,5 +1,5 @@
 // The files that went up: dropped or chosen, listed, shown, removed.
-import { attempt, button, byId, bytes, complain, make, say, update } from "./elements.js";
+import { attempt, button, byId, bytes, carefulButton, complain, make, say, update } from "./elements.js";
 import { ACCEPTED, kindOf, ofFile } from "./things.js";
 import { upload } from "./upload.js";
 
@@ -62,7 +62,7 @@ function list(catalogue, open) {
       make("span", { className: "buttons" },
         isSeen && button("Open", () => open(one), { "data-part": "open", "aria-label": "Open " + file.name }),
         make("a", { href: `/v1/files/${file.id}/content`, download: file.name, textContent: "Download", "aria-label": "Download " + file.name, "data-part": "get" }),
-        button("Remove", () => catalogue.removeFile(file.id), { "data-part": "remove", "aria-label": "Remove " + file.name })));
+        carefulButton("Remove", file.name, () => catalogue.removeFile(file.id), { "data-part": "remove" })));
     return [file.id, file.name, build];
   });
   update(byId("files"), lines);

@@ -44,7 +44,8 @@ export class Task {
   things() {
     const of = (...kinds) => thingsOf(this.catalogue, kinds);
     const went = (kind) => of(kind).filter((one) => !one.job), made = of("model").filter((one) => one.job);
-    return { sources: [...went("model"), ...went("surface"), ...went("mesh"), ...made], meshes: of("mesh"), models: of("model"), fields: of("field") };
+    const fields = [...went("field"), ...of("field").filter((one) => one.job)];
+    return { sources: [...went("model"), ...went("surface"), ...went("mesh"), ...made], meshes: of("mesh"), models: of("model"), fields };
   }
 
   /** Goes on with a thing: a model is meshed, a mesh adapted. */

@@ -4,13 +4,18 @@ import { ask, transmit } from "./service.js";
 /** Bytes of a piece, and above which there are pieces. */
 const PIECE = 32 << 20;
 
+/** Most bytes of a name. */
+const LONGEST = 90;
+
 /** How often a piece is tried. */
 const TRIES = 5;
 
 /** A name that the service takes: letters, digits and a few signs. */
 export function plainName(name) {
   const plain = name.replace(/[^\p{L}\p{N}._\-+ ()=,]/gu, "_").replace(/^[.\- ]+/, "").replace(/[ .]+$/, "");
-  const cut = [...plain].slice(-60).join("");
+  // What is made of it has longer names.
+  let cut = plain;
+  while (new TextEncoder().encode(cut).length > LONGEST) cut = cut.slice(1);
   return cut || "file";
 }
 
