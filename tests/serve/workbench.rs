@@ -87,7 +87,8 @@ fn from_the_drop_of_a_model_to_a_download() {
     shown(&browser, "first", "cube.meshb");
     if cfg!(feature = "occt") {
         browser.enter(Some("#first iframe"));
-        let names = browser.script("return [...document.querySelectorAll('#surfaces input.name')].map(one => one.value)");
+        let names =
+            browser.script("return [...document.querySelectorAll('#surfaces input.name')].map(one => one.value)");
         assert!(names.as_array().unwrap().contains(&Value::from("inlet")), "{names}");
         browser.enter(None);
     }
@@ -174,7 +175,9 @@ fn who_has_no_token_is_asked_for_it() {
     browser.wait("document.getElementById('token-wrong').textContent");
     browser.script("document.getElementById('token').value = ''");
     browser.keys(&format!("{}{ENTER}", token.trim()));
-    browser.wait("document.body.dataset.state === 'ready' && document.getElementById('about').textContent.includes('ann')");
+    browser.wait(
+        "document.body.dataset.state === 'ready' && document.getElementById('about').textContent.includes('ann')",
+    );
     // No script can read it.
     assert_eq!(browser.script("return document.cookie"), "");
     browser.errors();
@@ -192,10 +195,22 @@ fn the_page_loads_nothing_from_elsewhere() {
     assert!(policy.contains("default-src 'none'") && !policy.contains("unsafe"), "{policy}");
     let text = page.text();
     assert!(!text.contains("://") && !text.contains(" style=") && !text.contains(" onclick"), "{text}");
-    let parts = text.split('"').filter(|word| word.starts_with("workbench/"));
-    for part in parts {
-        let answer = service.get(&format!("/{part}"));
-        assert_eq!(answer.status, 200, "{part}");
-        assert_eq!(answer.header("x-content-type-options"), Some("nosniff"), "{part}");
+    // All that it asks for is there, and all that this asks for.
+    let mut parts: Vec<String> =
+        text.split('"').filter_map(|word| word.strip_prefix("workbench/")).map(str::to_owned).collect();
+    let mut seen = 0;
+    while let Some(part) = parts.get(seen).cloned() {
+        let answer = service.get(&format!("/workbench/{part}"));
+        assert_eq!((answer.status, answer.header("x-content-type-options")), (200, Some("nosniff")), "{part}");
+        let text = answer.text();
+        let kind = answer.header("content-type").unwrap();
+        assert_eq!(kind.starts_with("text/javascript"), part.ends_with(".js"), "{part}");
+        let more = text.split('"').filter_map(|word| word.strip_prefix("./")).map(str::to_owned);
+        let new: Vec<String> = more.filter(|name| !parts.contains(name)).collect();
+        parts.extend(new);
+        let own = text.replace("http://www.w3.org/2000/svg", "");
+        assert!(!own.contains("http:") && !own.contains("https:") && !own.contains("innerHTML"), "{part}");
+        seen += 1;
     }
+    assert!(seen > 15, "{parts:?}");
 }

@@ -115,14 +115,19 @@ impl Browser {
 
     /// Scripts run in a frame from now on; in the page itself without one.
     pub fn enter(&self, frame: Option<&str>) {
-        let id = frame.map_or(Value::Null, |selector| self.script(&format!("return document.querySelector('{selector}')")));
+        let id =
+            frame.map_or(Value::Null, |selector| self.script(&format!("return document.querySelector('{selector}')")));
         self.command("POST", "frame", Some(json!({ "id": id })));
     }
 
     /// Puts downloads into a folder, without a question.
     pub fn download_to(&self, folder: &std::path::Path) {
         let params = json!({ "behavior": "allow", "downloadPath": folder });
-        self.command("POST", "goog/cdp/execute", Some(json!({ "cmd": "Browser.setDownloadBehavior", "params": params })));
+        self.command(
+            "POST",
+            "goog/cdp/execute",
+            Some(json!({ "cmd": "Browser.setDownloadBehavior", "params": params })),
+        );
     }
 
     /// What a function's body in JavaScript returns.
