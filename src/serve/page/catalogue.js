@@ -1,8 +1,9 @@
 // What the service has for us: files, jobs with their results; and jobs that are asked for and followed.
 import { ask, jobPath, resultPath } from "./service.js";
 
-/** The label of jobs that the workbench needs for itself: pages, figures, conversions. */
-export const OWN = "workbench";
+/** The label of jobs that the workbench needs for itself: pages, figures, conversions. Those of another version of the program are made anew. */
+const OWN = "workbench";
+export const isOwn = (job) => job.label.split(" ")[0] === OWN;
 
 /** How many jobs are followed by a stream each: a browser has six connections to a server. */
 const STREAMS = 3;
@@ -26,14 +27,16 @@ export class Catalogue extends EventTarget {
     /** Names files that were made here, by the contents that they are of. */
     this.names = new Map();
     this.timer = 0;
+    this.ownLabel = OWN;
   }
 
   changed() {
     this.dispatchEvent(new Event("change"));
   }
 
-  /** Looks at all anew. */
-  async load() {
+  /** Looks at all anew; the program has this version. */
+  async load(version) {
+    this.ownLabel = `${OWN} ${version}`;
     const [files, jobs] = await Promise.all([ask("GET", "/v1/files"), ask("GET", "/v1/jobs?limit=200")]);
     this.files = files;
     const seen = new Set(jobs.map((job) => job.id));
@@ -133,14 +136,14 @@ export class Catalogue extends EventTarget {
     return job;
   }
 
-  /** The job when it has ended. */
-  whenEnded(id) {
+  /** The job when it has ended; `told(job)` hears of it before. */
+  whenEnded(id, told = () => {}) {
     return new Promise((resolve) => {
       const look = () => {
         const job = this.jobs.get(id);
-        if (job && !(hasEnded(job) && this.results.has(id))) return;
+        if (job && !(hasEnded(job) && this.results.has(id))) return told(job);
         this.removeEventListener("change", look);
-        resolve(job || null);
+        return resolve(job || null);
       };
       this.addEventListener("change", look);
       look();
@@ -148,12 +151,12 @@ export class Catalogue extends EventTarget {
   }
 
   /** A job of the workbench's own: one that is there already, or a new one; when it has ended. */
-  async have(request) {
+  async have(request, told) {
     const keyOf = (command, words, files) => JSON.stringify([command, words, Object.entries(files).sort()]);
     const wanted = keyOf(request.command, request.words, request.files);
-    const is = (job) => job.label === OWN && ["queued", "running", "done"].includes(job.state) && keyOf(job.command, job.request.arguments, job.request.files) === wanted;
-    const job = this.list().find(is) || await this.start(request, OWN);
-    const end = await this.whenEnded(job.id);
+    const is = (job) => job.label === this.ownLabel && ["queued", "running", "done"].includes(job.state) && keyOf(job.command, job.request.arguments, job.request.files) === wanted;
+    const job = this.list().find(is) || await this.start(request, this.ownLabel);
+    const end = await this.whenEnded(job.id, told);
     if (!end) throw new Error("The job was removed.");
     if (!this.results.get(end.id)?.length) throw new Error(end.reason || "The job has made nothing.");
     return end;
@@ -193,7 +196,7 @@ export class Catalogue extends EventTarget {
 
   /** Forgets the workbench's own jobs on contents that are gone. */
   async removeOwn(ids) {
-    const own = this.list().filter((job) => job.label === OWN && hasEnded(job) && Object.values(job.request.files).some((file) => ids.has(file)));
+    const own = this.list().filter((job) => isOwn(job) && hasEnded(job) && Object.values(job.request.files).some((file) => ids.has(file)));
     for (const job of own) await this.removeJob(job.id).catch(() => {});
   }
 

@@ -30,6 +30,8 @@ export class Pane {
   }
 
   clear() {
+    // A view that waits for its turn is not wanted any more.
+    if (this.job?.state === "queued") this.catalogue.cancel(this.job.id).catch(() => {});
     this.frame?.remove();
     Object.assign(this, { thing: null, job: null, frame: null, picked: null });
     this.element.hidden = true;
@@ -46,7 +48,11 @@ export class Pane {
     this.stage.setAttribute("aria-busy", "true");
     try {
       const page = stemOf(thing.name) + ".html";
-      const job = await this.catalogue.have({ command: "view", words: [thing.name, "-o", page], files: filesOf(this.catalogue, thing) });
+      const job = await this.catalogue.have({ command: "view", words: [thing.name, "-o", page], files: filesOf(this.catalogue, thing) }, (known) => {
+        if (this.thing !== thing) return;
+        this.job = known;
+        this.stage.firstChild.textContent = known.state === "queued" ? "The view waits for its turn …" : "The view is being made …";
+      });
       if (this.thing !== thing) return;
       if (!this.catalogue.made(job, page)) throw new Error(job.reason || "It cannot be shown.");
       this.job = job;
@@ -71,7 +77,7 @@ export class Pane {
     const told = data?.geoAdapt;
     if (typeof told !== "object" || told === null) return;
     if (told.kind === "picked") this.pick(told);
-    else if (told.kind === "names" && typeof told.content === "object") this.keep(told);
+    else if (told.kind === "names" && told.content && typeof told.content === "object") this.keep(told);
     else if (["look", "ready", "dragging"].includes(told.kind)) this.told(this, told);
   }
 

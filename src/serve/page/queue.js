@@ -1,5 +1,5 @@
 // The jobs: how far each is, and what can be done with what it made.
-import { OWN, hasEnded } from "./catalogue.js";
+import { hasEnded, isOwn } from "./catalogue.js";
 import { downloads } from "./downloads.js";
 import { button, byId, carefulButton, grouped, make, seconds, say, update } from "./elements.js";
 import { jobPath, textOf } from "./service.js";
@@ -35,7 +35,7 @@ export function beginQueue(catalogue, acts) {
 }
 
 function list(catalogue, acts) {
-  const isSeen = (job) => byId("own-jobs").checked || job.label !== OWN;
+  const isSeen = (job) => byId("own-jobs").checked || !isOwn(job);
   const jobs = catalogue.list().filter(isSeen);
   const lines = jobs.map((job) => {
     const made = catalogue.results.get(job.id);

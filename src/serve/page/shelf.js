@@ -1,6 +1,6 @@
 // The files that went up: dropped or chosen, listed, shown, removed.
 import { attempt, button, byId, bytes, carefulButton, complain, make, say, update } from "./elements.js";
-import { ACCEPTED, kindOf, ofFile } from "./things.js";
+import { kindOf, ofFile } from "./things.js";
 import { upload } from "./upload.js";
 
 const KINDS = { model: "CAD model", surface: "surface", mesh: "mesh", field: "field or metric", other: "beside others" };
@@ -8,7 +8,6 @@ const KINDS = { model: "CAD model", surface: "surface", mesh: "mesh", field: "fi
 /** `open(thing)` shows one, and goes on with it. */
 export function beginShelf(catalogue, open) {
   const input = byId("file");
-  input.accept = ACCEPTED;
   const take = (files) => attempt(() => takeIn(catalogue, [...files], open));
   input.onchange = async () => {
     const files = [...input.files];

@@ -1,12 +1,10 @@
 // Models, meshes and fields, whether they went up or were made by a job; and what belongs beside each.
-import { OWN } from "./catalogue.js";
+import { isOwn } from "./catalogue.js";
 
 const MODELS = ["step", "stp", "iges", "igs", "brep", "egads"];
 const SURFACES = ["stl", "obj", "ply"];
 const MESHES = ["meshb", "mesh", "su2", "vtu", "vtk", "msh", "msh2", "cgns", "xdmf", "xmf", "ugrid", "inp", "nas", "bdf"];
 const FIELDS = ["solb", "sol", "csv", "dat"];
-
-export const ACCEPTED = [...MODELS, ...SURFACES, ...MESHES, ...FIELDS, "json", "h5", "mapbc"].map((ending) => "." + ending).join(",");
 
 export const endingOf = (name) => name.slice(name.lastIndexOf(".") + 1).toLowerCase();
 export const stemOf = (name) => name.slice(0, name.lastIndexOf(".") < 0 ? undefined : name.lastIndexOf(".")).replace(/\.(b8|lb8)$/, "");
@@ -32,7 +30,7 @@ export const ofFile = (file) => thing(file.id, file.name, null);
 
 /** All things of these kinds: results first, the newest first, then what went up. */
 export function thingsOf(catalogue, kinds) {
-  const made = catalogue.list().filter((job) => job.label !== OWN).flatMap((job) => madeBy(catalogue, job));
+  const made = catalogue.list().filter((job) => !isOwn(job)).flatMap((job) => madeBy(catalogue, job));
   return [...made, ...catalogue.files.map(ofFile)].filter((one) => kinds.includes(one.kind));
 }
 

@@ -1,5 +1,5 @@
 // The workbench: what its parts have to do with each other.
-import { Catalogue, OWN } from "./catalogue.js";
+import { Catalogue, isOwn } from "./catalogue.js";
 import { attempt, byId, bytes, complain, grouped, say } from "./elements.js";
 import { figuresOf, showFigures } from "./figures.js";
 import { Pane } from "./pane.js";
@@ -60,6 +60,7 @@ async function showUsage() {
   const me = await ask("GET", "/v1/me");
   byId("about").textContent = `${me.version} · ${me.owner === "local" ? "this machine" : me.owner} · ${bytes(me.bytes)} of ${bytes(me.most_bytes)}`;
   byId("about").title = `A job may make ${grouped(me.most_vertices)} vertices`;
+  return me;
 }
 
 beginSession();
@@ -76,7 +77,7 @@ beginQueue(catalogue, { show: showFirst, compare, use });
 
 catalogue.addEventListener("end", ({ detail: job }) => {
   showUsage().catch(() => {});
-  if (job.label === OWN) return;
+  if (isOwn(job)) return;
   if (job.state === "failed") complain(`${job.label || job.command}: ${job.reason || "failed"}`);
   else say(`${job.label || job.command} is ${job.state}.`);
   const mesh = meshOf(catalogue, job);
@@ -90,7 +91,7 @@ byId("skip").onclick = () => byId("views").focus();
 
 task.show();
 attempt(async () => {
-  await showUsage();
-  await catalogue.load();
+  const { version } = await showUsage();
+  await catalogue.load(version);
   document.body.dataset.state = "ready";
 });
