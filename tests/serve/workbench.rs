@@ -74,12 +74,14 @@ fn from_the_drop_of_a_model_to_a_download() {
     drop_file(&browser, (name, &text));
     shown(&browser, "first", name);
 
-    // A face is clicked and named; its name goes along to what is made of the model.
-    browser.drag(middle(&browser), [0, 0]);
-    browser.wait("!document.querySelector('#first form').hidden");
-    browser.tab_to("#first input");
-    browser.keys(&format!("inlet{ENTER}"));
-    browser.wait("document.getElementById('said').textContent.startsWith('Names are kept')");
+    // A face is clicked and named; its name goes along to what is made of the model. STL has names inside.
+    if cfg!(feature = "occt") {
+        browser.drag(middle(&browser), [0, 0]);
+        browser.wait("!document.querySelector('#first form').hidden");
+        browser.tab_to("#first input");
+        browser.keys(&format!("inlet{ENTER}"));
+        browser.wait("document.getElementById('said').textContent.startsWith('Names are kept')");
+    }
 
     // From here on without a mouse.
     browser.tab_to("#bootstrap [name=start]");

@@ -1,7 +1,7 @@
 // A view: a page of `view` in a frame of its own without rights, and what it tells of clicks, names and the camera.
 import { complain, make, say } from "./elements.js";
 import { resultPath } from "./service.js";
-import { filesOf, namesFileOf, stemOf } from "./things.js";
+import { filesOf, namesFileOf, stemOf, takesNames } from "./things.js";
 import { upload } from "./upload.js";
 
 /** Longest name that is taken from a frame or a user. */
@@ -83,7 +83,7 @@ export class Pane {
 
   pick({ reference, name }) {
     this.picked = Number.isInteger(reference) ? reference : null;
-    this.face.hidden = this.picked === null;
+    this.face.hidden = this.picked === null || !takesNames(this.thing);
     if (this.picked === null) return;
     this.number.textContent = String(this.picked);
     this.name.value = typeof name === "string" ? name.slice(0, LONGEST) : "";
@@ -93,6 +93,7 @@ export class Pane {
   keep({ content, reference, name }) {
     if (reference === this.picked && typeof name === "string") this.name.value = name.slice(0, LONGEST);
     const { thing, catalogue } = this, file = namesFileOf(thing);
+    if (!takesNames(thing)) return complain(`${thing.name} has its names inside: change them there.`);
     const blob = new Blob([JSON.stringify(content, null, 2) + "\n"], { type: "application/json" });
     this.saving = this.saving.then(async () => {
       const old = catalogue.names.get(thing.id);
@@ -102,5 +103,6 @@ export class Pane {
       if (old && old.id !== known.id && catalogue.files.some((one) => one.id === old.id)) await catalogue.removeFile(old.id).catch(() => {});
       say(`Names are kept: ${file}`);
     }).catch((error) => complain(`The names were not kept: ${error.message}`));
+    return undefined;
   }
 }

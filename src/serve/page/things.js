@@ -34,14 +34,18 @@ export function thingsOf(catalogue, kinds) {
   return [...made, ...catalogue.files.map(ofFile)].filter((one) => kinds.includes(one.kind));
 }
 
+/** Whether names can lie beside a thing; other formats have them inside. */
+export const takesNames = (one) => one.kind === "model" || ["mesh", "meshb"].includes(endingOf(one.name));
+
 /** The names file that a thing has or would get: of a model its whole name with more, of a mesh as the viewer says. */
 export const namesFileOf = (one) => (one.kind === "model" ? one.name : stemOf(one.name)) + ".names.json";
 
 /** Names and contents of the files that a command shall find: the thing, its names, its metric. */
 export function filesOf(catalogue, one) {
   const stem = stemOf(one.name), there = one.job ? catalogue.results.get(one.job.id) || [] : catalogue.files;
-  const endings = one.kind === "model" || one.kind === "surface" ? ["names.json"] : ["names.json", "solb", "sol", "h5", "mapbc"];
-  const wanted = [...endings.map((ending) => `${stem}.${ending}`), one.name + ".names.json"];
+  const endings = one.kind === "mesh" ? ["solb", "sol", "h5", "mapbc"] : [];
+  const names = takesNames(one) ? [`${stem}.names.json`, `${one.name}.names.json`] : [];
+  const wanted = [...endings.map((ending) => `${stem}.${ending}`), ...names];
   const files = {};
   // The newest comes first in a list, so it is the one that stays.
   for (const file of [...there].reverse()) if (wanted.includes(file.name)) files[file.name] = file.id;

@@ -12,8 +12,8 @@ import { meshOf } from "./things.js";
 
 const catalogue = new Catalogue();
 
-/** Jobs that were started here: the last of them is shown when it has ended. */
-const started = new Set();
+/** Jobs that were started here, with what was seen then: their mesh is shown, unless the user has opened something else since. */
+const started = new Map();
 
 /** What a view tells: how it looks goes to the other one, so that the same is seen of both. */
 function told(pane, message) {
@@ -64,7 +64,7 @@ async function showUsage() {
 }
 
 beginSession();
-const task = new Task(catalogue, (job) => started.add(job.id));
+const task = new Task(catalogue, (job) => started.set(job.id, panes[0].thing));
 const use = (thing) => {
   task.use(thing);
   say(`${thing.name} is chosen for the next step.`);
@@ -80,8 +80,9 @@ catalogue.addEventListener("end", ({ detail: job }) => {
   if (isOwn(job)) return;
   if (job.state === "failed") complain(`${job.label || job.command}: ${job.reason || "failed"}`);
   else say(`${job.label || job.command} is ${job.state}.`);
-  const mesh = meshOf(catalogue, job);
-  if (!mesh || !started.delete(job.id)) return;
+  const mesh = meshOf(catalogue, job), isExpected = started.has(job.id) && started.get(job.id) === panes[0].thing;
+  started.delete(job.id);
+  if (!mesh || !isExpected) return;
   task.use(mesh);
   if (!panes[1].thing) attempt(() => show(panes[0], mesh));
 });
