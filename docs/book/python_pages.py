@@ -14,7 +14,7 @@ import griffe
 # Modules that users name, though the package itself does not import all of them; the others are known by what the package takes from them.
 NAMED = ["metric", "examples", "errors", "program", "accessor"]
 # In the order of a reader's way.
-ORDER = ["mesh", "model", "work", "adapting", "metric", "tensors", "looping", "errors", "examples", "program", "accessor"]
+ORDER = ["mesh", "model", "work", "adapting", "metric", "tensors", "looping", "server", "server_metric", "served", "jobs", "errors", "examples", "program", "accessor"]
 WIDTH = 100
 
 

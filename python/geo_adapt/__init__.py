@@ -17,10 +17,14 @@ from importlib.metadata import version as _version
 from . import _load as _load  # first
 from . import errors, examples, metric, program
 from .adapting import Adapter, Parents, Progress, Result, adapt
-from .errors import Error, FileError, InputError, MeshError, MetricError, ModelError, ProgramError
+from .errors import Error, FileError, InputError, MeshError, MetricError, ModelError, ProgramError, ServerError
+from .jobs import File, Job, JobProgress
 from .looping import Cycle, Step, cycle
 from .mesh import Mesh, read_sol, write_sol
 from .model import Closest, Edge, Face, Model, Vertex
+from .served import Adaptation, ServedModel
+from .server import Server, connect
+from .server_metric import ServerMetric
 from .tensors import full, packed
 from .work import bootstrap, classify, inspect, transfer
 
@@ -30,14 +34,18 @@ except _NotFound:  # from the sources
     __version__ = "0"
 
 __all__ = [
+    "Adaptation",
     "Adapter",
     "Closest",
     "Cycle",
     "Edge",
     "Error",
     "Face",
+    "File",
     "FileError",
     "InputError",
+    "Job",
+    "JobProgress",
     "Mesh",
     "MeshError",
     "MetricError",
@@ -47,11 +55,16 @@ __all__ = [
     "ProgramError",
     "Progress",
     "Result",
+    "ServedModel",
+    "Server",
+    "ServerError",
+    "ServerMetric",
     "Step",
     "Vertex",
     "adapt",
     "bootstrap",
     "classify",
+    "connect",
     "cycle",
     "errors",
     "examples",

@@ -7,7 +7,7 @@ import os
 import tempfile
 import warnings
 import webbrowser
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -335,20 +335,7 @@ class Mesh:
         IPython.display.HTML or Path
             In a notebook what shows the page; else the file of the page.
         """
-        page = Path(tempfile.mkdtemp(prefix="geo-adapt-view-")) / "mesh.html"
-        self.write_page(page, field, **options)
-        try:
-            shell = __import__("IPython").get_ipython()
-        except ImportError:
-            shell = None
-        if shell is not None and hasattr(shell, "kernel"):
-            from html import escape
-
-            text = escape(page.read_text(encoding="utf-8"), quote=True)
-            html = f'<iframe srcdoc="{text}" width="100%" height="600" style="border:0"></iframe>'
-            return __import__("IPython.display", fromlist=["HTML"]).HTML(html)
-        webbrowser.open(page.as_uri())
-        return page
+        return _shown(lambda page: self.write_page(page, field, **options))
 
     def write_page(self, path: str | os.PathLike[str], field: str | None = None, **options: object) -> None:
         """Writes a page for the browser (.html), or a picture (.png): those of ``geo-adapt view``.
@@ -407,6 +394,24 @@ class Mesh:
         }
         cells = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows.items())
         return f"<table>{cells}</table>"
+
+
+def _shown(write: Callable[[Path], None]) -> Any:
+    """Shows the page that is written: in a notebook as a page within it, elsewhere in the browser."""
+    page = Path(tempfile.mkdtemp(prefix="geo-adapt-view-")) / "mesh.html"
+    write(page)
+    try:
+        shell = __import__("IPython").get_ipython()
+    except ImportError:
+        shell = None
+    if shell is not None and hasattr(shell, "kernel"):
+        from html import escape
+
+        text = escape(page.read_text(encoding="utf-8"), quote=True)
+        html = f'<iframe srcdoc="{text}" width="100%" height="600" style="border:0"></iframe>'
+        return __import__("IPython.display", fromlist=["HTML"]).HTML(html)
+    webbrowser.open(page.as_uri())
+    return page
 
 
 def _shaped(values: Floats) -> Floats:

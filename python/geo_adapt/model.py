@@ -8,7 +8,7 @@ import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,9 @@ import numpy.typing as npt
 from . import _kernel, program
 from .errors import InputError, ModelError
 from .tensors import Floats
+
+if TYPE_CHECKING:
+    from .jobs import File
 
 #: Endings of files with boundary representations.
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".egads")
@@ -216,6 +219,10 @@ class Model:
         shutil.copyfile(self.path, copy)
         Path(f"{copy}.names.json").write_text(json.dumps(self._labels))
         return copy
+
+    def _for_service(self) -> tuple[Path | File, bytes | None]:
+        """What goes to a service: the file, or where it is there, and its names."""
+        return self.path, json.dumps(self._labels).encode() if self._labels else None
 
     @property
     def _all(self) -> dict[str, Any]:

@@ -213,11 +213,16 @@ def transfer(
             raise InputError("a metric is not transferred conservatively: give one of the two")
         return _kernel.transfer(old, packed(values, order), new, "metric", threads or 0)
     table, shape = rows(values, len(old.points), "values")
+    found = _kernel.transfer(old, table, new, _method(conservative), threads or 0)
+    return found.reshape(len(found), *shape)
+
+
+def _method(conservative: bool | str) -> str:
+    """How values are brought along: "linear", "mean" or "mass"."""
     method = "linear" if conservative is False else "mean" if conservative is True else conservative
     if method not in ("linear", "mean", "mass"):
         raise InputError(f'conservative {conservative!r}: True, "mean" or "mass"')
-    found = _kernel.transfer(old, table, new, method, threads or 0)
-    return found.reshape(len(found), *shape)
+    return method
 
 
 def inspect(

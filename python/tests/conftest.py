@@ -28,6 +28,20 @@ def model(step: Path) -> geo_adapt.Model:
 
 
 @pytest.fixture(scope="session")
+def url() -> Iterator[str]:
+    """A service of this program, with all that is default."""
+    if subprocess.run([geo_adapt.program.PATH, "serve", "--help"], capture_output=True, check=False).returncode != 0:
+        pytest.skip("the program has no `serve`")
+    with geo_adapt.examples.service() as url:
+        yield url
+
+
+@pytest.fixture(scope="session")
+def server(url: str) -> geo_adapt.Server:
+    return geo_adapt.connect(url)
+
+
+@pytest.fixture(scope="session")
 def mesh(model: geo_adapt.Model) -> geo_adapt.Mesh:
     return geo_adapt.bootstrap(model)
 

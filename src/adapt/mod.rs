@@ -23,7 +23,7 @@ pub use core::required::{Freeze, held_vertices};
 pub use extract::{Extracted, Joint};
 pub use operations::insertion::centroid::PointCreation;
 pub use operations::reconnection::criteria::Criterion;
-pub use passes::pipeline::GrowthEnd;
+pub use passes::pipeline::{Effort, GrowthEnd};
 pub use references::References;
 pub use run::{Adapted, Options, Part, adapt, adapt_part};
 pub use schedule::work::{KINDS, Kind, Observer, Silent, Work};

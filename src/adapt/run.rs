@@ -103,8 +103,8 @@ pub struct Part<'a> {
     pub triangles: &'a [u32],
     /// The references of the whole mesh, with all triangles outwards.
     pub refs: &'a References,
-    /// Whether what is bad beside them may wait.
-    pub cuts_will_move: bool,
+    /// How much the passes do.
+    pub effort: Effort,
 }
 
 /// Adapts a mesh as [`adapt`] does, or a part of a larger one, whose sizes were checked: its faces to other parts and what is held stay as they
@@ -149,8 +149,7 @@ pub fn adapt_part(
     pipeline.max_vertices = options.max_vertices.unwrap_or(usize::MAX);
     pipeline.effort = match part {
         _ if options.is_draft => Effort::DRAFT,
-        Some(part) if part.cuts_will_move => Effort::BETWEEN_CUTS,
-        _ => Effort::FULL,
+        part => part.map_or(Effort::FULL, |part| part.effort),
     };
     pipeline.run();
     if pipeline.torn {

@@ -2,7 +2,7 @@
 use clap::Command;
 
 /// Commands, by the words that are typed for them, each with its examples.
-const EXAMPLES: [(&str, &[&str]); 31] = [
+const EXAMPLES: [(&str, &[&str]); 36] = [
     (
         "",
         &[
@@ -92,6 +92,17 @@ const EXAMPLES: [(&str, &[&str]); 31] = [
             "geo-adapt model part.step --scale 0.001 -o part-m.brep",
         ],
     ),
+    (
+        "serve",
+        &[
+            "geo-adapt serve",
+            "geo-adapt serve --listen 0.0.0.0:7878 --tls-certificate chain.pem --tls-key key.pem --data /srv/geo-adapt",
+        ],
+    ),
+    ("serve token", &["geo-adapt serve token add ann --label notebook"]),
+    ("serve token add", &["geo-adapt serve token add ann --scopes read --days 30"]),
+    ("serve token list", &["geo-adapt serve token list"]),
+    ("serve token revoke", &["geo-adapt serve token revoke 01a21877eb959270"]),
     ("transfer", &["geo-adapt transfer old.meshb old.solb new.meshb -o new.solb --conservative"]),
     ("tune", &["geo-adapt tune a.meshb --cad wing.step --metric m.solb"]),
     (

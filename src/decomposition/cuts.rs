@@ -75,13 +75,15 @@ fn centre(piece: &Piece, t: usize) -> Vec3 {
 
 /// Where a mesh is cut into parts.
 pub struct Cuts {
-    tree: Tree,
+    /// The planes.
+    pub tree: Tree,
     /// The work that each part is expected to be.
     pub work: Vec<f64>,
 }
 
 /// A tree of cuts. Its leaves are the parts.
-enum Tree {
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Tree {
     /// A part.
     Part(u32),
     /// A plane across an axis: what lies below it, and the rest.
@@ -139,6 +141,17 @@ impl Tree {
                 above[0][*axis] = below[1][*axis];
                 sides[0].put_boxes(below, boxes);
                 sides[1].put_boxes(above, boxes);
+            }
+        }
+    }
+
+    /// Whether a point is no farther than this, along each axis, from one of the planes that bound its part.
+    pub fn is_near(&self, p: Vec3, reach: Vec3) -> bool {
+        match self {
+            Self::Part(_) => false,
+            Self::Plane(axis, at, sides) => {
+                let above = p[*axis] - at;
+                above.abs() <= reach[*axis] || sides[usize::from(above >= 0.0)].is_near(p, reach)
             }
         }
     }

@@ -1,7 +1,7 @@
 //! What is known after a round, beside the pieces: enough to go on from there when the run is killed.
 use super::Error;
 use super::bytes::{put, take};
-use super::cuts::Sample;
+use super::cuts::{Sample, Tree};
 use super::ground::Block;
 use super::part::Done;
 use super::rounds::Became;
@@ -28,6 +28,8 @@ pub struct Journal {
     pub done: Done,
     /// What each round did.
     pub told: Vec<Told>,
+    /// The cuts of the last round of growth, and of those after.
+    pub former: Vec<(u32, Tree)>,
 }
 
 /// The file with what parts became and the samples of their tetrahedra.

@@ -5,13 +5,15 @@
 //! [`rounds`] says what is done when. A [`piece`] is some of the mesh with all that is known there; vertices of several pieces are known by ids
 //! that last. [`cuts`] finds planes that cross few tetrahedra, [`split`] and [`join`] bring the tetrahedra to their parts, [`part`] adapts
 //! one, [`zones`] finds what the cuts have left to be done, and [`outline`] numbers the vertices as one mesh. Pieces lie on a [`shelf`], in
-//! memory or on a disk, and go from rank to rank as [`bytes`]. [`times`] says what parts took.
+//! memory or on a disk, and go from rank to rank as [`bytes`]. [`times`] says what parts took, [`former`] how good the
+//! mesh is where cuts were.
 mod adapting;
 mod begin;
 mod bytes;
 mod cuts;
 mod deal;
 mod finished;
+mod former;
 mod ground;
 mod input;
 mod join;
@@ -34,6 +36,7 @@ mod threads;
 mod times;
 mod zones;
 
+pub use former::{NearCuts, Quality};
 pub use input::{Files, InMemory, Input, MetricOf, Shell, Skin, logs_on};
 pub use rounds::Common;
 pub use run::{Adapted, Given, adapt};

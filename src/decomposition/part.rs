@@ -3,7 +3,7 @@ use super::join::join;
 use super::manifold::{open_faces, resting};
 use super::piece::{Piece, SHARED, WAITING};
 use super::split::split;
-use crate::adapt::{self, Adapted, Error, Extracted, KINDS, Observer, Options, References, Work};
+use crate::adapt::{self, Adapted, Effort, Error, Extracted, KINDS, Observer, Options, References, Work};
 use crate::geometry::Model;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{MatchedFaces, TriangleIndex, sorted3};
@@ -160,7 +160,11 @@ fn adapt_manifold(
         held: &held.vertices,
         triangles: &held.triangles,
         refs,
-        cuts_will_move: !round.is_zone && !round.is_alone,
+        effort: match round {
+            Round { is_zone: true, .. } => Effort::AROUND_CUTS,
+            Round { is_alone: true, .. } => Effort::FULL,
+            _ => Effort::BETWEEN_CUTS,
+        },
     };
     let adapted = adapt::adapt_part(&piece.mesh, &piece.place, Some(part), model, source, options, pool, observer)?;
     let Adapted { extracted, work, growth_end, unrepaired, deviating, geometry } = adapted;

@@ -3,7 +3,7 @@
 //! Where the cuts lie and what becomes of a part depends on the mesh alone. Which rank does it, how many parts are done at once and
 //! where they lie meanwhile does not matter: every list is in the order of the parts.
 use super::Error;
-use super::cuts::{Cuts, Sample, samples};
+use super::cuts::{Cuts, Sample, Tree, samples};
 use super::ground::{Block, Ground};
 use super::input::{Input, Skin};
 use super::join::join;
@@ -101,6 +101,8 @@ pub struct Rounds<'a> {
     pub finished: Vec<(Key, u32)>,
     /// What is not finished.
     pub active: Active,
+    /// The cuts of the last round of growth, and of those after.
+    pub(super) former: Vec<(u32, Tree)>,
     /// The first id that is free.
     pub(super) next_id: u64,
     /// Steps of the plan that are done.
@@ -129,10 +131,22 @@ impl<'a> Rounds<'a> {
         lies_on_it: bool,
     ) -> Result<(Self, Vec<Block>), Error> {
         let active = Active::default();
-        let (done, told, finished) = (Done::default(), Vec::new(), Vec::new());
+        let (done, told, finished, former) = (Done::default(), Vec::new(), Vec::new(), Vec::new());
         let (next_id, steps, finished_vertices, is_ended) = (1 << 40, 0, 0, false);
-        let mut rounds =
-            Self { common, done, told, finished, active, next_id, steps, run, refs, finished_vertices, is_ended };
+        let mut rounds = Self {
+            common,
+            done,
+            told,
+            finished,
+            active,
+            former,
+            next_id,
+            steps,
+            run,
+            refs,
+            finished_vertices,
+            is_ended,
+        };
         if let Some(blocks) = rounds.goes_on() {
             return Ok((rounds, blocks));
         }
@@ -161,12 +175,12 @@ impl<'a> Rounds<'a> {
         let (journal, lists) = found.filter(|_| rounds.iter().all(|other| *other == rounds[0]))?;
         let Lists { mut pieces, samples, mut blocks } = lists;
         let ranks = self.common.ranks.count() as u32;
-        let Journal { round, steps, next_id, finished, done, told, .. } = journal;
+        let Journal { round, steps, next_id, finished, done, told, former, .. } = journal;
         pieces.iter_mut().zip(0..).for_each(|(piece, at)| piece.rank = at % ranks);
         self.finished = finished.into_iter().zip(0..).map(|(key, at)| (key, at % ranks)).collect();
         self.active = Active { round, pieces, samples };
         blocks.iter_mut().zip(0..).for_each(|(block, at)| block.rank = at % ranks);
-        (self.steps, self.next_id, self.done, self.told) = (steps, next_id, done, told);
+        (self.steps, self.next_id, self.done, self.told, self.former) = (steps, next_id, done, told, former);
         Some(blocks)
     }
 
@@ -187,6 +201,7 @@ impl<'a> Rounds<'a> {
                     finished: self.finished.iter().map(|(key, _)| *key).collect(),
                     done: self.done.clone(),
                     told: self.told.clone(),
+                    former: self.former.clone(),
                 };
                 let lists = (&self.active.pieces[..], &self.active.samples[..], blocks);
                 journal.write(folder, lists)
@@ -281,6 +296,9 @@ impl<'a> Rounds<'a> {
         let whole = Sample::box_of(&self.active.samples);
         let samples = std::mem::take(&mut self.active.samples);
         let cuts = Cuts::of(samples, parts, self.common.pool.threads());
+        if divides && parts > 1 {
+            self.former.push((round, cuts.tree.clone()));
+        }
         let cutting = watch.seconds();
         let watch = Stopwatch::start(is_alone);
         let tets = self.active.pieces.iter().map(|piece| piece.tets as usize).sum();

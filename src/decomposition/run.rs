@@ -1,5 +1,6 @@
 //! A run by parts, and what it gives back.
 use super::Error;
+use super::former::NearCuts;
 use super::ground::{self, Ground};
 use super::input::{Input, Skin};
 use super::outline::Numbering;
@@ -7,7 +8,7 @@ use super::part::Done;
 use super::piece::Piece;
 use super::rounds::{Common, Rounds};
 use super::sizes::wanted_vertices;
-use super::slices::Slice;
+use super::slices::{Measured, Slice};
 use super::threads::{Shared, add, sorted};
 use super::times::{Numbered, Stopwatch, Told};
 use crate::adapt::forecast::Forecast;
@@ -165,7 +166,7 @@ impl Adapted<'_> {
 
     fn slice(&self, at: usize, piece: Piece) -> Slice {
         let numbers = self.numbering.of_piece(at, &piece);
-        Slice::of(piece, &numbers)
+        Slice::of(piece, &numbers, self.rounds.felt(at))
     }
 
     /// The boundary of the mesh, of which the caller may make what it likes: nothing here asks for it again.
@@ -182,11 +183,12 @@ impl Adapted<'_> {
         }
     }
 
-    /// The whole mesh in memory, as the kernel gives it: on rank 0, to which the others [give their slices](Self::give_slices).
+    /// The whole mesh in memory, as the kernel gives it, and how good it is near cuts: on rank 0, to which the others
+    /// [give their slices](Self::give_slices).
     ///
     /// # Errors
     /// Where a piece cannot be read.
-    pub fn into_memory(mut self) -> Result<crate::adapt::Adapted, Error> {
+    pub fn into_memory(mut self) -> Result<(crate::adapt::Adapted, NearCuts), Error> {
         let slices = Shared::default();
         self.rounds.for_each_finished(|at, piece| {
             add(&slices, self.slice(at, piece));
@@ -198,7 +200,9 @@ impl Adapted<'_> {
         let more = vertices - mesh.vertices.len();
         mesh.vertices.reserve_exact(more);
         mesh.tets.nodes.reserve_exact(tets);
+        let mut measured = Measured::default();
         for mut slice in slices {
+            measured.add(&mut slice);
             place.projected.extend_from_slice(&slice.vertices);
             mesh.vertices.append(&mut slice.vertices);
             mesh.vertex_refs.append(&mut slice.vertex_refs);
@@ -209,6 +213,6 @@ impl Adapted<'_> {
         place.entities.resize(vertices, Entity::Interior);
         place.parameters.resize(vertices, [0.0; 2]);
         stage("pieces joined");
-        Ok(self.rounds.done.with(self.skin))
+        Ok((self.rounds.done.with(self.skin), measured.statistics().1))
     }
 }

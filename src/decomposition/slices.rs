@@ -1,6 +1,7 @@
 //! The finished pieces as slices of the whole mesh: to be written, and measured.
 use super::Error;
 use super::bytes::{put, take};
+use super::former::{AtCut, Felt, NearCuts, Where, figures_at_cuts};
 use super::outline::Numbers;
 use super::piece::{Piece, SHARED};
 use crate::mesh::adjacency::sorted2;
@@ -10,7 +11,11 @@ use crate::metric::Sym3;
 use crate::metric::quality::edge_length;
 use crate::metric::statistics::{Figures, Part, Statistics};
 use crate::tasks::Team;
+use std::cmp::Reverse;
 use std::sync::{Mutex, PoisonError};
+
+/// An edge that several pieces may have: by the numbers of the whole mesh, ascending, where it lies, and its length in the metric.
+type Doubtful = ([u32; 2], Where, f64);
 
 /// Some of the whole mesh: vertices inside, and tetrahedra, each from a number on.
 pub struct Slice {
@@ -28,16 +33,22 @@ pub struct Slice {
     pub tets: Elements<4>,
     /// Edge lengths, mean ratios, complexity; of edges those that no other piece can have.
     pub figures: Figures,
-    /// The other edges, by the numbers of the whole mesh, ascending, with their lengths in the metric.
-    pub doubtful: Vec<([u32; 2], f64)>,
+    /// Where it lies.
+    place: Where,
+    /// The same figures of what is at a cut.
+    at_cuts: Option<Figures>,
+    /// The other edges.
+    doubtful: Vec<Doubtful>,
 }
 
 impl Slice {
-    /// What a piece is of the whole mesh.
-    pub fn of(piece: Piece, numbers: &Numbers) -> Self {
+    /// What a piece, which has felt these cuts, is of the whole mesh.
+    pub fn of(piece: Piece, numbers: &Numbers, felt: Felt<'_>) -> Self {
         let Numbers { numbers, written, first, first_tet } = numbers;
         let metrics: Vec<Sym3> = piece.logs.iter().map(Sym3::exp).collect();
+        let at_cuts = figures_at_cuts(&piece, felt, &metrics);
         let Piece { mesh, marks, .. } = piece;
+        let near = AtCut::of(felt, &mesh.vertices, &metrics);
         let is_shared = |v: u32| marks[v as usize] & SHARED != 0;
         let doubtful = Mutex::new(Vec::new());
         let counts = |[a, b]: [u32; 2]| {
@@ -47,7 +58,7 @@ impl Slice {
             let [p, q] = [a, b].map(|v| mesh.vertices[v as usize]);
             let length = edge_length(sub(q, p), &metrics[a as usize], &metrics[b as usize]);
             let edge = sorted2([a, b].map(|v| numbers[v as usize]));
-            doubtful.lock().unwrap_or_else(PoisonError::into_inner).push((edge, length));
+            doubtful.lock().unwrap_or_else(PoisonError::into_inner).push((edge, near.place([a, b]), length));
             false
         };
         let (none, none_tagged) = (Elements::default(), Elements::default());
@@ -71,6 +82,8 @@ impl Slice {
             first_tet: *first_tet,
             tets,
             figures,
+            place: felt.place(),
+            at_cuts,
             doubtful,
         }
     }
@@ -79,8 +92,8 @@ impl Slice {
 /// The figures of a whole mesh from those of its boundary and of its slices. Each rank has those of its slices, and rank 0 adds all.
 #[derive(Default)]
 pub struct Measured {
-    figures: Vec<(usize, Figures)>,
-    doubtful: Vec<([u32; 2], f64)>,
+    figures: Vec<(usize, Where, Figures)>,
+    doubtful: Vec<Doubtful>,
 }
 
 impl Measured {
@@ -88,23 +101,28 @@ impl Measured {
     pub fn of(team: Team<'_>, skin: &TetMesh, metrics: &[Sym3]) -> Self {
         let none = Elements::default();
         let part = Part { tets: &none, ..Part::whole(skin) };
-        Self { figures: vec![(0, Figures::in_metric(team, part, metrics, |_| false))], doubtful: Vec::new() }
+        let figures = Figures::in_metric(team, part, metrics, |_| false);
+        Self { figures: vec![(0, Where::Untouched, figures)], doubtful: Vec::new() }
     }
 
     /// Adds those of a slice.
     pub fn add(&mut self, slice: &mut Slice) {
-        self.figures.push((1 + slice.first_tet, slice.figures.clone()));
+        let at = 1 + slice.first_tet;
+        self.figures.push((at, slice.place, slice.figures.clone()));
+        self.figures.extend(slice.at_cuts.take().map(|figures| (at, Where::AtCut, figures)));
         self.doubtful.append(&mut slice.doubtful);
     }
 
     /// As bytes.
     pub fn encoded(&self) -> Vec<u8> {
-        let (edges, lengths): (Vec<_>, Vec<_>) = self.doubtful.iter().copied().unzip();
+        let (edges, lengths): (Vec<_>, Vec<_>) = self.doubtful.iter().map(|&(edge, _, length)| (edge, length)).unzip();
+        let places: Vec<u8> = self.doubtful.iter().map(|&(_, place, _)| place as u8).collect();
         let mut bytes = Vec::new();
         put(&mut bytes, &edges);
+        put(&mut bytes, &places);
         put(&mut bytes, &lengths);
-        for (at, figures) in &self.figures {
-            put(&mut bytes, &[&[*at as u64], &figures.words()[..]].concat());
+        for (at, place, figures) in &self.figures {
+            put(&mut bytes, &[&[*at as u64, *place as u64], &figures.words()[..]].concat());
         }
         bytes
     }
@@ -116,23 +134,41 @@ impl Measured {
     pub fn add_encoded(&mut self, mut bytes: &[u8]) -> Result<(), Error> {
         let from = &mut bytes;
         let edges: Vec<[u32; 2]> = take(from).ok_or(Error::Message)?;
-        self.doubtful.extend(edges.into_iter().zip(take(from).ok_or(Error::Message)?));
+        let places: Vec<u8> = take(from).ok_or(Error::Message)?;
+        let lengths: Vec<f64> = take(from).ok_or(Error::Message)?;
+        for ((edge, place), length) in edges.into_iter().zip(places).zip(lengths) {
+            let place = Where::of_number(place.into()).ok_or(Error::Message)?;
+            self.doubtful.push((edge, place, length));
+        }
         while !from.is_empty() {
             let words: Vec<u64> = take(from).ok_or(Error::Message)?;
-            let (&at, mut words) = words.split_first().ok_or(Error::Message)?;
-            self.figures.push((at as usize, Figures::of_words(&mut words).ok_or(Error::Message)?));
+            let (&[at, place], mut words) = words.split_first_chunk().ok_or(Error::Message)?;
+            let place = Where::of_number(place).ok_or(Error::Message)?;
+            self.figures.push((at as usize, place, Figures::of_words(&mut words).ok_or(Error::Message)?));
         }
         Ok(())
     }
 
-    /// The statistics.
-    pub fn statistics(self) -> Statistics {
+    /// The statistics, and apart from each other those of what is near cuts and far from them.
+    pub fn statistics(self) -> (Statistics, NearCuts) {
         let Self { mut figures, mut doubtful } = self;
-        figures.sort_by_key(|(at, _)| *at);
-        doubtful.sort_unstable_by_key(|edge| edge.0);
-        doubtful.dedup_by_key(|(edge, _)| *edge);
-        let mut all = figures.into_iter().map(|(_, figures)| figures);
-        let Some(first) = all.next() else { return Statistics::default() };
-        all.fold(first, Figures::and).with_lengths(doubtful.into_iter().map(|(_, length)| length)).statistics()
+        figures.sort_by_key(|&(at, place, _)| (at, place));
+        // Of an edge that pieces at different places share, the place nearest to a cut.
+        doubtful.sort_unstable_by_key(|&(edge, place, _)| (edge, Reverse(place)));
+        doubtful.dedup_by_key(|(edge, ..)| *edge);
+        let joined = |is_meant: &dyn Fn(Where) -> bool, has_edge: &dyn Fn(Where) -> bool| {
+            let of = figures.iter().filter(|(_, place, _)| is_meant(*place)).map(|(.., figures)| figures.clone());
+            let lengths = doubtful.iter().filter(|(_, place, _)| has_edge(*place)).map(|&(.., length)| length);
+            Some(of.reduce(Figures::and)?.with_lengths(lengths))
+        };
+        let is = |wanted: Where| move |place: Where| place == wanted;
+        // What is at a cut is around it.
+        let near = NearCuts::of([
+            joined(&is(Where::Untouched), &is(Where::Untouched)),
+            joined(&is(Where::Around), &|place| place >= Where::Around),
+            joined(&is(Where::AtCut), &is(Where::AtCut)),
+        ]);
+        let whole = joined(&|place| place < Where::AtCut, &|_| true);
+        (whole.map(Figures::statistics).unwrap_or_default(), near)
     }
 }

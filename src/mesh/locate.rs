@@ -9,6 +9,10 @@ use crate::tasks::{GRAIN, Team};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
+mod searcher;
+
+pub use searcher::{Searcher, Size, take_nearer};
+
 /// A barycentric coordinate down to this counts as inside.
 const INSIDE: f64 = -1e-12;
 
@@ -111,7 +115,7 @@ impl Locator {
 
     /// Visits tetrahedra with a face on the boundary, at least all whose face's box touches this box. One with two such faces comes twice.
     pub fn at_boundary(&self, within: &Bounds, mut visit: impl FnMut(u32)) {
-        let (sides, tree) = &**self.boundary.get_or_init(|| Box::new(self.boundary_tree()));
+        let (sides, tree) = self.boundary();
         tree.overlapping(within, |item| visit(sides[item as usize] / 4));
     }
 
@@ -161,7 +165,7 @@ impl Locator {
     /// The nearest tetrahedron, given one that bounds the distance. Where p is on the outer side of all boundary faces that are nearest to
     /// it, p is outside, and nothing is nearer.
     fn search_boundary(&self, p: Vec3, bound: Location) -> Location {
-        let (sides, tree) = &**self.boundary.get_or_init(|| Box::new(self.boundary_tree()));
+        let (sides, tree) = self.boundary();
         // Faces that meet where the nearest point is are equally near but for rounding.
         let slack = |distance: f64| distance + SLACK * (distance + norm(p));
         let (mut nearest, mut least, mut outer) = (None, slack(bound.distance), true);
@@ -192,6 +196,10 @@ impl Locator {
         self.search(p, bound)
     }
 
+    fn boundary(&self) -> &(Vec<u32>, BoxTree) {
+        self.boundary.get_or_init(|| Box::new(self.boundary_tree()))
+    }
+
     fn boundary_tree(&self) -> (Vec<u32>, BoxTree) {
         let open = |(t, around): (usize, &[u32; 4])| {
             let around = *around;
@@ -208,9 +216,8 @@ impl Locator {
         (sides, tree)
     }
 
-    /// The nearest tetrahedron of all, given one that bounds the distance.
-    fn search(&self, p: Vec3, bound: Location) -> Location {
-        let tree = self.tree.get_or_init(|| {
+    fn tree(&self) -> &BoxTree {
+        self.tree.get_or_init(|| {
             let tree = BoxTree::new(self.tets().len(), |tet| {
                 let c = self.corners(tet);
                 let corner = |f: fn(f64, f64) -> f64| -> Vec3 {
@@ -219,12 +226,16 @@ impl Locator {
                 [corner(f64::min), corner(f64::max)]
             });
             Box::new(tree)
-        });
-        let mut best = bound;
+        })
+    }
+
+    /// The nearest tetrahedron of all, given one that bounds the distance.
+    fn search(&self, p: Vec3, bound: Location) -> Location {
+        let (mut best, tree) = (bound, self.tree());
         // First those whose boxes contain p: most points are inside, and a test of that costs a small part of a distance.
         tree.nearest(p, f64::MIN_POSITIVE.min(best.distance), |tet| {
-            let Some(weights) = weights_inside(sub_volumes(&self.corners(tet), p)) else { return f64::MIN_POSITIVE };
-            best = Location { tet, weights, distance: 0.0 };
+            let Some(found) = self.holds(tet, p) else { return f64::MIN_POSITIVE };
+            best = found;
             0.0
         });
         tree.nearest(p, best.distance * best.distance, |tet| {
@@ -237,31 +248,41 @@ impl Locator {
         best
     }
 
+    /// Where p is in a tetrahedron, if that holds it.
+    fn holds(&self, tet: u32, p: Vec3) -> Option<Location> {
+        let weights = weights_inside(sub_volumes(&self.corners(tet), p))?;
+        Some(Location { tet, weights, distance: 0.0 })
+    }
+
     /// The point of a tetrahedron nearest to p.
     fn nearest_in(&self, tet: u32, p: Vec3) -> Location {
-        let corners = self.corners(tet);
-        let volumes = sub_volumes(&corners, p);
-        let total: f64 = volumes.iter().sum();
-        if total > 0.0 && volumes.iter().all(|&v| v >= 0.0) {
-            return Location { tet, weights: volumes.map(|v| v / total), distance: 0.0 };
-        }
-        let mut best = Location { tet, weights: [0.25; 4], distance: f64::INFINITY };
-        for (face, nodes) in FACES.iter().enumerate() {
-            // The nearest point of a convex body lies on a face that p sees. For a flat or inverted one all faces are tried.
-            if total > 0.0 && volumes[face] >= 0.0 {
-                continue;
-            }
-            let (weights, away) = nearest_on_face(&corners, face, p);
-            if away < best.distance {
-                best.distance = away;
-                best.weights = [0.0; 4];
-                for (&i, w) in nodes.iter().zip(weights) {
-                    best.weights[i] = w;
-                }
-            }
-        }
-        best
+        nearest_in(tet, &self.corners(tet), p)
     }
+}
+
+/// The point of a tetrahedron with these corners nearest to p.
+pub fn nearest_in(tet: u32, corners: &[Vec3; 4], p: Vec3) -> Location {
+    let volumes = sub_volumes(corners, p);
+    let total: f64 = volumes.iter().sum();
+    if total > 0.0 && volumes.iter().all(|&v| v >= 0.0) {
+        return Location { tet, weights: volumes.map(|v| v / total), distance: 0.0 };
+    }
+    let mut best = Location { tet, weights: [0.25; 4], distance: f64::INFINITY };
+    for (face, nodes) in FACES.iter().enumerate() {
+        // The nearest point of a convex body lies on a face that p sees. For a flat or inverted one all faces are tried.
+        if total > 0.0 && volumes[face] >= 0.0 {
+            continue;
+        }
+        let (weights, away) = nearest_on_face(corners, face, p);
+        if away < best.distance {
+            best.distance = away;
+            best.weights = [0.0; 4];
+            for (&i, w) in nodes.iter().zip(weights) {
+                best.weights[i] = w;
+            }
+        }
+    }
+    best
 }
 
 /// Barycentric coordinates on a face of the point there nearest to p, and its distance.

@@ -1,11 +1,13 @@
 //! A metric from one mesh to another.
-use super::Sym3;
+use super::{Field, Sym3};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
+use crate::mesh::io::slices::SolutionReader;
 use crate::mesh::locate::Locator;
 use crate::mesh::vector::Vec3;
 use crate::tasks::{GRAIN, Team};
-use crate::transfer::Places;
+use crate::transfer::{Places, out_of_core};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A metric that came from another mesh.
@@ -27,20 +29,51 @@ pub fn transfer(team: Team<'_>, mesh: Arc<TetMesh>, logs: &[Sym3], points: &[Vec
     let faces = MatchedFaces::of(team, &mesh.tets.nodes);
     let locator = Locator::on(team, mesh, faces);
     let places = Places::of(team, &locator, points);
-    Transferred { logs: at(team, &locator, &places, logs), outside: places.outside, farthest: places.farthest }
+    assert_eq!(locator.vertices().len(), logs.len(), "one ln M a vertex");
+    let logs = at(team, locator.tets(), &places, logs);
+    Transferred { logs, outside: places.outside, farthest: places.farthest }
 }
 
-/// ln M at places in a mesh, from ln M at its vertices.
+/// ln M at places in tetrahedra of these nodes, from ln M at all nodes.
+fn at(team: Team<'_>, tets: &[[u32; 4]], places: &Places, logs: &[Sym3]) -> Vec<Sym3> {
+    team.map(GRAIN, places.len(), |i| {
+        let weighted = tets[places.tets[i] as usize].into_iter().zip(places.weights[i]);
+        let weighted = weighted.map(|(node, weight)| logs[node as usize].times(weight));
+        weighted.fold(Sym3::ZERO, Sym3::plus)
+    })
+}
+
+/// M, shape (n, 6), at places in a mesh, log-Euclidean, from that at its vertices, which is positive definite.
 ///
 /// # Panics
 /// When there are not as many metrics as vertices, or the places are of another mesh.
-pub fn at(team: Team<'_>, locator: &Locator, places: &Places, logs: &[Sym3]) -> Vec<Sym3> {
-    assert_eq!(locator.vertices().len(), logs.len(), "one ln M a vertex");
-    team.map(GRAIN, places.len(), |i| {
-        let nodes = locator.tets()[places.tets[i] as usize];
-        let weighted = nodes.into_iter().zip(places.weights[i]).map(|(node, weight)| logs[node as usize].times(weight));
-        weighted.fold(Sym3::ZERO, Sym3::plus)
-    })
+pub fn tensors_at(team: Team<'_>, locator: &Locator, places: &Places, tensors: &[[f64; 6]]) -> Vec<[f64; 6]> {
+    assert_eq!(locator.vertices().len(), tensors.len(), "one metric a vertex");
+    let logs = team.map(GRAIN, tensors.len(), |v| Sym3(tensors[v]).ln());
+    let logs = at(team, locator.tets(), places, &logs);
+    team.map(GRAIN, logs.len(), |v| logs[v].exp().0)
+}
+
+/// The metric of a file, or the isotropic one of its sizes, to be brought to another mesh by slices as [`tensors_at`] does it in memory.
+pub struct OfFile<'f>(pub &'f SolutionReader);
+
+impl out_of_core::Field for OfFile<'_> {
+    fn width(&self) -> usize {
+        6
+    }
+
+    fn rows(&self, range: Range<usize>) -> Result<Vec<f64>, out_of_core::Wrong> {
+        Ok(Field::tensors_in(Team::alone(), self.0, range)?.into_flattened())
+    }
+
+    fn interpolated(&self, rows: &[f64]) -> Option<Vec<f64>> {
+        Some(rows.as_chunks().0.iter().flat_map(|&tensor| Sym3(tensor).ln().0).collect())
+    }
+
+    fn interpolate(&self, tets: &[[u32; 4]], places: &Places, rows: &[f64]) -> Vec<f64> {
+        let logs: Vec<Sym3> = rows.as_chunks().0.iter().map(|&log| Sym3(log)).collect();
+        at(Team::alone(), tets, places, &logs).iter().flat_map(|log| log.exp().0).collect()
+    }
 }
 
 #[cfg(test)]

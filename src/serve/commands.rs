@@ -27,6 +27,9 @@ const SERVED: [&str; 11] = [
 /// Options that are the service's to decide, or that mean a terminal.
 const NOT_SERVED: [&str; 7] = ["server", "threads", "scratch", "backend", "strategy", "verbose", "quiet"];
 
+/// Arguments that name what is written.
+const WRITTEN: [&str; 3] = ["output", "report", "png"];
+
 /// Most words of a request.
 const MOST_WORDS: usize = 400;
 
@@ -110,7 +113,9 @@ impl Commands {
         let mut words = name.split(' ');
         words.clone().next().filter(|first| SERVED.contains(first))?;
         let found = words.try_fold(&self.root, |command, word| command.find_subcommand(word))?;
-        (!found.is_hide_set() && !found.has_subcommands()).then_some(found)
+        // `metric help scale` is for a terminal.
+        let is_help = name.split(' ').any(|word| word == "help");
+        (!found.is_hide_set() && !found.has_subcommands() && !is_help).then_some(found)
     }
 
     /// Checks a request: the words that may be run.
@@ -293,6 +298,9 @@ fn check_argument(
         if is_path(argument) {
             if !is_file_name(value) {
                 return refused(format!("{value:?}: give the plain name of a file, with no folder"));
+            }
+            if WRITTEN.contains(&id) && files.contains_key(value) {
+                return refused(format!("{value:?}: is an input and would be overwritten; give another output"));
             }
             let ending = value.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
             let is_model =

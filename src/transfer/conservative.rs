@@ -11,22 +11,15 @@
 //! and back on the first mesh the first integral is there again. New tetrahedra that reach out of the old mesh continue the function of
 //! their inner part, within its bounds; those wholly outside have the values of the nearest points. What is then missing to the mean is
 //! added by [`balance`]: each value goes the same share of the way to the bound at its vertex.
-use super::balance::{Of, balance};
-use super::corners::Corners;
+use super::balance::{InMemory, balance};
 use super::error::{Error, Which};
-use super::front::Front;
 use super::mass::{Component, check, measure, sums, volume};
+use super::pieces::{INSIDE, NOTHING, OUTSIDE, OnTet, Pieces};
 use super::{Places, interpolate};
 use crate::mesh::TetMesh;
-use crate::mesh::locate::Locator;
+use crate::mesh::locate::{Locator, Size};
 use crate::tasks::{GRAIN, Team};
 use std::ops::Range;
-
-/// A tetrahedron of which less than this share lies in the old mesh is outside.
-const OUTSIDE: f64 = 1e-6;
-
-/// A tetrahedron of which this share or more lies there is inside.
-const INSIDE: f64 = 1.0 - 1e-9;
 
 /// What is kept where the volumes of the two meshes differ. Where they are equal, both choices are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +29,16 @@ pub enum Keep {
     Mean,
     /// The integral, as far as the bounds of the field let it: a constant stays as it is.
     Mass,
+}
+
+impl Keep {
+    /// The integral on the new mesh, of that on the old one and the volumes of the old and the new one.
+    pub(super) fn target(self, mass: f64, [old, new]: [f64; 2]) -> f64 {
+        match self {
+            Self::Mean => mass / old * new,
+            Self::Mass => mass,
+        }
+    }
 }
 
 /// What came of it.
@@ -80,18 +83,18 @@ pub fn conservative(
     check(team, new, Which::New)?;
     let (old_volume, before) = measure(team, locator.mesh(), width, values);
     let nearest = interpolate(team, locator, places, width, values);
-    let parts = team.chunks(GRAIN, new.tets.len(), |range| Part::of(locator, new, &nearest, width, values, range));
+    let size = Size::of_vertices(locator.vertices());
+    let parts = team.chunks(GRAIN, new.tets.len(), |range| {
+        Part::of(Pieces::new(locator, &size, width, values), new, &nearest, width, range)
+    });
     let Gathered { values: mut found, bounds, weights } = gather(team, &parts, width, &nearest);
     let new_volume = sums(team, new.tets.len(), 1, |tet, row| row[0] = volume(new, tet))[0];
     let mut corrected = Vec::with_capacity(width);
     for (component, of_old) in before.iter().enumerate() {
-        let target = match keep {
-            Keep::Mean => of_old.mass / old_volume * new_volume,
-            Keep::Mass => of_old.mass,
-        };
-        let overall = [of_old.least, of_old.greatest];
-        let of = Of { width, component };
-        corrected.push(balance(team, of, &mut found, &bounds, overall, &weights, target));
+        let mut values = InMemory { team, width, component, values: &mut found, bounds: &bounds, weights: &weights };
+        let target = keep.target(of_old.mass, [old_volume, new_volume]);
+        let Ok(change) = balance(&mut values, [of_old.least, of_old.greatest], target);
+        corrected.push(change);
     }
     let (_, after) = measure(team, new, width, &found);
     Ok(Conserved {
@@ -121,17 +124,8 @@ struct Part {
     outside: usize,
 }
 
-const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
-
 impl Part {
-    fn of(
-        locator: &Locator,
-        new: &TetMesh,
-        nearest: &[f64],
-        width: usize,
-        values: &[f64],
-        range: Range<usize>,
-    ) -> Self {
+    fn of(mut pieces: Pieces<'_>, new: &TetMesh, nearest: &[f64], width: usize, range: Range<usize>) -> Self {
         let mut vertices: Vec<u32> = new.tets.nodes[range.clone()].as_flattened().to_vec();
         vertices.sort_unstable();
         vertices.dedup();
@@ -144,58 +138,48 @@ impl Part {
             partly: 0,
             outside: 0,
         };
-        let (mut front, mut corners) = (Front::new(locator), Corners::new(width));
+        let mut found = vec![OnTet::default(); width];
         for tet in range {
-            part.add(tet, (&mut front, &mut corners), (locator, values), (new, nearest), width);
+            let volume = volume(new, tet);
+            if volume > 0.0 {
+                let nodes = new.tets.nodes[tet];
+                let nearest = nodes.map(|v| &nearest[v as usize * width..][..width]);
+                let covered = pieces.of(&nodes.map(|v| new.vertices[v as usize]), nearest, &mut found);
+                part.add(nodes, (volume, covered), &found);
+            }
         }
         part
     }
 
     /// What one new tetrahedron gives its vertices.
-    fn add(
-        &mut self,
-        tet: usize,
-        (front, corners): (&mut Front, &mut Corners),
-        (locator, values): (&Locator, &[f64]),
-        (new, nearest): (&TetMesh, &[f64]),
-        width: usize,
-    ) {
-        let volume = volume(new, tet);
-        if volume == 0.0 {
-            return;
-        }
-        let nodes = new.tets.nodes[tet];
-        let x = nodes.map(|v| new.vertices[v as usize]);
-        corners.clear(x[0]);
-        let covered = front.over(&x, |old, planes, piece| {
-            let rows = locator.tets()[old as usize].map(|v| &values[v as usize * width..][..width]);
-            corners.add(locator.corners(old), rows, planes, piece);
-        });
-        let is_outside = covered < OUTSIDE;
-        self.outside += usize::from(is_outside);
-        self.partly += usize::from(!is_outside && covered < INSIDE);
+    fn add(&mut self, nodes: [u32; 4], (volume, covered): (f64, f64), found: &[OnTet]) {
+        self.outside += usize::from(covered < OUTSIDE);
+        self.partly += usize::from((OUTSIDE..INSIDE).contains(&covered));
         self.common += covered * volume;
         let slots = nodes.map(|v| self.vertices.partition_point(|&known| known < v));
         slots.iter().for_each(|&slot| self.weights[slot] += 0.25 * volume);
-        for c in 0..width {
-            let (found, bounds) = if is_outside {
-                let found = nodes.map(|v| nearest[v as usize * width + c]);
-                (found, found.into_iter().fold(NOTHING, |b, x| [b[0].min(x), b[1].max(x)]))
-            } else {
-                corners.values(c, &x)
-            };
-            for (slot, value) in slots.into_iter().zip(found) {
-                let at = slot * width + c;
+        for (c, component) in found.iter().enumerate() {
+            for (slot, value) in slots.into_iter().zip(component.values) {
+                let at = slot * found.len() + c;
                 self.sums[at] += 0.25 * volume * value;
-                self.bounds[at] = hull(self.bounds[at], bounds);
+                self.bounds[at] = hull(self.bounds[at], component.bounds);
             }
         }
     }
 }
 
+/// The bounds that hold both.
 #[inline]
-fn hull(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+pub fn hull(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// The value at a vertex, and its bounds, of the sum of those on its tetrahedra, each times a quarter of the volume, and the sum of these quarters.
+pub fn mean(sum: f64, weight: f64, bounds: [f64; 2], nearest: f64) -> (f64, [f64; 2]) {
+    match weight > 0.0 {
+        true => ((sum / weight).max(bounds[0]).min(bounds[1]), bounds),
+        false => (nearest, [nearest; 2]),
+    }
 }
 
 /// What all chunks together give the vertices.
@@ -225,14 +209,7 @@ fn gather(team: Team<'_>, parts: &[Part], width: usize, nearest: &[f64]) -> Gath
             }
         }
         for (at, value) in values.iter_mut().enumerate() {
-            let [low, high] = bounds[at];
-            let weight = weights[at / width];
-            if weight > 0.0 {
-                *value = (*value / weight).max(low).min(high);
-            } else {
-                *value = nearest[range.start * width + at];
-                bounds[at] = [*value; 2];
-            }
+            (*value, bounds[at]) = mean(*value, weights[at / width], bounds[at], nearest[range.start * width + at]);
         }
         (values, bounds, weights)
     });

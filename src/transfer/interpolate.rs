@@ -10,13 +10,18 @@ use crate::tasks::{GRAIN, Team};
 /// When the number of values is not `width` a vertex, or the places are of another mesh.
 pub fn interpolate(team: Team<'_>, locator: &Locator, places: &Places, width: usize, values: &[f64]) -> Vec<f64> {
     assert_eq!(values.len(), width * locator.vertices().len(), "{width} values a vertex");
+    interpolate_in(team, locator.tets(), places, width, values)
+}
+
+/// As [`interpolate`], given the nodes of the tetrahedra alone.
+pub fn interpolate_in(team: Team<'_>, tets: &[[u32; 4]], places: &Places, width: usize, values: &[f64]) -> Vec<f64> {
     let mut all = vec![0.0; width * places.len()];
     if width == 0 {
         return all;
     }
     team.fill(width * GRAIN, &mut all, |start, rows| {
         for (row, at) in rows.chunks_exact_mut(width).zip(start / width..) {
-            let nodes = locator.tets()[places.tets[at] as usize].map(|v| v as usize * width);
+            let nodes = tets[places.tets[at] as usize].map(|v| v as usize * width);
             for (c, value) in row.iter_mut().enumerate() {
                 *value = weighted(nodes.map(|node| values[node + c]), places.weights[at]);
             }

@@ -2,8 +2,9 @@
 use super::error::{Error, Which};
 use crate::mesh::TetMesh;
 use crate::mesh::predicate::is_positive;
-use crate::mesh::vector::volume6;
+use crate::mesh::vector::{Vec3, volume6};
 use crate::tasks::{GRAIN, Team};
+use std::ops::Range;
 
 /// A compensated sum (Neumaier, *Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen*, ZAMM 54, 1974).
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,14 +36,21 @@ impl Sum {
 
 /// Σ of each row of `width` terms that `terms(item, row)` writes.
 pub fn sums(team: Team<'_>, items: usize, width: usize, terms: impl Fn(usize, &mut [f64]) + Sync) -> Vec<f64> {
-    let parts = team.chunks(GRAIN, items, |range| {
-        let (mut row, mut sums) = (vec![0.0; width], vec![Sum::default(); width]);
-        for item in range {
-            terms(item, &mut row);
-            sums.iter_mut().zip(&row).for_each(|(sum, &term)| sum.add(term));
-        }
-        sums
-    });
+    joined(width, team.chunks(GRAIN, items, |range| part_of_sums(range, width, &terms)))
+}
+
+/// The part of [`sums`] that is of these items: of GRAIN ones, in their order.
+pub fn part_of_sums(items: Range<usize>, width: usize, terms: impl Fn(usize, &mut [f64])) -> Vec<Sum> {
+    let (mut row, mut sums) = (vec![0.0; width], vec![Sum::default(); width]);
+    for item in items {
+        terms(item, &mut row);
+        sums.iter_mut().zip(&row).for_each(|(sum, &term)| sum.add(term));
+    }
+    sums
+}
+
+/// The sums of these parts, in their order.
+pub fn joined(width: usize, parts: impl IntoIterator<Item = Vec<Sum>>) -> Vec<f64> {
     let mut all = vec![Sum::default(); width];
     for part in parts {
         all.iter_mut().zip(part).for_each(|(all, part)| all.join(part));
@@ -53,7 +61,12 @@ pub fn sums(team: Team<'_>, items: usize, width: usize, terms: impl Fn(usize, &m
 /// Volume of a tetrahedron of a mesh, 0 where it is flat.
 #[inline]
 pub fn volume(mesh: &TetMesh, tet: usize) -> f64 {
-    let [a, b, c, d] = mesh.tets.nodes[tet].map(|v| mesh.vertices[v as usize]);
+    volume_of(mesh.tets.nodes[tet].map(|v| mesh.vertices[v as usize]))
+}
+
+/// Volume of a tetrahedron with these corners, 0 where it is flat.
+#[inline]
+pub fn volume_of([a, b, c, d]: [Vec3; 4]) -> f64 {
     (volume6(a, b, c, d) / 6.0).max(0.0)
 }
 
@@ -62,11 +75,7 @@ pub fn volume(mesh: &TetMesh, tet: usize) -> f64 {
 /// # Errors
 /// [`Error`] with the first one.
 pub fn check(team: Team<'_>, mesh: &TetMesh, which: Which) -> Result<(), Error> {
-    let is_inverted = |tet: &usize| {
-        let x = mesh.tets.nodes[*tet].map(|v| mesh.vertices[v as usize]);
-        // Rounding may make a sliver's volume negative: exact arithmetic decides.
-        volume6(x[0], x[1], x[2], x[3]) <= 0.0 && is_positive([x[1], x[0], x[2], x[3]])
-    };
+    let is_inverted = |tet: &usize| is_inverted(mesh.tets.nodes[*tet].map(|v| mesh.vertices[v as usize]));
     let parts = team.chunks(GRAIN, mesh.tets.len(), |range| {
         let first = range.clone().find(is_inverted);
         (first, range.map(|tet| volume(mesh, tet)).fold(0.0, f64::max))
@@ -75,6 +84,12 @@ pub fn check(team: Team<'_>, mesh: &TetMesh, which: Which) -> Result<(), Error> 
         return Err(Error::Inverted { mesh: which, tet });
     }
     if parts.iter().any(|part| part.1 > 0.0) { Ok(()) } else { Err(Error::NoVolume(which)) }
+}
+
+/// Whether a tetrahedron with these corners is inverted.
+pub fn is_inverted(x: [Vec3; 4]) -> bool {
+    // Rounding may make a sliver's volume negative: exact arithmetic decides.
+    volume6(x[0], x[1], x[2], x[3]) <= 0.0 && is_positive([x[1], x[0], x[2], x[3]])
 }
 
 /// What a component of a field is on a mesh.
@@ -94,24 +109,40 @@ pub struct Component {
 /// When the number of values is not `width` a vertex.
 pub fn measure(team: Team<'_>, mesh: &TetMesh, width: usize, values: &[f64]) -> (f64, Vec<Component>) {
     assert_eq!(values.len(), width * mesh.vertices.len(), "{width} values a vertex");
-    let mut masses = sums(team, mesh.tets.len(), width + 1, |tet, row| {
-        let volume = volume(mesh, tet);
-        let nodes = mesh.tets.nodes[tet].map(|v| v as usize * width);
-        for (c, term) in row[..width].iter_mut().enumerate() {
-            let [a, b, c, d] = nodes.map(|node| values[node + c]);
-            *term = 0.25 * volume * ((a + b) + (c + d));
-        }
-        row[width] = volume;
+    let masses = sums(team, mesh.tets.len(), width + 1, |tet, row| {
+        masses_of(mesh.tets.nodes[tet], &mesh.vertices, values, row);
     });
+    let rows = |range: Range<usize>| &values[range.start * width..range.end * width];
+    let parts = team.chunks(GRAIN, mesh.vertices.len(), |range| bounds_of(width, rows(range)));
+    components(masses, parts)
+}
+
+/// Writes the integral of each component over a tetrahedron, and its volume, into a row; `vertices` and `values` are of all nodes.
+pub fn masses_of(nodes: [u32; 4], vertices: &[Vec3], values: &[f64], row: &mut [f64]) {
+    let width = row.len() - 1;
+    let volume = volume_of(nodes.map(|v| vertices[v as usize]));
+    let nodes = nodes.map(|v| v as usize * width);
+    for (c, term) in row[..width].iter_mut().enumerate() {
+        let [a, b, c, d] = nodes.map(|node| values[node + c]);
+        *term = 0.25 * volume * ((a + b) + (c + d));
+    }
+    row[width] = volume;
+}
+
+const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+/// Least and greatest value of each component of some rows.
+pub fn bounds_of(width: usize, rows: &[f64]) -> Vec<[f64; 2]> {
+    let mut bounds = vec![NOTHING; width];
+    for row in rows.chunks_exact(width.max(1)) {
+        bounds.iter_mut().zip(row).for_each(|(b, &x)| *b = [b[0].min(x), b[1].max(x)]);
+    }
+    bounds
+}
+
+/// The volume and the components, of the integrals with the volume behind them and the bounds of all parts.
+pub fn components(mut masses: Vec<f64>, parts: Vec<Vec<[f64; 2]>>) -> (f64, Vec<Component>) {
     let volume = masses.pop().unwrap_or(0.0);
-    const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
-    let parts = team.chunks(GRAIN, mesh.vertices.len(), |range| {
-        let mut bounds = vec![NOTHING; width];
-        for row in values[range.start * width..range.end * width].chunks_exact(width.max(1)) {
-            bounds.iter_mut().zip(row).for_each(|(b, &x)| *b = [b[0].min(x), b[1].max(x)]);
-        }
-        bounds
-    });
     let component = |(c, mass): (usize, f64)| {
         let [least, greatest] = parts.iter().fold(NOTHING, |b, part| [b[0].min(part[c][0]), b[1].max(part[c][1])]);
         Component { mass, least, greatest }

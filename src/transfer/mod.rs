@@ -16,11 +16,13 @@ mod error;
 mod front;
 mod interpolate;
 mod mass;
+pub mod out_of_core;
+mod pieces;
 mod places;
 
 pub use conservative::{Conserved, Keep, conservative};
 pub use distance::{Distance, distance};
 pub use error::{Error, Which};
-pub use interpolate::interpolate;
+pub use interpolate::{interpolate, interpolate_in};
 pub use mass::{Component, measure};
 pub use places::Places;

@@ -1,6 +1,6 @@
 //! Where points lie in a mesh.
-use crate::mesh::locate::{Location, Locator};
-use crate::mesh::vector::{Vec3, distance};
+use crate::mesh::locate::{Location, Locator, Searcher, Size};
+use crate::mesh::vector::Vec3;
 use crate::tasks::{GRAIN, Team};
 
 /// Nearer to the mesh than this share of its size is not outside.
@@ -20,14 +20,13 @@ pub struct Places {
 }
 
 impl Places {
-    /// Of points, those that follow one another best near each other.
+    /// Of points, those that follow one another best near each other. Each depends on the mesh and the point alone ([`Searcher`]).
     pub fn of(team: Team<'_>, locator: &Locator, points: &[Vec3]) -> Self {
-        let tolerance = TOLERANCE * diameter(locator.vertices());
+        let size = Size::of_vertices(locator.vertices());
+        let tolerance = tolerance(&size);
         let parts = team.chunks(GRAIN / 4, points.len(), |range| {
-            // The hint starts anew with each chunk, so threads make no difference.
-            let mut hint = 0;
-            let found = points[range].iter().map(|&p| locator.locate(p, &mut hint));
-            found.collect::<Vec<Location>>()
+            let mut searcher = Searcher::new(locator, &size);
+            points[range].iter().map(|&p| searcher.locate(p)).collect::<Vec<Location>>()
         });
         let all = || parts.iter().flatten();
         Self {
@@ -49,10 +48,7 @@ impl Places {
     }
 }
 
-/// The diagonal of the box around the vertices.
-fn diameter(vertices: &[Vec3]) -> f64 {
-    let corner = |f: fn(f64, f64) -> f64| {
-        vertices.iter().copied().reduce(|a, b| std::array::from_fn(|i| f(a[i], b[i]))).unwrap_or_default()
-    };
-    distance(corner(f64::min), corner(f64::max))
+/// A point that is farther than this from a mesh is outside, length.
+pub fn tolerance(size: &Size) -> f64 {
+    TOLERANCE * size.diagonal
 }

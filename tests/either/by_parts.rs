@@ -5,6 +5,7 @@ use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::io::{read_mesh, write_mesh};
 use geo_adapt::mesh::vector::{Vec3, norm, sub};
 use geo_adapt::metric::Sym3;
+use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -37,6 +38,45 @@ fn the_same_bytes_in_memory_and_by_a_scratch_folder_and_on_any_threads() {
     }
     let in_one = written(&work, &mesh, &[&FIELD, &MUCH]);
     assert!(in_one != known, "it was cut");
+}
+
+/// The report of a run.
+fn reported(work: &Workplace, mesh: &Path, arguments: &[&[&str]]) -> Value {
+    let report = text(&work.path("report.json"));
+    written(work, mesh, &[arguments, &[&["--report", &report]]].concat());
+    serde_json::from_slice(&std::fs::read(report).unwrap()).unwrap()
+}
+
+#[test]
+fn what_is_near_former_cuts_is_reported_apart() {
+    let work = Workplace::new();
+    let mesh = work.mesh(&cube(3, |_| 1));
+    let parts = ["--part-vertices", "2000"];
+    let known = reported(&work, &mesh, &[&FIELD, &parts, &MUCH, &["--threads", "2"]]);
+    let near = &known["parts"]["near_cuts"];
+    let number = |of: &Value| of.as_f64().unwrap();
+    let [untouched, around, at_cuts] = ["untouched", "around", "at_cuts"].map(|place| &near[place]);
+    let tets = [untouched, around, at_cuts].map(|of| number(&of["tets"]));
+    assert!(tets[0] > 500.0 && tets[2] > 500.0 && tets[2] < tets[1], "{near}");
+    // Both together are the mesh.
+    let statistics = &known["statistics"];
+    assert_eq!(tets[0] + tets[1], number(&statistics["tets"]));
+    assert_eq!(number(&untouched["edges"]) + number(&around["edges"]), number(&statistics["edge_lengths"]["count"]));
+    let joined = |count: &str, of: &str| {
+        let [a, b] = [untouched, around].map(|place| (number(&place[count]), number(&place[of])));
+        (a.0 * a.1 + b.0 * b.1) / (a.0 + b.0)
+    };
+    assert!((joined("tets", "mean_ratio") - number(&statistics["mean_ratios"]["mean"])).abs() < 1e-9);
+    assert!((joined("edges", "unit_edges") - number(&statistics["metric"]["unit_edges"])).abs() < 1e-9);
+    let least = [untouched, around].map(|place| number(&place["least_ratio"]));
+    assert_eq!(least[0].min(least[1]), number(&statistics["mean_ratios"]["min"]));
+    // What was at a cut is about as good as the rest.
+    assert!(number(&at_cuts["mean_ratio"]) > number(&untouched["mean_ratio"]) - 0.02, "{near}");
+    assert!(number(&at_cuts["unit_edges"]) > number(&untouched["unit_edges"]) - 0.03, "{near}");
+    assert_eq!(&reported(&work, &mesh, &[&FIELD, &parts, &LITTLE, &["--threads", "1"]])["parts"]["near_cuts"], near);
+    // In one part there is no cut.
+    let near = &reported(&work, &mesh, &[&FIELD, &MUCH])["parts"]["near_cuts"];
+    assert!(near["around"].is_null() && number(&near["untouched"]["tets"]) > 1e3, "{near}");
 }
 
 /// A mesh of some thousand vertices with its metric in a file.
@@ -91,8 +131,13 @@ fn a_mesh_by_slices_without_all_triangles_is_refused() {
 fn a_killed_run_goes_on_and_ends_with_the_same_bytes() {
     let work = Workplace::new();
     let mesh = work.mesh(&cube(3, |_| 1));
-    let arguments = [&FIELD[..], &PARTS, &LITTLE, &["--threads", "1"]];
+    let report = text(&work.path("report.json"));
+    let arguments = [&FIELD[..], &PARTS, &LITTLE, &["--threads", "1", "--report", &report]];
+    let near = || -> Value {
+        serde_json::from_slice::<Value>(&std::fs::read(&report).unwrap()).unwrap()["parts"]["near_cuts"].take()
+    };
     let known = written(&work, &mesh, &arguments);
+    let known_near = near();
     ["out.meshb", "out.solb"].iter().for_each(|name| std::fs::remove_file(work.path(name)).unwrap());
     let start = |command: &mut Command| command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let mut is_gone_on = false;
@@ -111,6 +156,7 @@ fn a_killed_run_goes_on_and_ends_with_the_same_bytes() {
     assert!(is_gone_on, "it was killed after a round");
     let now = written(&work, &mesh, &arguments);
     assert!(now == known);
+    assert_eq!(near(), known_near);
 }
 
 /// A piece of another run is not taken for one's own.

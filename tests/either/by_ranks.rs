@@ -67,13 +67,13 @@ mod with_mpi {
             let run = launched(ranks, &work.command(&mesh, &words)).output().unwrap();
             ended_well(&run);
             let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
-            figures.push(report["statistics"].clone());
+            figures.push([report["statistics"].clone(), report["parts"]["near_cuts"].clone()]);
             assert_eq!(report["parts"]["processes"].as_array().unwrap().len(), ranks);
             assert_eq!(String::from_utf8_lossy(&run.stdout).matches("unit edges").count(), 1, "one of them speaks");
             assert!(written(&work) == bytes, "{ranks} processes");
         }
         // All processes measure, and the sums are the same to the last bit.
-        assert!(figures.iter().all(|of| of == &figures[0] && of["metric"]["unit_edges"].as_f64().unwrap() > 0.5));
+        assert!(figures.iter().all(|of| of == &figures[0] && of[0]["metric"]["unit_edges"].as_f64().unwrap() > 0.5));
         // What is no .meshb is made in the memory of one of them.
         let [vtu, back] = ["out.vtu", "back.meshb"].map(|name| text(&work.path(name)));
         let mut to_vtu = program();

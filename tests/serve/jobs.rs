@@ -6,7 +6,7 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 /// What the program itself makes of a mesh.
-fn made(mesh: &[u8], arguments: &[&str]) -> Vec<u8> {
+pub fn made(mesh: &[u8], arguments: &[&str]) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("in.meshb"), mesh).unwrap();
     let mut command = program();
@@ -51,7 +51,7 @@ fn a_job_makes_what_the_program_makes() {
     let out = results.as_array().unwrap().iter().find(|of| of["name"] == "out.meshb").unwrap()["id"].clone();
     let job = service.accepted("inspect", json!(["a.meshb", "--json"]), json!({ "a.meshb": out }));
     assert_eq!(service.ended(&job)["state"], "done");
-    assert!(String::from_utf8(service.result(&job, "printed.txt")).unwrap().contains("\"tetrahedra\""));
+    assert!(String::from_utf8(service.result(&job, "printed.txt")).unwrap().contains("\"valid\": true"));
 }
 
 #[test]
@@ -136,6 +136,47 @@ fn a_job_that_is_cancelled_keeps_its_last_mesh() {
     assert!(geo_adapt::mesh::validity::check(&read).is_valid());
     assert_eq!(service.ask("DELETE", &format!("/v1/jobs/{job}"), &[], b"").status, 204);
     assert_eq!(service.get(&format!("/v1/jobs/{job}/results/out.meshb")).status, 404);
+}
+
+#[test]
+fn a_job_that_is_cancelled_again_keeps_its_last_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let service = Service::start(folder.path(), &[]);
+    let id = service.upload("in.meshb", &cube(4));
+    let job = service.accepted("adapt", json!(LONG), json!({ "in.meshb": id }));
+    running(&service, &job);
+    for _ in 0..3 {
+        assert_eq!(service.ask("POST", &format!("/v1/jobs/{job}/cancel"), &[], b"").status, 202);
+    }
+    assert_eq!(service.ended(&job)["state"], "cancelled");
+    assert!(!service.result(&job, "out.meshb").is_empty());
+}
+
+#[test]
+fn no_more_jobs_are_at_work_than_may_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let service = Service::start(folder.path(), &["--jobs", "2"]);
+    let id = service.upload("in.meshb", &cube(4));
+    let jobs: Vec<String> = (0..5).map(|_| service.accepted("adapt", json!(LONG), json!({ "in.meshb": id }))).collect();
+    running(&service, &jobs[1]);
+    for _ in 0..20 {
+        let at_work = service.get("/v1/jobs?state=running").json();
+        assert!(at_work.as_array().unwrap().len() <= 2, "{at_work}");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    for job in jobs.iter().rev() {
+        service.ask("POST", &format!("/v1/jobs/{job}/cancel"), &[], b"");
+    }
+}
+
+#[test]
+fn what_is_for_a_terminal_is_no_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let service = Service::start(folder.path(), &[]);
+    let listed = service.get("/v1/commands").json();
+    let names: Vec<&str> = listed.as_array().unwrap().iter().map(|of| of["command"].as_str().unwrap()).collect();
+    assert!(names.contains(&"metric scale") && !names.iter().any(|name| name.contains("help")), "{names:?}");
+    assert_eq!(service.job("metric help scale", json!([]), json!({})).status, 400);
 }
 
 #[test]

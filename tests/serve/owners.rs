@@ -5,7 +5,7 @@ use serde_json::json;
 use std::path::Path;
 
 /// Makes a token.
-fn token(data: &Path, owner: &str, scopes: &str) -> String {
+pub fn token(data: &Path, owner: &str, scopes: &str) -> String {
     let mut command = program();
     command.args(["serve", "token", "add", owner, "--scopes", scopes, "--data"]).arg(data);
     let made = command.output().unwrap();

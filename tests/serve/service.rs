@@ -34,8 +34,6 @@ impl Answer {
 
     /// What a header says.
     pub fn header(&self, name: &str) -> Option<&str> {
-        let of = |line: &'static str| line;
-        let _ = of;
         self.head.lines().find_map(|line| {
             let (known, value) = line.split_once(':')?;
             known.eq_ignore_ascii_case(name).then_some(value.trim())
@@ -46,8 +44,13 @@ impl Answer {
 impl Service {
     /// Starts one on this folder, with these arguments beside.
     pub fn start(data: &Path, arguments: &[&str]) -> Self {
+        Self::start_at("127.0.0.1:0", data, arguments)
+    }
+
+    /// The same, at an address.
+    pub fn start_at(address: &str, data: &Path, arguments: &[&str]) -> Self {
         let mut command: Command = program();
-        command.args(["serve", "--listen", "127.0.0.1:0", "--data"]).arg(data).args(arguments);
+        command.args(["serve", "--listen", address, "--data"]).arg(data).args(arguments);
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
@@ -68,6 +71,14 @@ impl Service {
         format!("http://{}", self.address)
     }
 
+    pub fn process(&self) -> u32 {
+        self.child.id()
+    }
+
+    pub fn address(&self) -> &str {
+        &self.address
+    }
+
     /// Kills it, as a power failure would.
     pub fn kill(mut self) {
         self.child.kill().unwrap();
@@ -76,20 +87,7 @@ impl Service {
 
     /// Bytes as they are, and the answer to them.
     pub fn send(&self, request: &[u8]) -> Answer {
-        let mut stream = TcpStream::connect(&self.address).unwrap();
-        stream.set_read_timeout(Some(PATIENCE)).unwrap();
-        // What is refused early need not be read to its end.
-        let _ = stream.write_all(request);
-        let mut answer = Vec::new();
-        let _ = stream.read_to_end(&mut answer);
-        let split = answer.windows(4).position(|at| at == b"\r\n\r\n").unwrap_or(answer.len());
-        let head = String::from_utf8_lossy(&answer[..split]).into_owned();
-        let status = head.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0);
-        let mut body = answer.get(split + 4..).unwrap_or_default().to_vec();
-        if head.to_ascii_lowercase().contains("transfer-encoding: chunked") {
-            body = unchunked(&body);
-        }
-        Answer { status, head, body }
+        send(&self.address, request, PATIENCE).expect("the service is there")
     }
 
     /// A request with headers, each a line of its own.
@@ -153,6 +151,24 @@ impl Drop for Service {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// Sends bytes as they are; none where nobody answers for so long.
+pub fn send(address: &str, request: &[u8], patience: Duration) -> Option<Answer> {
+    let mut stream = TcpStream::connect(address).ok()?;
+    stream.set_read_timeout(Some(patience)).ok()?;
+    // What is refused early need not be read to its end.
+    let _ = stream.write_all(request);
+    let mut answer = Vec::new();
+    let _ = stream.read_to_end(&mut answer);
+    let split = answer.windows(4).position(|at| at == b"\r\n\r\n")?;
+    let head = String::from_utf8_lossy(&answer[..split]).into_owned();
+    let status = head.split(' ').nth(1).and_then(|status| status.parse().ok())?;
+    let mut body = answer[split + 4..].to_vec();
+    if head.to_ascii_lowercase().contains("transfer-encoding: chunked") {
+        body = unchunked(&body);
+    }
+    Some(Answer { status, head, body })
 }
 
 fn unchunked(mut body: &[u8]) -> Vec<u8> {

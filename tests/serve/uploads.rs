@@ -53,12 +53,12 @@ fn an_upload_is_taken_up_again() {
 #[test]
 fn what_is_too_large_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let service = Service::start(folder.path(), &["--file-size", "100kB", "--owner-bytes", "150kB"]);
-    let answer = service.ask("POST", "/v1/files?name=a.step", &[], &vec![1; 200_000]);
+    let service = Service::start(folder.path(), &["--file-size", "1MB", "--owner-bytes", "1500kB"]);
+    let answer = service.ask("POST", "/v1/files?name=a.step", &[], &vec![1; 2_000_000]);
     assert_eq!(answer.status, 413, "{}", answer.text());
-    assert_eq!(service.ask("POST", "/v1/uploads?name=a.step", &["Upload-Length: 200000"], b"").status, 413);
-    service.upload("a.step", &vec![1; 90_000]);
-    let answer = service.ask("POST", "/v1/files?name=b.step", &[], &vec![2; 90_000]);
+    assert_eq!(service.ask("POST", "/v1/uploads?name=a.step", &["Upload-Length: 2000000"], b"").status, 413);
+    service.upload("a.step", &vec![1; 900_000]);
+    let answer = service.ask("POST", "/v1/files?name=b.step", &[], &vec![2; 900_000]);
     assert_eq!(answer.status, 507, "{}", answer.text());
     let left = std::fs::read_dir(folder.path().join("uploads")).unwrap().count();
     assert_eq!(left, 0);

@@ -36,9 +36,6 @@ use std::time::Instant;
 /// Most passes for the sizes.
 const SIZE_PASSES: usize = 20;
 
-/// A shape pass that saves less than this share of the mean of 1/Q − 1 is the last.
-const SETTLED: f64 = 0.2;
-
 /// Most passes for the shapes.
 const SHAPE_PASSES: usize = 6;
 
@@ -215,7 +212,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             let moved = self.settle(pass);
             let after = self.cost();
             // What came onto the model late has not been looked at since.
-            let settled = !moved && before - after < SETTLED * before;
+            let settled = !moved && before - after < self.effort.settled * before;
             if (settled && self.unprojected.is_empty()) || self.observer.stop() {
                 break;
             }

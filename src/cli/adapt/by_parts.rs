@@ -232,12 +232,14 @@ struct Ending<'a> {
 impl Ending<'_> {
     /// The mesh is put together in memory, measured and written as any other.
     fn in_memory(&self, on: &OnModel, adapted: Adapted<'_>, targets: &Targets, from: (Instant, Duration)) -> Outcome {
-        let adapted = adapted.into_memory()?;
+        let (adapted, near_cuts) = adapted.into_memory()?;
         let finished = from.0.elapsed();
         let line = Waiting::for_what("measuring and writing");
         let asked = self.arguments.asked(self.threads);
         let mut report = Report::new(self.team, &asked, on, adapted, (self.progress.forecast(), None));
-        report.parts = Some(self.told.clone());
+        let mut told = self.told.clone();
+        told.near_cuts = near_cuts;
+        report.parts = Some(told);
         let times = [from.1, finished, from.0.elapsed()];
         let (report, lost) = targets.write(self.team, report, times)?;
         drop(line);

@@ -100,7 +100,9 @@ impl Targets {
             outputs = self.outputs()?;
             Ok(outputs.slices(&self.mesh, metric, &counts, &report.names)?)
         };
-        report.statistics = slices::write(ranks, team, adapted, begin(), (&report.mesh, &report.metrics))?;
+        let (statistics, near_cuts) = slices::write(ranks, team, adapted, begin(), (&report.mesh, &report.metrics))?;
+        report.statistics = statistics;
+        report.parts.iter_mut().for_each(|parts| parts.near_cuts = near_cuts);
         self.finish(outputs, &mut report, [prepared, finished, start.elapsed()])?;
         Ok(report)
     }

@@ -1,6 +1,6 @@
 //! What the report says of a run part by part: its rounds and its processes.
-use crate::cli::table::Table;
-use crate::decomposition::{Adapted, Numbered, Told};
+use crate::cli::table::{Table, figure};
+use crate::decomposition::{Adapted, NearCuts, Numbered, Quality, Told};
 use crate::ranks::{Ranks, Traffic};
 use serde::Serialize;
 
@@ -12,6 +12,8 @@ pub struct Parts {
     /// Time for measuring the boundary before the rest is written, by rank 0, s.
     pub boundary_measured: f64,
     processes: Vec<Process>,
+    /// How good the mesh is near former cuts and far from them.
+    pub near_cuts: NearCuts,
 }
 
 /// What a process did until the mesh was adapted.
@@ -41,7 +43,13 @@ impl Parts {
                 process.worked += part.seconds;
             }
         }
-        Self { rounds: adapted.told().to_vec(), numbering: adapted.numbered(), boundary_measured: 0.0, processes }
+        Self {
+            rounds: adapted.told().to_vec(),
+            numbering: adapted.numbered(),
+            boundary_measured: 0.0,
+            processes,
+            near_cuts: NearCuts::default(),
+        }
     }
 
     /// What the table says of it.
@@ -51,6 +59,16 @@ impl Parts {
         let [greatest, sum] =
             self.rounds.iter().map(Told::greatest_and_sum).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
         table.row("seconds of parts", format_args!("{sum:.2} in all, {greatest:.2} of the slowest of each round"));
+        let NearCuts { untouched, around, at_cuts } = self.near_cuts;
+        for (name, found) in [("at former cuts", at_cuts), ("around them", around), ("far from all cuts", untouched)] {
+            if let (Some(Quality { tets, mean_ratio, least_ratio, unit_edges, .. }), true) = (found, around.is_some()) {
+                let (least, mean, unit) = (figure(least_ratio), figure(mean_ratio), 100.0 * unit_edges);
+                table.row(
+                    name,
+                    format_args!("{tets} tetrahedra, mean ratio least {least} mean {mean}, {unit:.2} % unit edges"),
+                );
+            }
+        }
         if self.processes.len() > 1 {
             let sent: u64 = self.processes.iter().map(|process| process.sent).sum();
             let most = |of: fn(&Process) -> f64| self.processes.iter().map(of).fold(0.0, f64::max);

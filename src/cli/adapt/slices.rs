@@ -1,6 +1,6 @@
 //! A mesh that is adapted part by part, written by slices: each process measures its pieces and writes them to the same two files.
 use crate::cli::files::{Begun, Slices, Written};
-use crate::decomposition::{self, Adapted, Measured};
+use crate::decomposition::{self, Adapted, Measured, NearCuts};
 use crate::mesh::TetMesh;
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
@@ -29,7 +29,7 @@ pub fn write(
     adapted: &Adapted<'_>,
     begun: Result<(Slices, Begun), Failure>,
     (skin, metrics): (&TetMesh, &[Sym3]),
-) -> Result<Statistics, Failure> {
+) -> Result<(Statistics, NearCuts), Failure> {
     let message = begun.and_then(|(slices, begun)| Ok((slices, serde_json::to_vec(&begun)?)));
     let (slices, message) = agreed(ranks, message)?;
     broadcast(ranks, &message);

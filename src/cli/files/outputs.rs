@@ -5,8 +5,8 @@ use crate::decomposition;
 use crate::formats::vtu::pieces;
 use crate::formats::{self, Dataset, Format, Options};
 use crate::geometry::{Names, names};
-use crate::mesh::io::slices::{self, MeshWriter, MetricWriter};
-use crate::mesh::io::{self, Batch, MeshCounts, Slice};
+use crate::mesh::io::slices::{self, MeshWriter, MetricWriter, SolutionWriter};
+use crate::mesh::io::{self, Batch, FieldKind, MeshCounts, Slice};
 use crate::mesh::{Association, TetMesh};
 use crate::metric::{Field, Sym3};
 use crate::tasks::Team;
@@ -74,6 +74,16 @@ impl Outputs {
     /// A metric (.solb) at so many vertices, which is written by slices.
     pub fn metric_by_slices(&mut self, to: &Target, vertices: usize) -> Result<MetricWriter, io::Error> {
         MetricWriter::create(self.batch.open(&to.path, true)?, &to.path, vertices)
+    }
+
+    /// Fields (.solb) of these kinds at so many vertices, which are written by slices.
+    pub fn fields_by_slices(
+        &mut self,
+        to: &Target,
+        vertices: usize,
+        kinds: &[FieldKind],
+    ) -> Result<SolutionWriter, io::Error> {
+        SolutionWriter::create(self.batch.open(&to.path, true)?, &to.path, vertices, kinds)
     }
 
     /// A mesh with all that belongs to it, in the format that its ending tells. Returns what that cannot carry.

@@ -1,6 +1,7 @@
 //! What the tests of several files need: a piece with all that a piece may have, and what it is whatever the order of its lists.
 mod bytes;
 mod cuts;
+mod former;
 mod input;
 mod manifold;
 mod outline;

@@ -36,6 +36,8 @@ pub enum Slice<'a> {
     OnFaces(&'a [OnFace]),
     /// Symmetric tensors at vertices, shape (n, 6), each 11 12 22 13 23 33.
     Tensors(&'a [[f64; 6]]),
+    /// All fields at vertices: so many values a vertex, and rows of these, shape (n, width).
+    Fields(usize, &'a [f64]),
 }
 
 impl<'a> Slice<'a> {
@@ -74,7 +76,7 @@ impl<'a> Slice<'a> {
             Self::OnVertices(_) => Keyword::OnVertices,
             Self::OnEdges(_) => Keyword::OnEdges,
             Self::OnFaces(_) => Keyword::OnFaces,
-            Self::Tensors(_) => Keyword::SolAtVertices,
+            Self::Tensors(_) | Self::Fields(..) => Keyword::SolAtVertices,
         }
     }
 
@@ -94,6 +96,7 @@ impl<'a> Slice<'a> {
             Self::OnEdges(on) => on.len(),
             Self::OnFaces(on) => on.len(),
             Self::Tensors(tensors) => tensors.len(),
+            Self::Fields(width, values) => values.len().checked_div(*width).unwrap_or(0),
         }
     }
 
@@ -126,6 +129,7 @@ impl<'a> Slice<'a> {
                 on[rows].iter().for_each(|v| associated_row(v.vertex, v.id, [v.uv[0], v.uv[1], v.r], sink));
             }
             Self::Tensors(tensors) => field_rows(&[(6, tensors.as_flattened())], rows, sink),
+            Self::Fields(width, values) => field_rows(&[(width, values)], rows, sink),
         }
     }
 }

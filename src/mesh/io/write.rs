@@ -91,6 +91,7 @@ pub(super) fn check_slice(team: Team<'_>, slice: &Slice<'_>, start: usize, count
             })
         }
         Slice::Tensors(tensors) => rows.are_finite(|v| tensors[v]),
+        Slice::Fields(width, values) => rows.are_finite(|v| &values[v * width..][..width]),
     }
 }
 

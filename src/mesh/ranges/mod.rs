@@ -2,26 +2,31 @@
 //!
 //! Slices of the tetrahedra in the order of the file tell which classes of vertices each block of them has ([`Blocks`]). So a range of vertices
 //! reads the blocks alone that may have some of its tetrahedra ([`each_range`]). What is known of single vertices is read for each slice and range
-//! anew ([`gathered`]), or lies in a scratch folder ([`Column`], [`Neighbours`]).
+//! anew ([`gathered`]), or lies in a scratch folder ([`Column`], [`Table`], [`Neighbours`]; [`Bins`] has what belongs together by its place in space).
 //!
 //! Where tetrahedra that are near each other have near numbers, and so have their vertices, each is read a few times in all; where they have
 //! not, every range reads all of the file (docs/decisions/inspection.md).
+mod bins;
 mod blocks;
 mod column;
 mod gathered;
 mod neighbours;
 mod numbering;
 mod ranged;
+mod table;
 
+pub use bins::Bins;
 pub use blocks::{Bits, Blocks, Classes};
 pub use column::{Column, Scratch};
 pub use gathered::{gathered, runs};
 pub use neighbours::{Around, Neighbours};
 pub use numbering::{Numbering, renumbered};
 pub use ranged::{Ranged, each_range};
+pub use table::Table;
 
 use super::io::Error;
 use super::io::slices::MeshReader;
+use crate::tasks::{GRAIN, Team};
 
 /// Bytes of a block of the index.
 pub use blocks::BYTES as OF_BLOCK;
@@ -46,4 +51,17 @@ pub fn check_lists(mesh: &MeshReader) -> Result<(), Error> {
     ];
     lists.into_iter().try_for_each(|list| list(mesh).map(drop))?;
     mesh.association().map(drop)
+}
+
+/// Reads what [`check_lists`] does, and the triangles and edges, by slices.
+///
+/// # Errors
+/// When one is wrong.
+pub fn check_all_but_tets(team: Team<'_>, mesh: &MeshReader) -> Result<(), Error> {
+    check_lists(mesh)?;
+    let counts = mesh.counts();
+    let triangles = team.chunks(4 * GRAIN, counts.triangles, |range| mesh.triangles(Team::alone(), range).map(drop));
+    triangles.into_iter().collect::<Result<(), _>>()?;
+    let edges = team.chunks(4 * GRAIN, counts.edges, |range| mesh.edges(Team::alone(), range).map(drop));
+    edges.into_iter().collect()
 }

@@ -1,5 +1,6 @@
 //! Metric files larger than memory: read and written by ranges of vertices.
 use super::{Field, check_count, checked_log, held, held_exp, of_vertices, only_metric, tensors};
+use crate::mesh::io::FieldKind;
 use crate::mesh::io::slices::{MetricWriter, SolutionReader};
 use crate::metric::{Error, Sym3};
 use crate::tasks::Team;
@@ -40,6 +41,21 @@ impl Field {
         of_vertices(team, file.path(), &solution, start, |m| m.is_spd().then_some(m))
     }
 
+    /// M, shape (n, 6), at these vertices, with the checks of [`Field::logs_in`]: tensors to the last bit as the file has them, and those of sizes as
+    /// [`Field::solution_of_logs`] has them.
+    ///
+    /// # Errors
+    /// As there, and [`Error::NotHeld`] for a size whose tensor is not positive definite in doubles.
+    pub fn tensors_in(team: Team<'_>, file: &SolutionReader, range: Range<usize>) -> Result<Vec<[f64; 6]>, Error> {
+        let (kind, start) = (only_metric(file.path(), file.kinds())?, range.start);
+        let solution = file.fields(team, range)?;
+        let logs = of_vertices(team, file.path(), &solution, start, checked_log)?;
+        match kind {
+            FieldKind::Scalar => tensors(team, file.path(), start, &logs, held_exp),
+            _ => Ok(solution.fields[0].values.as_chunks().0.to_vec()),
+        }
+    }
+
     /// Writes metrics, shape (n,), from vertex `start` (from 0) on.
     ///
     /// # Errors
@@ -60,7 +76,7 @@ impl Field {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::io::{self, FieldKind, Solution, SolutionField};
+    use crate::mesh::io::{self, Solution, SolutionField};
     use std::fs::{self, File};
 
     #[test]
@@ -85,6 +101,8 @@ mod tests {
         let file = Field::open(&path("a.solb"), 9).unwrap();
         assert_eq!(Field::logs_in(Team::alone(), &file, 2..7).unwrap(), whole[2..7]);
         assert_eq!(Field::metrics_in(Team::alone(), &file, 2..7).unwrap(), metrics[2..7]);
+        let tensors: Vec<_> = metrics[2..7].iter().map(|m| m.0).collect();
+        assert_eq!(Field::tensors_in(Team::alone(), &file, 2..7).unwrap(), tensors);
         let message = Field::open(&path("a.solb"), 8).unwrap_err().to_string();
         assert!(message.contains("metric at 9 vertices, but the mesh has 8"), "{message}");
     }

@@ -1,7 +1,7 @@
 //! What is needed of the mesh, in a scratch folder.
 use super::{Error, SLICE, Sizes, each_slice};
 use crate::mesh::io::slices::MeshReader;
-use crate::mesh::ranges::{Blocks, Classes, Column, Neighbours, Numbering, Scratch, check_lists};
+use crate::mesh::ranges::{Blocks, Classes, Column, Neighbours, Numbering, Scratch, check_all_but_tets};
 use crate::mesh::vector::{Vec3, volume6};
 use crate::metric::multiscale::Extent;
 use crate::metric::{Sym3, field};
@@ -35,9 +35,7 @@ impl Mesh {
     /// Reads it, and all else in its file, so that what is wrong there is told.
     pub fn read(team: Team<'_>, mesh: &MeshReader, sizes: &Sizes, scratch: &Scratch) -> Result<Self, Error> {
         let counts = *mesh.counts();
-        check_lists(mesh)?;
-        each_slice(team, SLICE, counts.triangles, |range| Ok(mesh.triangles(Team::alone(), range)?.len()))?;
-        each_slice(team, SLICE, counts.edges, |range| Ok(mesh.edges(Team::alone(), range)?.len()))?;
+        check_all_but_tets(team, mesh)?;
         let points = scratch.column()?;
         each_slice(team, SLICE, counts.vertices, |range| {
             Ok(points.write(range.start, &mesh.vertices(Team::alone(), range)?.0)?)

@@ -10,8 +10,10 @@ use std::convert::Infallible;
 use std::time::Duration;
 use tokio::sync::watch;
 
-/// How often the database is asked of a job that may be at work elsewhere.
+/// How often the database is asked of a job that may be at work elsewhere,
 const LOOK: Duration = Duration::from_secs(2);
+/// and of one that can be at work here alone.
+const LOOK_HERE: Duration = Duration::from_secs(30);
 
 /// The stream of one client.
 struct Watched {
@@ -45,7 +47,8 @@ impl Watched {
                 return Some((Ok(Event::default().event("progress").data(text)), self));
             }
             // News of a job that is at work here come at once.
-            let _ = tokio::time::timeout(LOOK, self.news.changed()).await;
+            let look = if self.service.catalogue.is_shared() { LOOK } else { LOOK_HERE };
+            let _ = tokio::time::timeout(look, self.news.changed()).await;
         }
     }
 }

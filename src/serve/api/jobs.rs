@@ -3,6 +3,7 @@ use super::Shared;
 use super::caller::Caller;
 use super::download::contents;
 use super::error::Problem;
+use super::uploads::check_room;
 use crate::serve::catalogue::{Job, NewJob, Produced, State};
 use crate::serve::commands::Request;
 use crate::serve::work::LOG_NAME;
@@ -64,6 +65,7 @@ pub async fn add(
             )));
         }
     }
+    check_room(&service, &caller, 0).await?;
     let limits = service.settings.limits;
     let waiting = service.catalogue.count_jobs(Some(&caller.owner), [State::Queued, State::Running]).await?;
     if waiting >= limits.owner_jobs {

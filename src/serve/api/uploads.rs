@@ -49,7 +49,7 @@ fn files(settings: &Settings, id: &str) -> Result<[PathBuf; 2], Problem> {
 }
 
 /// Refuses what would be more than an owner may keep.
-async fn check_room(service: &Shared, caller: &Caller, bytes: u64) -> Result<(), Problem> {
+pub async fn check_room(service: &Shared, caller: &Caller, bytes: u64) -> Result<(), Problem> {
     let limits = service.settings.limits;
     if bytes > limits.file {
         let text = format!("a file may have {} bytes here", limits.file);

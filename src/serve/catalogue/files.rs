@@ -98,7 +98,7 @@ impl Catalogue {
             .bind(name)
             .bind(bytes)
             .bind(created)
-            .execute(&self.pool)
+            .execute(&self.writer)
             .await?;
         Ok(File { id: id.into(), kind, name: name.into(), bytes, created })
     }
@@ -139,7 +139,7 @@ impl Catalogue {
     /// When the database refuses.
     pub async fn remove_file(&self, owner: &str, id: &str) -> Result<bool, sqlx::Error> {
         let text = "DELETE FROM files WHERE owner = $1 AND id = $2";
-        Ok(sqlx::query(text).bind(owner).bind(id).execute(&self.pool).await?.rows_affected() > 0)
+        Ok(sqlx::query(text).bind(owner).bind(id).execute(&self.writer).await?.rows_affected() > 0)
     }
 
     /// Bytes that an owner keeps: uploads and results.
@@ -158,8 +158,10 @@ impl Catalogue {
     /// # Errors
     /// When the database refuses.
     pub async fn is_forgotten(&self, id: &str) -> Result<bool, sqlx::Error> {
+        // A job that has not ended may read them.
         let text =
-            "SELECT 1 WHERE EXISTS (SELECT 1 FROM files WHERE id = $1) OR EXISTS (SELECT 1 FROM results WHERE id = $1)";
-        Ok(sqlx::query(text).bind(id).fetch_optional(&self.pool).await?.is_none())
+            "SELECT 1 WHERE EXISTS (SELECT 1 FROM files WHERE id = $1) OR EXISTS (SELECT 1 FROM results WHERE id = $1)
+            OR EXISTS (SELECT 1 FROM jobs WHERE state IN ('queued', 'running') AND request LIKE $2)";
+        Ok(sqlx::query(text).bind(id).bind(format!("%{id}%")).fetch_optional(&self.pool).await?.is_none())
     }
 }

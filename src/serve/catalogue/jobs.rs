@@ -161,7 +161,7 @@ impl Catalogue {
             "INSERT INTO jobs (id, owner, label, request, command, state, created, attempt, lease, cancelled, needs)
             VALUES ($1, $2, $3, $4, $5, 'queued', $6, 0, 0, 0, $7)";
         let query = sqlx::query(text).bind(&id).bind(new.owner).bind(new.label).bind(new.request).bind(new.command);
-        query.bind(now()).bind(new.needs as i64).execute(&self.pool).await?;
+        query.bind(now()).bind(new.needs as i64).execute(&self.writer).await?;
         Ok(id)
     }
 
@@ -214,7 +214,7 @@ impl Catalogue {
             self.locked()
         );
         let query = sqlx::query(&text).bind(worker).bind(lease).bind(now()).bind(memory as i64);
-        let Some(row) = query.fetch_optional(&self.pool).await? else { return Ok(None) };
+        let Some(row) = query.fetch_optional(&self.writer).await? else { return Ok(None) };
         Ok(Some(Claim {
             id: row.try_get("id")?,
             owner: row.try_get("owner")?,
@@ -230,7 +230,7 @@ impl Catalogue {
     /// When the database refuses.
     pub async fn renew(&self, worker: &str, lease: i64) -> Result<Vec<String>, sqlx::Error> {
         let text = "UPDATE jobs SET lease = $2 WHERE worker = $1 AND state = 'running'";
-        sqlx::query(text).bind(worker).bind(lease).execute(&self.pool).await?;
+        sqlx::query(text).bind(worker).bind(lease).execute(&self.writer).await?;
         let text = "SELECT id FROM jobs WHERE worker = $1 AND state = 'running' AND cancelled = 1";
         let rows = sqlx::query(text).bind(worker).fetch_all(&self.pool).await?;
         rows.iter().map(|row| row.try_get(0)).collect()
@@ -243,7 +243,7 @@ impl Catalogue {
     pub async fn take_back(&self, all: bool) -> Result<u64, sqlx::Error> {
         let text = "UPDATE jobs SET state = 'queued', worker = NULL WHERE state = 'running' AND (lease < $1 OR $2 = 1)";
         let query = sqlx::query(text).bind(now()).bind(i64::from(all));
-        Ok(query.execute(&self.pool).await?.rows_affected())
+        Ok(query.execute(&self.writer).await?.rows_affected())
     }
 
     /// A job that was taken waits again, and is known to need so much memory. Whether it was still ours.
@@ -254,7 +254,7 @@ impl Catalogue {
         let text = "UPDATE jobs SET state = 'queued', worker = NULL, needs = $4
             WHERE id = $1 AND attempt = $2 AND worker = $3 AND state = 'running'";
         let query = sqlx::query(text).bind(id).bind(attempt).bind(worker).bind(needs as i64);
-        Ok(query.execute(&self.pool).await?.rows_affected() > 0)
+        Ok(query.execute(&self.writer).await?.rows_affected() > 0)
     }
 
     /// What a job says of its progress, as JSON.
@@ -263,7 +263,7 @@ impl Catalogue {
     /// When the database refuses.
     pub async fn note_progress(&self, id: &str, progress: &str) -> Result<(), sqlx::Error> {
         let text = "UPDATE jobs SET progress = $2 WHERE id = $1 AND state = 'running'";
-        sqlx::query(text).bind(id).bind(progress).execute(&self.pool).await.map(drop)
+        sqlx::query(text).bind(id).bind(progress).execute(&self.writer).await.map(drop)
     }
 
     /// A job has ended: once, for the worker that has it, with all its results or not at all. Whether it was still ours.
@@ -271,7 +271,7 @@ impl Catalogue {
     /// # Errors
     /// When the database refuses.
     pub async fn end_job(&self, (id, attempt): (&str, i64), worker: &str, end: &End) -> Result<bool, sqlx::Error> {
-        let mut all = self.pool.begin().await?;
+        let mut all = self.writer.begin().await?;
         let text = "UPDATE jobs SET state = $4, exit_code = $5, reason = $6, ended = $7, worker = NULL
             WHERE id = $1 AND attempt = $2 AND worker = $3 AND state = 'running'";
         let query = sqlx::query(text).bind(id).bind(attempt).bind(worker).bind(end.state.name()).bind(end.exit_code);
@@ -294,7 +294,7 @@ impl Catalogue {
         let text = "UPDATE jobs SET cancelled = 1, ended = CASE WHEN state = 'queued' THEN $3 ELSE ended END,
                 state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END
             WHERE owner = $1 AND id = $2 AND state IN ('queued', 'running')";
-        Ok(sqlx::query(text).bind(owner).bind(id).bind(now()).execute(&self.pool).await?.rows_affected() > 0)
+        Ok(sqlx::query(text).bind(owner).bind(id).bind(now()).execute(&self.writer).await?.rows_affected() > 0)
     }
 
     /// Whether a job shall end.
@@ -311,7 +311,7 @@ impl Catalogue {
     /// # Errors
     /// When the database refuses.
     pub async fn remove_job(&self, owner: &str, id: &str) -> Result<bool, sqlx::Error> {
-        let mut all = self.pool.begin().await?;
+        let mut all = self.writer.begin().await?;
         let text = "DELETE FROM jobs WHERE owner = $1 AND id = $2 AND state NOT IN ('queued', 'running')";
         if sqlx::query(text).bind(owner).bind(id).execute(&mut *all).await?.rows_affected() == 0 {
             return Ok(false);

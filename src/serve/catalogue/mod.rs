@@ -39,7 +39,11 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// The database.
 #[derive(Clone)]
 pub struct Catalogue {
+    /// For who reads.
     pool: AnyPool,
+    /// For who writes. Of SQLite it is one connection: whoever comes to it waits for the one before, and holds up no reader; two that write at once
+    /// would sleep and try again, in connections that readers wait for.
+    writer: AnyPool,
     /// Whether several machines may share it.
     is_shared: bool,
 }
@@ -57,21 +61,25 @@ impl Catalogue {
         };
         let options = AnyConnectOptions::from_str(&address)?;
         let options = sqlx::ConnectOptions::disable_statement_logging(options);
-        let pool = AnyPoolOptions::new().max_connections(if is_shared { 8 } else { 4 }).acquire_timeout(PATIENCE);
-        let pool = pool.after_connect(move |connection, _| {
-            Box::pin(async move {
-                if !is_shared {
-                    // What is acknowledged is on the disk. Readers do not wait for a writer.
-                    let how = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA busy_timeout = 20000";
-                    connection.execute(how).await?;
-                }
-                Ok(())
-            })
-        });
-        let pool = pool.connect_with(options).await?;
-        let this = Self { pool, is_shared };
+        let connections = |most: u32| {
+            let pool = AnyPoolOptions::new().max_connections(most).acquire_timeout(PATIENCE);
+            let pool = pool.after_connect(move |connection, _| {
+                Box::pin(async move {
+                    if !is_shared {
+                        // What is acknowledged is on the disk. Readers do not wait for a writer.
+                        let how = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA busy_timeout = 20000";
+                        connection.execute(how).await?;
+                    }
+                    Ok(())
+                })
+            });
+            pool.connect_with(options.clone())
+        };
+        let writer = connections(if is_shared { 8 } else { 1 }).await?;
+        let pool = if is_shared { writer.clone() } else { connections(4).await? };
+        let this = Self { pool, writer, is_shared };
         for table in TABLES.split(';').map(str::trim).filter(|table| !table.is_empty()) {
-            sqlx::query(table).execute(&this.pool).await?;
+            sqlx::query(table).execute(&this.writer).await?;
         }
         Ok(this)
     }

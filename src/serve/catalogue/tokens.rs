@@ -90,7 +90,7 @@ impl Catalogue {
             "INSERT INTO tokens (id, hash, owner, scopes, label, created, expires) VALUES ($1, $2, $3, $4, $5, $6, $7)";
         let id = new_id()?[..16].to_owned();
         let query = sqlx::query(text).bind(id).bind(digest(secret.as_bytes())).bind(owner).bind(scopes.join(" "));
-        query.bind(label).bind(now()).bind(expires).execute(&self.pool).await?;
+        query.bind(label).bind(now()).bind(expires).execute(&self.writer).await?;
         Ok(secret)
     }
 
@@ -119,6 +119,6 @@ impl Catalogue {
     /// When the database refuses.
     pub async fn revoke(&self, id: &str) -> Result<bool, sqlx::Error> {
         let text = "UPDATE tokens SET revoked = $2 WHERE id = $1 AND revoked IS NULL";
-        Ok(sqlx::query(text).bind(id).bind(now()).execute(&self.pool).await?.rows_affected() > 0)
+        Ok(sqlx::query(text).bind(id).bind(now()).execute(&self.writer).await?.rows_affected() > 0)
     }
 }

@@ -40,8 +40,11 @@ impl Process {
     pub fn start(model: Option<&Path>) -> io::Result<Self> {
         let mut command = Command::new(std::env::current_exe()?);
         command.arg("warm").args(model).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
-        // Ctrl-C at the terminal is for the service, which ends its jobs in good order.
-        command.process_group(0).kill_on_drop(true);
+        // Ctrl-C at the terminal is for the service, which ends its jobs in good order. In a session of their own jobs do not take from the service
+        // what the system gives to its session (sched_autogroup).
+        // SAFETY: a system call, which may be made between fork and exec.
+        unsafe { command.pre_exec(|| if libc::setsid() < 0 { Err(io::Error::last_os_error()) } else { Ok(()) }) };
+        command.kill_on_drop(true);
         let mut child = command.spawn()?;
         let (Some(input), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(io::Error::other("no pipes"));

@@ -9,7 +9,7 @@ use crate::serve::catalogue::{Claim, End, Produced, State};
 use crate::serve::commands::{Checked, Request};
 use crate::serve::ids::{new_id, now};
 use std::io;
-use std::sync::atomic::{AtomicI32, AtomicU8, Ordering::SeqCst};
+use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU8, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::{Notify, watch};
@@ -49,6 +49,8 @@ struct Running {
     id: String,
     group: AtomicI32,
     ends: AtomicU8,
+    /// Whether its process was interrupted: a second time it would end at once, without its last valid mesh.
+    is_interrupted: AtomicBool,
     memory: u64,
 }
 
@@ -56,7 +58,16 @@ impl Running {
     fn end(&self, why: u8) {
         // What was asked first counts.
         let _ = self.ends.compare_exchange(GOES_ON, why, SeqCst, SeqCst);
-        self.signal(if why == CANCELLED { libc::SIGINT } else { libc::SIGKILL });
+        self.tell(why);
+    }
+
+    /// Has its process end, once there is one.
+    fn tell(&self, why: u8) {
+        if why != CANCELLED {
+            self.signal(libc::SIGKILL);
+        } else if self.group.load(SeqCst) > 1 && !self.is_interrupted.swap(true, SeqCst) {
+            self.signal(libc::SIGINT);
+        }
     }
 
     fn signal(&self, signal: i32) {
@@ -125,8 +136,9 @@ async fn run(shop: Arc<Shop>, mut stopped: watch::Receiver<bool>) {
         let has_room = shop.lock().len() < shop.service.settings.limits.jobs;
         match if has_room { shop.claim().await } else { Ok(None) } {
             Ok(Some(claim)) => {
-                let shop = Arc::clone(&shop);
-                jobs.spawn(async move { shop.work(claim).await });
+                // It counts from now on, and not once its task is at work.
+                let (shop, job) = (Arc::clone(&shop), shop.takes(&claim));
+                jobs.spawn(async move { shop.work(claim, job).await });
                 continue;
             }
             Ok(None) => {}
@@ -202,6 +214,9 @@ impl Shop {
             Ok(cancelled) => cancelled.iter().for_each(|id| self.cancel(id)),
             Err(error) => tracing::error!(%error, "jobs cannot be renewed"),
         }
+        if !catalogue.is_shared() {
+            return;
+        }
         match catalogue.take_back(false).await {
             Ok(0) => {}
             Ok(jobs) => tracing::warn!(jobs, "jobs of a worker that is gone wait again"),
@@ -224,15 +239,22 @@ impl Shop {
         self.service.catalogue.claim(&self.name, lease, if is_first { i64::MAX as u64 } else { free }).await
     }
 
-    /// Brings a job to its end.
-    async fn work(self: Arc<Self>, claim: Claim) {
+    /// A job is at work here.
+    fn takes(&self, claim: &Claim) -> Arc<Running> {
         let job = Arc::new(Running {
             id: claim.id.clone(),
             group: AtomicI32::new(0),
             ends: AtomicU8::new(GOES_ON),
+            is_interrupted: AtomicBool::new(false),
             memory: claim.needs.max(UNKNOWN),
         });
         self.lock().push(Arc::clone(&job));
+        self.service.hub.tell(&claim.id, |seen| seen.progress = None);
+        job
+    }
+
+    /// Brings a job to its end.
+    async fn work(self: Arc<Self>, claim: Claim, job: Arc<Running>) {
         let began = Instant::now();
         let end = self.brought_to_end(&claim, &job).await;
         let name = (claim.id.as_str(), claim.attempt);
@@ -291,11 +313,13 @@ impl Shop {
             Ended::Vanished if claim.attempt < MOST_ATTEMPTS => return Err(claim.needs),
             _ => {}
         }
+        // What is collected goes: the log too.
+        let log = tail(&folder.path().join(LOG), 4096);
         let (results, lost) = match folder.collect(&self.service.blobs).await {
             Ok(results) => (results, None),
             Err(error) => (Vec::new(), Some(format!("what it made cannot be kept: {error}"))),
         };
-        Ok(end_of(ended, ends == CANCELLED, lost, results, &tail(&folder.path().join(LOG), 4096)))
+        Ok(end_of(ended, ends == CANCELLED, lost, results, &log))
     }
 
     async fn run(&self, request: &Request, checked: &Checked, folder: &Folder, job: &Running) -> io::Result<Ended> {
@@ -342,7 +366,7 @@ impl Shop {
                     job.group.store(process, SeqCst);
                     match job.ends.load(SeqCst) {
                         GOES_ON => {}
-                        why => job.end(why),
+                        why => job.tell(why),
                     }
                 }
                 Some(Answer::Ended { code, signal, .. }) => {
@@ -425,7 +449,7 @@ fn end_of(ended: Ended, is_cancelled: bool, lost: Option<String>, results: Vec<P
 
 /// What an exit code means, in the words of the program where it has said some.
 fn why(code: i32, log: &str) -> String {
-    let said = log.lines().rev().find_map(|line| line.strip_prefix("geo-adapt: error: "));
+    let said = log.rsplit_once("geo-adapt: error: ").map(|(_, said)| said.trim());
     match (said, code) {
         (Some(said), _) => said.to_owned(),
         (None, 1) => "the mesh is not valid, or not on its model: see the report".into(),

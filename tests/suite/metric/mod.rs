@@ -4,3 +4,4 @@ mod field;
 mod larger_than_memory;
 mod multiscale;
 mod transfer;
+mod transfer_larger_than_memory;

@@ -11,6 +11,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
+            "serve",
+            "remote",
             "cycle",
             "view",
             "formats",
@@ -56,6 +58,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("memory", &[]),
     ("process", &[]),
     ("ranks", &[]),
+    ("serve", &[]),
+    ("remote", &[]),
 ];
 
 /// Rooms in which no files name each other in a circle, but within one part: a module of the room with all that is in it.

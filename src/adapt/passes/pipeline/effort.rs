@@ -12,6 +12,8 @@ pub struct Effort {
     pub smooths: bool,
     /// A pass for the sizes that changes less than this share of the vertices is the last.
     pub little: f64,
+    /// A pass for the shapes that saves less than this share of the mean of 1/Q − 1 is the last.
+    pub settled: f64,
     /// Whether there are passes for the shapes once all vertices are on the model.
     pub shapes: bool,
     /// Whether the worst tetrahedra are repaired one by one.
@@ -21,14 +23,17 @@ pub struct Effort {
 impl Effort {
     /// For a unit mesh.
     pub const FULL: Self =
-        Self { stages: true, waits: false, smooths: true, little: 0.05, shapes: true, repairs: true };
+        Self { stages: true, waits: false, smooths: true, little: 0.05, settled: 0.2, shapes: true, repairs: true };
 
     /// Between cuts that will move: what is bad beside them waits until then.
     pub const BETWEEN_CUTS: Self = Self { repairs: false, ..Self::FULL };
 
+    /// Around cuts that have moved: a quarter or so is at one, the rest is good already, and what a pass saves is a share of the cost of both.
+    pub const AROUND_CUTS: Self = Self { settled: 0.05, ..Self::FULL };
+
     /// For a draft.
     pub const DRAFT: Self =
-        Self { stages: false, waits: true, smooths: false, little: 0.1, shapes: false, repairs: true };
+        Self { stages: false, waits: true, smooths: false, little: 0.1, settled: 0.2, shapes: false, repairs: true };
 }
 
 #[cfg(test)]

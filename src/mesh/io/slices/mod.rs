@@ -14,7 +14,7 @@ mod writer;
 
 pub(in crate::mesh) use file::Positioned;
 pub use reader::{MeshReader, SolutionReader};
-pub use writer::{MeshWriter, MetricWriter, Written};
+pub use writer::{MeshWriter, MetricWriter, SolutionWriter, Written};
 
 #[cfg(test)]
 mod tests;

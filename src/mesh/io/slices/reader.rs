@@ -205,19 +205,35 @@ impl SolutionReader {
         &self.notices
     }
 
+    /// All values of these vertices, from 0, in rows of those of a vertex: shape (n, width).
+    ///
+    /// # Errors
+    /// As of [`MeshReader::vertices`].
+    pub fn rows(&self, team: Team<'_>, range: Range<usize>) -> Result<Vec<f64>, Error> {
+        let width = self.width();
+        let section = self.reader.section(Keyword::SolAtVertices, &range)?;
+        let mut rows = vec![0.0; width * range.len()];
+        if width > 0 {
+            let parts = rows.chunks_mut(width * ROWS).collect();
+            self.reader.fill(team, section, range, parts, |values, place, row| {
+                values[width * place..][..width].iter_mut().try_for_each(|value| row.real().map(|read| *value = read))
+            })?;
+        }
+        Ok(rows)
+    }
+
+    /// Values of a row.
+    pub fn width(&self) -> usize {
+        self.kinds.iter().map(|kind| kind.values()).sum()
+    }
+
     /// All fields at these vertices, from 0: a solution of so many.
     ///
     /// # Errors
     /// As of [`MeshReader::vertices`].
     pub fn fields(&self, team: Team<'_>, range: Range<usize>) -> Result<Solution, Error> {
-        let width: usize = self.kinds.iter().map(|kind| kind.values()).sum();
-        let section = self.reader.section(Keyword::SolAtVertices, &range)?;
-        let vertices = range.len();
-        let mut rows = vec![0.0; width * vertices];
-        let parts = rows.chunks_mut(width * ROWS).collect();
-        self.reader.fill(team, section, range, parts, |values, place, row| {
-            values[width * place..][..width].iter_mut().try_for_each(|value| row.real().map(|read| *value = read))
-        })?;
+        let (width, vertices) = (self.width(), range.len());
+        let rows = self.rows(team, range)?;
         let mut before = 0;
         let field = |&kind: &FieldKind| {
             let own = before..before + kind.values();

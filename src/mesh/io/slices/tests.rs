@@ -318,6 +318,16 @@ fn fields_of_several_kinds_come_apart() {
     assert_eq!(some.vertices, GRAIN + 4);
     assert!(some.fields[0].values == solution.fields[0].values[9..3 * (GRAIN + 7)]);
     assert!(some.fields[1].values == solution.fields[1].values[3..GRAIN + 7]);
+    let (width, rows) = (reader.width(), reader.rows(Team::alone(), 0..count).unwrap());
+    assert_eq!((width, &rows[4..8]), (4, &[3.0, 4.0, 5.0, 1.0].map(|k| k / 7.0)[..]));
+    // Written by slices they are the same bytes.
+    let sliced = folder.path().join("b.solb");
+    let writer = SolutionWriter::create(created(&sliced), &sliced, count, reader.kinds()).unwrap();
+    writer.put(Team::alone(), 9, (width, &rows[4 * 9..])).unwrap();
+    assert!(writer.put(Team::alone(), 0, (width, &[f64::NAN; 4])).is_err());
+    writer.put(Team::alone(), 0, (width, &rows[..4 * 9])).unwrap();
+    writer.finish().unwrap();
+    assert!(fs::read(&sliced).unwrap() == fs::read(&path).unwrap());
     let message = reader.fields(Team::alone(), 0..count + 1).unwrap_err().to_string();
     assert!(message.ends_with(&format!("rows 1 to {} are asked for, but there are {count}", count + 1)), "{message}");
 }

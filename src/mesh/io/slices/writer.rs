@@ -136,6 +136,37 @@ impl MetricWriter {
     }
 }
 
+/// A solution file (.solb), some fields at each vertex, whose rows come in any order, from any thread.
+#[derive(Debug)]
+pub struct SolutionWriter(Writer);
+
+impl SolutionWriter {
+    /// Begins an empty file, which is ours, for so many vertices with fields of these kinds. `path` is what errors say.
+    ///
+    /// # Errors
+    /// [`Error::System`] when it cannot be written.
+    pub fn create(file: File, path: &Path, vertices: usize, kinds: &[FieldKind]) -> Result<Self, Error> {
+        let section = Section { keyword: Keyword::SolAtVertices, count: vertices, body: 0..0, kinds: kinds.to_vec() };
+        Writer::create(file, path, &[section], MeshCounts { vertices, ..MeshCounts::default() }).map(Self)
+    }
+
+    /// Writes rows of all values of a vertex, shape (n, width), from vertex `start` (from 0) on.
+    ///
+    /// # Errors
+    /// As of [`MeshWriter::put`].
+    pub fn put(&self, team: Team<'_>, start: usize, (width, values): (usize, &[f64])) -> Result<(), Error> {
+        self.0.put(team, start, Slice::Fields(width, values))
+    }
+
+    /// Ends the file.
+    ///
+    /// # Errors
+    /// [`Error::Content`] when rows are missing.
+    pub fn finish(self) -> Result<(), Error> {
+        self.0.finish()
+    }
+}
+
 /// The section of a metric.
 fn tensors(vertices: usize) -> Section {
     Section { keyword: Keyword::SolAtVertices, count: vertices, body: 0..0, kinds: vec![FieldKind::SymmetricTensor] }
