@@ -5,7 +5,6 @@
 mod common;
 
 #[path = "../suite/browser.rs"]
-#[allow(dead_code, reason = "other pages turn the wheel")]
 mod browser;
 mod client;
 mod jobs;

@@ -1,4 +1,5 @@
 //! A headless Chromium, led over the WebDriver protocol (w3.org/TR/webdriver2) by the chromedriver that belongs to it.
+#![allow(dead_code, reason = "each program of tests uses its own part")]
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;

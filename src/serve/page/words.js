@@ -27,6 +27,11 @@ export function shell(steps) {
 
 /** For Python, with this service. */
 export function python(steps, address) {
-  const line = ({ command, words }) => `server.run(${JSON.stringify(command)}, [${words.map((word) => JSON.stringify(word)).join(", ")}])`;
-  return ["import geo_adapt", "", `server = geo_adapt.connect(${JSON.stringify(address)})`, ...steps.map(line)].join("\n");
+  const text = JSON.stringify, last = steps.at(-1);
+  const line = ({ command, words, files, wants = [] }, i) => {
+    const of = (name) => (wants.includes(name) ? `job.result(${text(name)})` : text(name));
+    const read = words.filter((word) => wants.includes(word) || Object.hasOwn(files, word)).map((word) => `${text(word)}: ${of(word)}`);
+    return `job = server.run(${text(command)}, [${words.map((word) => text(word)).join(", ")}], files={${read.join(", ")}})${i < steps.length - 1 ? ".wait()" : ""}`;
+  };
+  return ["import geo_adapt", "", `server = geo_adapt.connect(${text(address)})`, ...steps.map(line), ...(last ? [`job.wait().result(${text(last.output)}).save(".")`] : [])].join("\n");
 }
