@@ -16,7 +16,7 @@ const FRAME: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
 
 /// The program, in the order of what builds on what.
-const PROGRAM: [&str; 11] = [
+const PROGRAM: [&str; 12] = [
     include_str!("page/inflate.js"),
     include_str!("page/data.js"),
     include_str!("page/camera.js"),
@@ -27,6 +27,7 @@ const PROGRAM: [&str; 11] = [
     include_str!("page/panel.js"),
     include_str!("page/labels.js"),
     include_str!("page/names.js"),
+    include_str!("page/frame.js"),
     include_str!("page/main.js"),
 ];
 

@@ -4,6 +4,8 @@
 #[allow(dead_code)]
 mod common;
 
+#[path = "../suite/browser.rs"]
+mod browser;
 mod client;
 mod jobs;
 mod kills;
@@ -13,3 +15,4 @@ mod owners;
 mod postgres;
 mod service;
 mod uploads;
+mod workbench;

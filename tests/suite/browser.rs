@@ -1,4 +1,5 @@
 //! A headless Chromium, led over the WebDriver protocol (w3.org/TR/webdriver2) by the chromedriver that belongs to it.
+#![allow(dead_code, reason = "each program of tests uses its own part")]
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -7,6 +8,15 @@ use std::time::{Duration, Instant};
 
 /// How long a page may take; a software renderer on a busy machine is slow.
 const PATIENCE: Duration = Duration::from_secs(120);
+
+/// WebGL by software, for a page that draws.
+pub const SOFTWARE: [&str; 3] = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+/// The tabulator key, as WebDriver has it.
+pub const TAB: char = '\u{e004}';
+
+/// Most presses of it from one end of a page to the other.
+const MOST_TABS: usize = 300;
 
 /// A browser with a profile of its own; it ends with this.
 pub struct Browser {
@@ -96,7 +106,29 @@ impl Browser {
 
     /// Loads a file.
     pub fn open(&self, path: &std::path::Path) {
-        self.command("POST", "url", Some(json!({ "url": format!("file://{}", path.display()) })));
+        self.open_url(&format!("file://{}", path.display()));
+    }
+
+    /// Loads a page.
+    pub fn open_url(&self, url: &str) {
+        self.command("POST", "url", Some(json!({ "url": url })));
+    }
+
+    /// Scripts run in a frame from now on; in the page itself without one.
+    pub fn enter(&self, frame: Option<&str>) {
+        let id =
+            frame.map_or(Value::Null, |selector| self.script(&format!("return document.querySelector('{selector}')")));
+        self.command("POST", "frame", Some(json!({ "id": id })));
+    }
+
+    /// Puts downloads into a folder, without a question.
+    pub fn download_to(&self, folder: &std::path::Path) {
+        let params = json!({ "behavior": "allow", "downloadPath": folder });
+        self.command(
+            "POST",
+            "goog/cdp/execute",
+            Some(json!({ "cmd": "Browser.setDownloadBehavior", "params": params })),
+        );
     }
 
     /// What a function's body in JavaScript returns.
@@ -108,7 +140,7 @@ impl Browser {
     pub fn wait(&self, condition: &str) {
         let start = Instant::now();
         while self.script(&format!("return Boolean({condition})")) != true {
-            let state = "return JSON.stringify(document.body.dataset) + document.getElementById('message').textContent";
+            let state = "return JSON.stringify(document.body.dataset) + document.body.innerText.slice(0, 4000)";
             assert!(start.elapsed() < PATIENCE, "waited for {condition}; {}", self.script(state));
             std::thread::sleep(Duration::from_millis(100));
         }
@@ -130,8 +162,26 @@ impl Browser {
 
     /// Presses a key, by its code of WebDriver.
     pub fn key(&self, key: char) {
-        let press = |what: &str| json!({ "type": what, "value": key });
-        self.act(json!({ "type": "key", "id": "keys", "actions": [press("keyDown"), press("keyUp")] }));
+        self.keys(&key.to_string());
+    }
+
+    /// Presses keys, one after the other.
+    pub fn keys(&self, keys: &str) {
+        let press = |key: char| ["keyDown", "keyUp"].map(|what| json!({ "type": what, "value": key.to_string() }));
+        let actions: Vec<Value> = keys.chars().flat_map(press).collect();
+        self.act(json!({ "type": "key", "id": "keys", "actions": actions }));
+    }
+
+    /// Goes to what a selector names as who has no mouse: by the tabulator.
+    pub fn tab_to(&self, selector: &str) {
+        let is_there = format!("return document.activeElement.matches('{selector}')");
+        for _ in 0..MOST_TABS {
+            if self.script(&is_there) == true {
+                return;
+            }
+            self.key(TAB);
+        }
+        panic!("the tabulator does not reach {selector}");
     }
 
     fn act(&self, source: Value) {

@@ -23,6 +23,11 @@ async function start() {
   let kind = "reference";
   const status = { state: "loading", frames: 0, camera, look, model, inflate, part: null };
   window.geoAdapt = status;
+  const frame = new Frame({
+    name: ({ reference, name }) => rename(reference, name),
+    look: (asked) => lookSo(asked),
+    fit: () => fit(isShown),
+  });
 
   painter.loadColours("references", [...head.surfaces, ...head.regions].map((one) => rgbOf(one.colour)), false);
   painter.loadColours("quality", head.maps.quality, true);
@@ -100,6 +105,7 @@ async function start() {
       azimuth: camera.azimuth.toFixed(2), elevation: camera.elevation.toFixed(2),
     });
     if (error) message.textContent = "WebGL: error " + error;
+    frame.drawn(lookNow());
   };
 
   // The plane: an axis or a normal of one's own, and where along it, between the ends of the box.
@@ -144,6 +150,24 @@ async function start() {
   const faceViewer = () => {
     cut.flipped = dot(normalOf(), camera.frame().toward) < 0;
     byId("flip").checked = cut.flipped;
+  };
+
+  // How the page looks, in the model's coordinates: another page of the same model can look so too.
+  const lookNow = () => ({
+    azimuth: camera.azimuth, elevation: camera.elevation, scale: camera.scale, at: camera.target.map((x, i) => x + model.centre[i]),
+    cut: { on: byId("cutting").checked, axis: cut.axis, flipped: cut.flipped, normal: cut.normal, offset: absolute() },
+  });
+  const lookSo = ({ azimuth, elevation, scale, at = [NaN], cut: { on, axis, flipped, normal = [NaN], offset } = {} }) => {
+    if (![azimuth, elevation, scale, offset, ...at, ...normal].every(Number.isFinite) || !["x", "y", "z", "free"].includes(axis)) return;
+    Object.assign(camera, { azimuth, elevation, scale, target: at.map((x, i) => x - model.centre[i]) });
+    Object.assign(cut, { axis, normal, flipped: Boolean(flipped) });
+    document.querySelector(`[name=axis][value=${axis}]`).checked = true;
+    byId("flip").checked = cut.flipped;
+    normalInputs.forEach((input, i) => { input.value = normal[i]; });
+    setOffset(offset);
+    if (on && model.tetCount && kind === "reference") setColour("quality");
+    byId("cutting").checked = Boolean(on);
+    frame.followed(lookNow());
   };
 
   const setColour = (chosen) => {
@@ -265,7 +289,10 @@ async function start() {
   };
   listReferences(byId("surfaces"), head.surfaces, hide, (place) => fit((other) => other === place));
   listReferences(byId("regions"), head.regions);
-  listenToNames(head, head.surfaces, placeLabels);
+  const rename = listenToNames(head, head.surfaces, (place, content) => {
+    placeLabels();
+    frame.tell("names", { reference: head.surfaces[place].reference, name: head.surfaces[place].name || "", content });
+  });
   boxes().forEach((box, place) => { box.checked = isShown(place); });
   for (const [id, on] of [["all", true], ["none", false]]) {
     byId(id).onclick = () => boxes().forEach((box, place) => {
@@ -275,7 +302,9 @@ async function start() {
   }
   listen(canvas, camera, redraw, (x, y) => {
     const found = model.pick(camera, x / camera.scale, -y / camera.scale);
-    markPicked(found?.kind === "triangle" ? model.surfaces[found.element] : -1);
+    const surface = found?.kind === "triangle" ? head.surfaces[model.surfaces[found.element]] : null;
+    markPicked(surface ? model.surfaces[found.element] : -1);
+    frame.tell("picked", { reference: surface?.reference, name: surface?.name, about: surface?.about });
     describe(found, {
       head, regions: model.regions, surfaces: model.surfaces, quality: model.quality, fields: model.fields,
       qualityOfTriangle: (t) => model.qualityOfTriangle(t),

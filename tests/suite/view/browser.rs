@@ -1,5 +1,5 @@
 //! The page of `geo-adapt view` in a browser: drawn without an error, turned by the mouse, cut. Passes where there is no Chromium.
-use crate::browser::Browser;
+use crate::browser::{Browser, SOFTWARE};
 use crate::common::adapting::cube;
 use crate::common::program;
 use geo_adapt::mesh::TetMesh;
@@ -9,9 +9,6 @@ use geo_adapt::view::cut::{Part, Style};
 use geo_adapt::view::{Given, Scene};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-
-/// WebGL by software.
-const SOFTWARE: [&str; 3] = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
 /// A page of a mesh.
 fn page(folder: &Path, mesh: &TetMesh) -> PathBuf {
@@ -160,6 +157,52 @@ fn names_are_typed_and_saved_and_a_click_tells_the_surface() {
     std::fs::write(folder.path().join("in.names.json"), text.as_str().unwrap()).unwrap();
     let read = geo_adapt::geometry::names::read(&path).unwrap();
     assert_eq!(read.triangles[&2].name.as_deref(), Some("inlet"));
+    assert_eq!(browser.errors(), Vec::<serde_json::Value>::new());
+}
+
+/// A page around ours, as a service has one: it keeps what it hears, and sends what the test says.
+const AROUND: &str = r#"<!doctype html><title>around</title><iframe src="page.html" sandbox="allow-scripts" style="width: 900px; height: 700px"></iframe>
+<script>
+window.heard = [];
+const frame = document.querySelector("iframe");
+window.addEventListener("message", (event) => { if (event.source === frame.contentWindow) window.heard.push(event.data.geoAdapt); });
+window.send = (message) => frame.contentWindow.postMessage({ geoAdapt: message }, "*");
+window.last = (kind) => window.heard.findLast((one) => one.kind === kind);
+</script>"#;
+
+#[test]
+fn a_page_in_a_frame_tells_what_is_clicked_and_named_and_turned() {
+    let Some(browser) = Browser::start(&SOFTWARE) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    page(folder.path(), &cube(5, |_| 1));
+    let around = folder.path().join("around.html");
+    std::fs::write(&around, AROUND).unwrap();
+    browser.open(&around);
+    browser.wait("window.last('ready')");
+    assert_eq!(browser.script("return window.last('look') === undefined"), true);
+    browser.drag([310, 400], [0, 0]);
+    browser.wait("Number.isInteger(window.last('picked')?.reference)");
+    browser.script("window.send({ kind: 'name', reference: window.last('picked').reference, name: ' wall ' })");
+    browser.wait("window.last('names')");
+    let named = browser.script(
+        "const told = window.last('names');
+         return [told.name, told.reference === window.last('picked').reference, told.content.triangles[told.reference].name]",
+    );
+    assert_eq!(named, serde_json::json!(["wall", true, "wall"]));
+    browser.drag([310, 400], [100, 50]);
+    browser.wait("window.last('look')?.azimuth.toFixed(2) === '-95.00'");
+    // What it is asked for it does, and does not tell back; what makes no sense it leaves.
+    let count = browser.script("return window.heard.length");
+    browser.script(
+        "const look = window.last('look');
+         window.send({ ...look, kind: 'look', azimuth: 10, cut: { ...look.cut, on: true, axis: 'y', offset: 0.25 } });
+         for (const bad of [{ kind: 'look' }, { kind: 'look', ...look, azimuth: 'x' }, { kind: 'name', reference: 99, name: 'x' }, { kind: 'constructor' }, null]) window.send(bad);",
+    );
+    browser.enter(Some("iframe"));
+    browser.wait("document.body.dataset.azimuth === '10.00' && document.body.dataset.faces !== '0'");
+    assert_eq!(browser.script("return document.querySelector('[name=axis]:checked').value"), "y");
+    browser.enter(None);
+    assert_eq!(browser.script("return window.heard.length"), count);
     assert_eq!(browser.errors(), Vec::<serde_json::Value>::new());
 }
 
