@@ -71,6 +71,7 @@ static KEPT: Mutex<Option<(PathBuf, Model)>> = Mutex::new(None);
 ///
 /// # Errors
 /// As [`model`].
+#[cfg(all(feature = "serve", target_os = "linux"))]
 pub fn keep(path: &Path) -> Result<(), Box<dyn error::Error>> {
     let model = from_file(path)?;
     *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some((path.to_owned(), model));
@@ -78,6 +79,7 @@ pub fn keep(path: &Path) -> Result<(), Box<dyn error::Error>> {
 }
 
 /// The model that is kept is what will be asked for by this path, once.
+#[cfg(all(feature = "serve", target_os = "linux"))]
 pub fn call(path: &Path) {
     if let Some((name, _)) = &mut *KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
         *name = path.to_owned();

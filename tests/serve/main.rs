@@ -1,7 +1,6 @@
 //! What `geo-adapt serve` promises, of the built program over its socket.
 #![cfg(all(feature = "serve", target_os = "linux"))]
 #[path = "../common/mod.rs"]
-#[allow(dead_code)]
 mod common;
 
 #[path = "../suite/browser.rs"]
