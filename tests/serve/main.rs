@@ -1,5 +1,5 @@
 //! What `geo-adapt serve` promises, of the built program over its socket.
-#![cfg(all(feature = "serve", target_os = "linux"))]
+#![cfg(target_os = "linux")]
 #[path = "../common/mod.rs"]
 mod common;
 

@@ -9,18 +9,10 @@ use std::time::{Duration, Instant};
 /// The Enter key, as WebDriver has it.
 const ENTER: &str = "\u{e007}";
 
-/// A model as a file: with OpenCASCADE one of CAD, else the surface of a cube.
+/// A model as a file.
 fn model() -> (&'static str, String) {
-    if cfg!(feature = "occt") {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry/cube.step");
-        return ("cube.step", std::fs::read_to_string(path).unwrap());
-    }
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("cube.meshb"), crate::service::cube(3)).unwrap();
-    let mut command = program();
-    command.current_dir(&folder).args(["convert", "cube.meshb", "cube.stl"]);
-    assert!(command.output().unwrap().status.success());
-    ("cube.stl", std::fs::read_to_string(folder.path().join("cube.stl")).unwrap())
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry/cube.step");
+    ("cube.step", std::fs::read_to_string(path).unwrap())
 }
 
 /// The page of a service, when it has read what is there.
@@ -74,26 +66,21 @@ fn from_the_drop_of_a_model_to_a_download() {
     drop_file(&browser, (name, &text));
     shown(&browser, "first", name);
 
-    // A face is clicked and named; its name goes along to what is made of the model. STL has names inside.
-    if cfg!(feature = "occt") {
-        browser.drag(middle(&browser), [0, 0]);
-        browser.wait("!document.querySelector('#first form').hidden");
-        browser.tab_to("#first input");
-        browser.keys(&format!("inlet{ENTER}"));
-        browser.wait("document.getElementById('said').textContent.startsWith('Names are kept')");
-    }
+    // A face is clicked and named; its name goes along to what is made of the model.
+    browser.drag(middle(&browser), [0, 0]);
+    browser.wait("!document.querySelector('#first form').hidden");
+    browser.tab_to("#first input");
+    browser.keys(&format!("inlet{ENTER}"));
+    browser.wait("document.getElementById('said').textContent.startsWith('Names are kept')");
 
     // From here on without a mouse.
     browser.tab_to("#bootstrap [name=start]");
     browser.keys(ENTER);
     shown(&browser, "first", "cube.meshb");
-    if cfg!(feature = "occt") {
-        browser.enter(Some("#first iframe"));
-        let names =
-            browser.script("return [...document.querySelectorAll('#surfaces input.name')].map(one => one.value)");
-        assert!(names.as_array().unwrap().contains(&Value::from("inlet")), "{names}");
-        browser.enter(None);
-    }
+    browser.enter(Some("#first iframe"));
+    let names = browser.script("return [...document.querySelectorAll('#surfaces input.name')].map(one => one.value)");
+    assert!(names.as_array().unwrap().contains(&Value::from("inlet")), "{names}");
+    browser.enter(None);
     browser.tab_to("#adapt [name=size]");
     browser.keys("0.15");
     let words = browser.script("return document.getElementById('shell').textContent");
