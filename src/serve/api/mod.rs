@@ -14,14 +14,16 @@ use super::Error;
 use super::blobs::Blobs;
 use super::catalogue::Catalogue;
 use super::commands::Commands;
-use super::settings::Settings;
+use super::settings::{Settings, Tls};
 use super::work::{Hub, Shop};
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::http::{HeaderName, HeaderValue, header};
+use axum_server::tls_rustls::RustlsConfig;
 use caller::Callers;
 use figures::Figures;
 use std::net::SocketAddr;
+use std::path::Path;
 use std::sync::{Arc, OnceLock, Weak};
 use std::time::Duration;
 use tower_http::catch_panic::CatchPanicLayer;
@@ -160,25 +162,33 @@ pub async fn listen(service: &Shared, told: impl FnOnce(String)) -> Result<(), E
         ends.graceful_shutdown(Some(PATIENCE));
     });
     let app = router(service).into_make_service_with_connect_info::<SocketAddr>();
-    let scheme = if settings.tls.is_some() { "https" } else { "http" };
-    told(format!("{scheme}://{address}"));
+    let timer = hyper_util::rt::TokioTimer::new;
     let served = match &settings.tls {
         None => {
             let mut server = axum_server::from_tcp(listener).map_err(Error::disk(address))?.handle(handle);
-            server.http_builder().http1().timer(hyper_util::rt::TokioTimer::new()).header_read_timeout(HEAD);
+            server.http_builder().http1().timer(timer()).header_read_timeout(HEAD);
+            told(format!("http://{address}"));
             server.serve(app).await
         }
         Some(tls) => {
-            let _ = rustls::crypto::ring::default_provider().install_default();
-            let config = axum_server::tls_rustls::RustlsConfig::from_pem_file(&tls.certificate, &tls.key).await;
-            let config = config.map_err(Error::disk(tls.certificate.display()))?;
+            let config = certified(tls).await?;
             let server = axum_server::from_tcp_rustls(listener, config).map_err(Error::disk(address))?;
             let mut server = server.handle(handle);
-            server.http_builder().http1().timer(hyper_util::rt::TokioTimer::new()).header_read_timeout(HEAD);
+            server.http_builder().http1().timer(timer()).header_read_timeout(HEAD);
+            told(format!("https://{address}"));
             server.serve(app).await
         }
     };
     served.map_err(Error::disk(address))
+}
+
+/// Certificates and key, as rustls has them.
+async fn certified(tls: &Tls) -> Result<RustlsConfig, Error> {
+    let read = |path: &Path| std::fs::read(path).map_err(Error::disk(path.display()));
+    let (certificates, key) = (read(&tls.certificate)?, read(&tls.key)?);
+    let _ = rustls::crypto::ring::default_provider().install_default();
+    let both = format!("{} with {}", tls.certificate.display(), tls.key.display());
+    RustlsConfig::from_pem(certificates, key).await.map_err(Error::disk(both))
 }
 
 async fn asked_to_end() {

@@ -10,7 +10,7 @@ pub use tokens::{Scope, Token};
 
 use super::{Error, Settings};
 use sqlx::any::{AnyConnectOptions, AnyPoolOptions};
-use sqlx::{AnyPool, Executor};
+use sqlx::{AnyConnection, AnyPool, Connection, Executor};
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -75,6 +75,8 @@ impl Catalogue {
             });
             pool.connect_with(options.clone())
         };
+        // A pool would try again for long, and not say why.
+        AnyConnection::connect_with(&options).await?.close().await?;
         let writer = connections(if is_shared { 8 } else { 1 }).await?;
         let pool = if is_shared { writer.clone() } else { connections(4).await? };
         let this = Self { pool, writer, is_shared };
