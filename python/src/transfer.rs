@@ -54,7 +54,7 @@ pub fn transfer<'py>(
             _ => {
                 let tensors = metric.ok_or_else(|| errors::input("method: linear, mean, mass or metric"))?;
                 let logs = arrays::logs(team, tensors, count)?;
-                let logs = of_metric::at(team, &locator, &places, &logs);
+                let logs = of_metric::at(team, locator.tets(), &places, &logs);
                 return Ok(team.map(GRAIN, logs.len(), |v| logs[v].exp().0).into_flattened());
             }
         };

@@ -34,8 +34,11 @@ pub fn transfer(team: Team<'_>, mesh: Arc<TetMesh>, logs: &[Sym3], points: &[Vec
     Transferred { logs, outside: places.outside, farthest: places.farthest }
 }
 
-/// ln M at places in tetrahedra of these nodes, from ln M at all nodes.
-fn at(team: Team<'_>, tets: &[[u32; 4]], places: &Places, logs: &[Sym3]) -> Vec<Sym3> {
+/// ln M at places in tetrahedra of these nodes, shape (m, 4), from ln M at all nodes.
+///
+/// # Panics
+/// When a place or a node is not there.
+pub fn at(team: Team<'_>, tets: &[[u32; 4]], places: &Places, logs: &[Sym3]) -> Vec<Sym3> {
     team.map(GRAIN, places.len(), |i| {
         let weighted = tets[places.tets[i] as usize].into_iter().zip(places.weights[i]);
         let weighted = weighted.map(|(node, weight)| logs[node as usize].times(weight));
