@@ -15,7 +15,7 @@ fn peak(process: u32) -> u64 {
 
 #[test]
 fn many_streams_and_a_large_upload_take_little_memory() {
-    let (streams, megabytes) = if std::env::var_os("GEO_ADAPT_LONG").is_some() { (500, 2048) } else { (200, 64) };
+    let (streams, megabytes) = if std::env::var_os("GEO_ADAPT_LONG").is_some() { (500, 2048_u64) } else { (200, 64) };
     let folder = tempfile::tempdir().unwrap();
     let service = Service::start(folder.path(), &["--jobs", "1"]);
     let id = service.upload("in.meshb", &cube(4));
