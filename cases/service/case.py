@@ -12,6 +12,7 @@ import multiprocessing
 import os
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -110,6 +111,7 @@ def alone(*given):
     here, there = fork.Pipe(duplex=False)
 
     def run():
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         os.setsid()
         there.send(in_a_row(*given))
 
@@ -119,6 +121,7 @@ def alone(*given):
     try:
         return here.recv()
     finally:
+        process.terminate()
         process.join()
 
 
@@ -180,12 +183,16 @@ def figures(there, here):
 
 def main():
     options = arguments()
+    # Who ends this ends what it has started.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     OUT.mkdir(parents=True, exist_ok=True)
     cores = sorted(os.sched_getaffinity(0))[:2]
     cad = work.has_cad(options.program)
     files = work.prepare(options.program, OUT / "files", cad)
     jobs = work.jobs(SHORT if options.short else JOBS, cad)
     cycles.say(f"{len(jobs)} jobs{'' if cad else ' without OpenCASCADE'}, {CLIENTS} clients, cores {cores}, load {os.getloadavg()[0]:.1f}")
+    if os.getloadavg()[0] > 1:
+        cycles.say("others are at work on this machine: it shares its cores out by sessions, and times against times say little")
     there = served(options.program, files, jobs, cores)
     cycles.say(f"the service: {there['seconds']:.1f} s, {there['cpu']:.1f} s of the processor, load {os.getloadavg()[0]:.1f}")
     here = alone(options.program, files, jobs, cores)
