@@ -39,13 +39,12 @@ const SYSTEM: [&str; 18] = [
 /// # Errors
 /// What the system refuses.
 pub fn confine(run: &Run) -> io::Result<()> {
-    let files = run.folder.join(FILES);
-    std::env::set_current_dir(&files)?;
     let open = |name: &str| File::options().create(true).append(true).open(run.folder.join(name));
     for (file, to) in [(File::open("/dev/null")?, 0), (open(PRINTED)?, 1), (open(LOG)?, 2)] {
         // SAFETY: a system call on descriptors that are open.
         check(unsafe { libc::dup2(file.as_raw_fd(), to) })?;
     }
+    std::env::set_current_dir(run.folder.join(FILES))?;
     let temporary = run.folder.join(TEMPORARY);
     for (name, value) in
         [(EVENTS_VARIABLE, run.folder.join(EVENTS)), ("TMPDIR", temporary.clone()), ("HOME", temporary)]

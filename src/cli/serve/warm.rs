@@ -3,7 +3,7 @@
 //!
 //! It has one thread: what is forked has one too, and no lock of another is held in it.
 use super::confined::confine;
-use crate::cli::load;
+use crate::cli::{load, terminal};
 use crate::serve::protocol::{Answer, Run};
 use std::ffi::OsString;
 use std::io;
@@ -136,8 +136,7 @@ impl Runs {
                     load::call(Path::new(name));
                 }
                 if let Err(error) = confine(&run) {
-                    let text = format!("geo-adapt: error: the process of the job cannot be confined: {error}\n");
-                    drop(std::fs::write(run.folder.join(crate::serve::protocol::LOG), text));
+                    terminal::error(format_args!("the process of the job cannot be confined: {error}"));
                     // SAFETY: the process ends, with nothing to be written.
                     unsafe { libc::_exit(2) }
                 }

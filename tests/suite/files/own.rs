@@ -277,9 +277,10 @@ fn nothing_else_in_the_command_line_writes_files() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli");
     let mut sources = Vec::new();
     collect(&root, &mut sources);
-    // What goes to a folder of the run's own: meshers' scripts, what a child answers, the model that it makes for its parent, parts of a mesh.
+    // What goes to a folder of the run's own: its progress, meshers' scripts, what a child answers, the model that it makes for its parent, parts of a mesh.
     let own = [
         "workplace.rs",
+        "events.rs",
         "child.rs",
         "bootstrap/netgen.rs",
         "bootstrap/gmsh.rs",
