@@ -82,10 +82,9 @@ impl Shop {
             Ok(known) => known,
             Err(error) => return Ok(failed(error)),
         };
-        match self.service.catalogue.is_cancelled(&claim.id).await {
-            Ok(true) => return Ok(End { state: State::Cancelled, exit_code: None, reason: None, results: Vec::new() }),
-            // Where it is not known the renewal of the lease will tell.
-            Ok(false) | Err(_) => {}
+        // Where it is not known the renewal of the lease will tell.
+        if matches!(self.service.catalogue.is_cancelled(&claim.id).await, Ok(true)) {
+            return Ok(End { state: State::Cancelled, exit_code: None, reason: None, results: Vec::new() });
         }
         let path = self.service.settings.folder("jobs").join(format!("{}.{}", claim.id, claim.attempt));
         let folder = match Folder::make(path, &self.service.blobs, &request.files).await {
