@@ -147,9 +147,7 @@ impl Sent {
             let is_new = !self.read.values().any(|known| *known == other);
             if let Some(own) = own.filter(|_| is_new && other.is_file()) {
                 // What lies beside a file is found by its name.
-                let stem = |name: &str| name.split('.').next().unwrap_or_default().to_owned();
-                let renamed = own.strip_prefix(&stem(base)).map_or_else(|| own.to_owned(), |rest| stem(&name) + rest);
-                self.read.insert(renamed, other);
+                self.read.insert(renamed(own, base, &name), other);
             }
         }
         Ok(name)
@@ -169,13 +167,22 @@ impl Sent {
         if let Some(path) = self.written.get(result) {
             return path.clone();
         }
-        let stem = |name: &str| name.split('.').next().unwrap_or_default().to_owned();
         let of = self.written.iter().chain(&self.read).find(|(name, _)| stem(name) == stem(result));
         let Some((name, path)) = of.or_else(|| self.written.iter().next()) else { return result.into() };
         let own = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        let renamed = result.strip_prefix(&stem(name)).map_or_else(|| result.to_owned(), |rest| stem(own) + rest);
-        path.with_file_name(renamed)
+        path.with_file_name(renamed(result, name, own))
     }
+}
+
+/// What comes before the first dot of a name.
+fn stem(name: &str) -> &str {
+    name.split('.').next().unwrap_or_default()
+}
+
+/// The name of what lies beside a file, where that is called otherwise.
+fn renamed(beside: &str, from: &str, to: &str) -> String {
+    let rest = beside.strip_prefix(stem(from));
+    rest.map_or_else(|| beside.to_owned(), |rest| format!("{}{rest}", stem(to)))
 }
 
 /// Follows a job to its end. An interrupt asks it to end with its last valid mesh.

@@ -1,5 +1,6 @@
 //! What a client may ask the program to do. The words of a request are read by the program's own command line; no word of it leads out of the
 //! folder of its job.
+use super::catalogue::Kind;
 use super::ids::{is_digest, is_file_name};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use serde::{Deserialize, Serialize};
@@ -302,9 +303,7 @@ fn check_argument(
             if WRITTEN.contains(&id) && files.contains_key(value) {
                 return refused(format!("{value:?}: is an input and would be overwritten; give another output"));
             }
-            let ending = value.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
-            let is_model =
-                ending.is_some_and(|ending| ["step", "stp", "iges", "igs", "brep", "egads"].contains(&ending.as_str()));
+            let is_model = Kind::of_file(value) == Kind::Model;
             if is_model && files.contains_key(value) && model.is_none() {
                 *model = Some(value.to_owned());
             }
