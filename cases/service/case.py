@@ -1,6 +1,6 @@
 """The service under load: 20 clients run 200 jobs on two cores, against the program itself in a row; states, results and memory meanwhile.
 
-Starts `geo-adapt serve` on two cores. Twenty clients run 200 jobs, small adaptations of a few meshes and of a CAD model, inspections and
+A browser goes through the workbench: drops a model, makes a mesh of it, adapts that and downloads it. Then it starts `geo-adapt serve` on two cores. Twenty clients run 200 jobs, small adaptations of a few meshes and of a CAD model, inspections and
 conversions, and download what they make; another one asks for the state of a job 20 times a second. Then the program runs the same jobs, two at
 a time, and every result must be the same. --short: 40 jobs. Exit code: 0 when every floor is held, else 1. All lies under out/service.
 """
@@ -21,6 +21,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import browser  # noqa: E402
 import service  # noqa: E402
 import work  # noqa: E402
 from comparing.expected import Bound  # noqa: E402
@@ -103,6 +104,22 @@ def served(program, files, jobs, cores):
         cpu = at_work.processor() - before
     return {"seconds": seconds, "cpu": cpu, "digests": clients.results, "errors": first.errors + clients.errors,
             "states": states["seconds"], "states_errors": states["errors"], "memory": memory}
+
+
+def looked_at(program, cores, cad):
+    """A browser goes through the workbench, where the program reads models: how long that took; what it downloads is a valid mesh on its model."""
+    if not cad:
+        return {}
+    model, downloads, began = cycles.ROOT / "geometry" / "cube-cylinder.step", OUT / "downloads", time.monotonic()
+    for folder in (downloads, OUT / "data"):
+        shutil.rmtree(folder, ignore_errors=True)
+    downloads.mkdir()
+    with service.started(program, OUT / "data", cores, OUT / "serve.log") as at_work:
+        mesh = browser.through(f"http://127.0.0.1:{at_work.port}", model, 0.08, downloads)
+    seconds = time.monotonic() - began
+    subprocess.run([program, "inspect", mesh, "-q", "--cad", model], check=True, timeout=LIMIT)
+    cycles.say(f"the browser: from {model.name} to {mesh.name} in {seconds:.1f} s")
+    return {"browser, s": seconds}
 
 
 def alone(*given):
@@ -193,11 +210,12 @@ def main():
     cycles.say(f"{len(jobs)} jobs{'' if cad else ' without OpenCASCADE'}, {CLIENTS} clients, cores {cores}, load {os.getloadavg()[0]:.1f}")
     if os.getloadavg()[0] > 1:
         cycles.say("others are at work on this machine: it shares its cores out by sessions, and times against times say little")
+    seconds = looked_at(options.program, cores, cad)
     there = served(options.program, files, jobs, cores)
     cycles.say(f"the service: {there['seconds']:.1f} s, {there['cpu']:.1f} s of the processor, load {os.getloadavg()[0]:.1f}")
     here = alone(options.program, files, jobs, cores)
     cycles.say(f"the program: {here['seconds']:.1f} s, {here['cpu']:.1f} s of the processor, load {os.getloadavg()[0]:.1f}")
-    result = figures(there, here)
+    result = figures(there, here) | seconds
     cycles.say("  ".join(f"{name} {value:.4g}" for name, value in result.items()))
     (OUT / "result.json").write_text(json.dumps(result, indent=1))
     errors = [*there["errors"], *there["states_errors"], *here["errors"]]

@@ -1,12 +1,10 @@
 //! Progress for programs: one JSON object a line, to the file that `GEO_ADAPT_EVENTS` names. The service reads it.
+use crate::process;
 use serde_json::Value;
 use std::fs::File;
 use std::io::Write;
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
-
-/// The environment variable with the path of the file.
-const VARIABLE: &str = "GEO_ADAPT_EVENTS";
 
 /// What is told often is told at most this often.
 const OFTEN: Duration = Duration::from_millis(100);
@@ -20,7 +18,7 @@ struct Told {
 fn told() -> Option<&'static Mutex<Told>> {
     static TOLD: OnceLock<Option<Mutex<Told>>> = OnceLock::new();
     // A process that was forked is told of it later than the one that it is of.
-    let path = std::env::var_os(VARIABLE)?;
+    let path = std::env::var_os(process::EVENTS)?;
     let open = || {
         let file = File::options().create(true).append(true).open(path).ok()?;
         Some(Mutex::new(Told { file, often: None }))

@@ -105,9 +105,7 @@ impl Command {
     #[cfg(feature = "serve")]
     fn may_be_elsewhere(&self) -> bool {
         match self {
-            Self::Completions(_) | Self::Man(_) | Self::Ranks | Self::Openfoam(_) | Self::Tune(_) | Self::Cycle(_) => {
-                false
-            }
+            Self::Completions(_) | Self::Man(_) | Self::Ranks | Self::Openfoam(_) | Self::Tune(_) => false,
             #[cfg(target_os = "linux")]
             Self::Serve(_) => false,
             _ => true,

@@ -14,6 +14,7 @@ mod history;
 mod inputs;
 pub mod launch;
 mod layout;
+pub mod left;
 mod leftovers;
 mod observer;
 mod pipeline;
@@ -26,7 +27,7 @@ mod schedule;
 pub mod solver;
 mod step;
 
-pub use config::{Config, Loaded, Schedule, parse};
+pub use config::{Config, FIRST, Loaded, Schedule, Solvers, parse};
 pub use error::Error;
 pub use history::{Cycle, History, Seconds};
 pub use layout::Layout;

@@ -14,6 +14,9 @@ pub use run::{Runner, Tie, is_exhausted, is_running};
 
 use std::sync::atomic::AtomicBool;
 
+/// The environment variable that names a file for the progress of a run, one JSON object a line.
+pub const EVENTS: &str = "GEO_ADAPT_EVENTS";
+
 /// What the user wants to end.
 #[derive(Debug, Default)]
 pub struct Stop {

@@ -1,5 +1,6 @@
 //! The client of a service ([`crate::serve`]): files go up, a job is asked for and followed, its results come down.
 mod follow;
+pub mod words;
 
 use serde::Deserialize;
 use serde_json::Value;

@@ -2,6 +2,8 @@
 //! folder of its job.
 use super::catalogue::Kind;
 use super::ids::{is_digest, is_file_name};
+use super::work::protocol::SOLVERS;
+use crate::remote::words::{DECIDED, WRITTEN};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -11,11 +13,12 @@ use std::path::PathBuf;
 use utoipa::ToSchema;
 
 /// What may be asked for.
-const SERVED: [&str; 11] = [
+const SERVED: [&str; 12] = [
     "adapt",
     "bootstrap",
     "classify",
     "convert",
+    "cycle",
     "field",
     "image-mesh",
     "inspect",
@@ -25,11 +28,8 @@ const SERVED: [&str; 11] = [
     "view",
 ];
 
-/// Options that are the service's to decide, or that mean a terminal.
-const NOT_SERVED: [&str; 7] = ["server", "threads", "scratch", "backend", "strategy", "verbose", "quiet"];
-
-/// Arguments that name what is written.
-const WRITTEN: [&str; 3] = ["output", "report", "png"];
+/// Options that mean a terminal, or another service.
+const OF_A_CLIENT: [&str; 2] = ["server", "verbose"];
 
 /// Most words of a request.
 const MOST_WORDS: usize = 400;
@@ -68,6 +68,8 @@ pub struct Checked {
     pub has_max_vertices: bool,
     /// Whether `--deterministic` is one, and no scheduler is given: a job has the same result on any number of threads.
     pub has_scheduler: bool,
+    /// Whether it is a loop, which may use what the operator has set up.
+    pub is_loop: bool,
 }
 
 impl Checked {
@@ -83,6 +85,9 @@ impl Checked {
         }
         if self.has_scheduler {
             words.insert(at, "--deterministic".into());
+        }
+        if self.is_loop {
+            words.insert(at, format!("--confined=../{SOLVERS}"));
         }
         words
     }
@@ -159,7 +164,8 @@ impl Commands {
         let has_max_vertices = has("max-vertices") && !is_given("--max-vertices") && !is_given("--memory");
         let has_scheduler = has("deterministic") && !is_given("--scheduler") && !is_given("--deterministic");
         let words = name.split(' ').map(str::to_owned).chain(words).collect();
-        Ok(Checked { words, command_words, model, has_threads: has("threads"), has_max_vertices, has_scheduler })
+        let (has_threads, is_loop) = (has("threads"), has("confined"));
+        Ok(Checked { words, command_words, model, has_threads, has_max_vertices, has_scheduler, is_loop })
     }
 
     /// All that may be asked for, with the arguments of each: for those who make requests.
@@ -183,9 +189,13 @@ fn collect<'a>(command: &'a Command, before: &str, leaves: &mut Vec<(String, &'a
     }
 }
 
+fn is_ours(name: &str) -> bool {
+    OF_A_CLIENT.contains(&name) || DECIDED.contains(&name)
+}
+
 fn is_served(argument: &Arg) -> bool {
     let name = argument.get_id().as_str();
-    !argument.is_hide_set() && !NOT_SERVED.contains(&name) && !["help", "version"].contains(&name)
+    !argument.is_hide_set() && !is_ours(name) && !["help", "version"].contains(&name)
 }
 
 fn is_path(argument: &Arg) -> bool {
@@ -291,7 +301,7 @@ fn check_argument(
     if !is_given {
         return Ok(());
     }
-    if NOT_SERVED.contains(&id) {
+    if is_ours(id) {
         return refused(format!("--{}: this is the service's to decide", argument.get_long().unwrap_or(id)));
     }
     for value in matches.get_raw(id).into_iter().flatten() {

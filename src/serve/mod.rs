@@ -11,7 +11,7 @@ mod settings;
 mod work;
 
 pub use commands::Commands;
-pub use settings::{Limits, Settings, Tls};
+pub use settings::{Limits, Settings, Solvers, Tls};
 pub use work::protocol;
 
 use api::Service;

@@ -1,5 +1,6 @@
 //! What the operator of a service decides.
 use super::Error;
+use crate::cycle;
 use std::fs::{self, File, TryLockError};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -22,6 +23,32 @@ pub struct Settings {
     pub tls: Option<Tls>,
     /// What jobs and owners may take.
     pub limits: Limits,
+    /// The solvers that loops may use.
+    pub solvers: Solvers,
+}
+
+/// The solvers that the operator has set up for loops.
+#[derive(Clone, Debug, Default)]
+pub struct Solvers {
+    /// What the file says, for each job that is a loop.
+    pub text: String,
+    /// What they are called.
+    pub names: Vec<String>,
+    /// What they read besides the system's programs.
+    pub reads: Vec<PathBuf>,
+}
+
+impl Solvers {
+    /// Reads the file of the operator.
+    ///
+    /// # Errors
+    /// When it cannot be read, or says what cannot be.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let known = cycle::Solvers::read(path).map_err(Error::Settings)?;
+        let text = fs::read_to_string(path).map_err(Error::disk(path.display()))?;
+        let names = known.names().map(str::to_owned).collect();
+        Ok(Self { text, names, reads: known.reads().map(Path::to_path_buf).collect() })
+    }
 }
 
 /// Certificate and key, PEM.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 pub mod adapting;
+pub mod damage;
 pub mod models;
 #[cfg(feature = "cli")]
 pub mod viewing;

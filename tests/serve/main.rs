@@ -6,9 +6,11 @@ mod common;
 #[path = "../suite/browser.rs"]
 mod browser;
 mod client;
+mod damaged;
 mod jobs;
 mod kills;
 mod load;
+mod loops;
 mod mutations;
 mod owners;
 mod postgres;

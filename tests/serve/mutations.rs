@@ -1,29 +1,10 @@
 //! Requests that are wrong in any way: the service answers or closes, has no fault of its own, grows no memory, and shows nothing of others.
+use crate::common::damage::Random;
 use crate::owners::token;
 use crate::service::{Service, cube, send};
 use serde_json::json;
 use std::fs;
 use std::time::Duration;
-
-/// Numbers that repeat from run to run (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
-    }
-
-    fn of<'a, T>(&mut self, all: &'a [T]) -> &'a T {
-        &all[self.below(all.len())]
-    }
-}
 
 /// What is put somewhere into a request.
 const PIECES: [&[u8]; 24] = [
@@ -82,7 +63,7 @@ fn mutated(request: &[u8], random: &mut Random) -> Vec<u8> {
 }
 
 /// Bytes of memory of a process.
-fn memory(process: u32) -> u64 {
+pub fn memory(process: u32) -> u64 {
     let text = fs::read_to_string(format!("/proc/{process}/statm")).unwrap();
     text.split(' ').nth(1).unwrap().parse::<u64>().unwrap() * 4096
 }

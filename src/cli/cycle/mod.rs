@@ -7,7 +7,7 @@ use super::child::OutOfMemory;
 use super::table::figure;
 use super::terminal::is_quiet;
 use super::{Outcome, interrupt, print};
-use crate::cycle::{self, Error, Loaded, Options, example};
+use crate::cycle::{self, Error, Loaded, Options, Solvers, example};
 use progress::Progress;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -28,6 +28,12 @@ pub struct Arguments {
     /// Say what would be done, and do nothing
     #[arg(long, requires = "config")]
     dry_run: bool,
+    /// Threads, instead of what the configuration says [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// The configuration is somebody else's: it may use the analytic solver and those of this file, and name no folder
+    #[arg(long, value_name = "SOLVERS.toml", requires = "config")]
+    confined: Option<PathBuf>,
 }
 
 /// Runs the subcommand.
@@ -37,7 +43,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
         return Ok(ExitCode::SUCCESS);
     }
     let Some(path) = &arguments.config else { return Err("give a configuration".into()) };
-    let loaded = Loaded::read(path)?;
+    let mut loaded = match &arguments.confined {
+        Some(solvers) => Loaded::read_confined(path, &Solvers::read(solvers)?)?,
+        None => Loaded::read(path)?,
+    };
+    loaded.config.threads = arguments.threads.or(loaded.config.threads);
     check::words(&loaded)?;
     let threads = loaded.config.threads.map_or_else(super::cores, usize::from);
     let options = Options { threads, restart: arguments.restart };

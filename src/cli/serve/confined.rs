@@ -1,5 +1,6 @@
 //! The process of a job has limits, and sees its own folder alone.
-use crate::serve::protocol::{EVENTS, EVENTS_VARIABLE, FILES, LOG, PRINTED, Run, TEMPORARY};
+use crate::process;
+use crate::serve::protocol::{EVENTS, FILES, LOG, PRINTED, Run, TEMPORARY};
 use landlock::{ABI, Access, AccessFs, AccessNet, Ruleset, RulesetAttr, RulesetCreatedAttr, path_beneath_rules};
 use std::fs::File;
 use std::io;
@@ -47,7 +48,7 @@ pub fn confine(run: &Run) -> io::Result<()> {
     std::env::set_current_dir(run.folder.join(FILES))?;
     let temporary = run.folder.join(TEMPORARY);
     for (name, value) in
-        [(EVENTS_VARIABLE, run.folder.join(EVENTS)), ("TMPDIR", temporary.clone()), ("HOME", temporary)]
+        [(process::EVENTS, run.folder.join(EVENTS)), ("TMPDIR", temporary.clone()), ("HOME", temporary)]
     {
         // SAFETY: there is one thread.
         unsafe { std::env::set_var(name, value) };
@@ -92,6 +93,14 @@ fn forget_secrets() {
     }
 }
 
+/// Whether the kernel keeps a job in its folder (Landlock).
+pub fn is_fenced() -> bool {
+    /// That its version is asked for.
+    const VERSION: libc::c_int = 1;
+    // SAFETY: a system call that reads nothing.
+    unsafe { libc::syscall(libc::SYS_landlock_create_ruleset, std::ptr::null::<libc::c_void>(), 0_usize, VERSION) > 0 }
+}
+
 /// Nothing but the folder of the run can be written, nothing but it and programs can be read, and no network is there (Landlock, as far as the kernel
 /// has it).
 fn fence(run: &Run) -> Result<(), landlock::RulesetError> {
@@ -99,6 +108,7 @@ fn fence(run: &Run) -> Result<(), landlock::RulesetError> {
     let mut seen: Vec<PathBuf> = SYSTEM.iter().map(PathBuf::from).collect();
     // This program, which reads models in a child of its own, and the meshers of `bootstrap`.
     let own = std::env::current_exe().ok().and_then(|path| path.parent().map(PathBuf::from));
+    seen.extend(run.reads.iter().cloned());
     seen.extend(own.iter().flat_map(|folder| [folder.clone(), folder.join("../lib")]));
     seen.extend(std::env::var_os("PATH").iter().flat_map(std::env::split_paths));
     for name in ["LD_LIBRARY_PATH", "GEO_ADAPT_GMSH", "GEO_ADAPT_NETGEN"] {

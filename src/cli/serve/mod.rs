@@ -4,7 +4,8 @@ mod token;
 pub mod warm;
 
 use super::{Outcome, amount, tell};
-use crate::serve::{self, Commands, Limits, Settings, Tls};
+use crate::serve::{self, Commands, Limits, Settings, Solvers, Tls};
+use clap::{Args, FromArgMatches};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -33,6 +34,9 @@ pub struct Arguments {
     /// Their private key, PEM
     #[arg(long, value_name = "FILE", requires = "tls_certificate")]
     tls_key: Option<PathBuf>,
+    /// The solvers that loops may use besides the analytic one: a table for each, with its [NAME.command] as `cycle` has it, and the folders that it reads
+    #[arg(long, value_name = "FILE.toml")]
+    solvers: Option<PathBuf>,
     #[command(flatten, next_help_heading = "What jobs and owners may take")]
     limits: LimitArguments,
     /// Log as JSON, one object a line
@@ -65,7 +69,7 @@ struct LimitArguments {
     /// Memory of a job [default: that of all]
     #[arg(long, value_name = "SIZE", value_parser = amount::bytes)]
     job_memory: Option<u64>,
-    /// Processor time of a job, in seconds
+    /// Time of a job, in seconds: of each of its processes on the processor, and of all of it by the clock
     #[arg(long, value_name = "S", default_value_t = 24 * 3600)]
     job_seconds: u64,
     /// Bytes of a file: an upload, or one that a job writes
@@ -94,35 +98,24 @@ enum What {
 impl Place {
     fn settings(&self, listen: SocketAddr) -> Settings {
         let data = std::path::absolute(&self.data).unwrap_or_else(|_| self.data.clone());
-        let (database, limits) = (self.database.clone(), LimitArguments::usual());
-        Settings { listen, data, database, store: None, is_open: false, tls: None, limits }
+        let (database, limits) = (self.database.clone(), LimitArguments::usual().limits());
+        Settings { listen, data, database, store: None, is_open: false, tls: None, limits, solvers: Solvers::default() }
     }
 }
 
 impl LimitArguments {
-    fn usual() -> Limits {
-        let cores = super::cores();
-        let memory = crate::memory::available().unwrap_or(4 << 30) / 4 * 3;
-        Limits {
-            jobs: cores,
-            threads: cores,
-            memory,
-            job_memory: memory,
-            job_time: Duration::from_secs(24 * 3600),
-            file: 20_000_000_000,
-            vertices: 50_000_000,
-            owner_bytes: 200_000_000_000,
-            owner_jobs: 1000,
-            rate: 200,
-        }
+    /// What they are where nothing is given.
+    fn usual() -> Self {
+        let none = Self::augment_args(clap::Command::new("serve")).get_matches_from(["serve"]);
+        Self::from_arg_matches(&none).unwrap_or_else(|error| error.exit())
     }
 
     fn limits(&self) -> Limits {
-        let usual = Self::usual();
-        let memory = self.memory.unwrap_or(usual.memory);
+        let memory = self.memory.unwrap_or_else(|| crate::memory::available().unwrap_or(4 << 30) / 4 * 3);
+        let of_cores = |given: Option<u16>| given.map_or_else(super::cores, usize::from);
         Limits {
-            jobs: self.jobs.map_or(usual.jobs, usize::from),
-            threads: self.threads.map_or(usual.threads, usize::from),
+            jobs: of_cores(self.jobs),
+            threads: of_cores(self.threads),
             memory,
             job_memory: self.job_memory.unwrap_or(memory),
             job_time: Duration::from_secs(self.job_seconds.max(1)),
@@ -146,9 +139,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
         is_open: arguments.listen.ip().is_loopback() && !arguments.tokens_only,
         tls: tls.map(|(certificate, key)| Tls { certificate, key }),
         limits: arguments.limits.limits(),
+        solvers: arguments.solvers.as_deref().map_or_else(|| Ok(Solvers::default()), Solvers::read)?,
         ..arguments.place.settings(arguments.listen)
     };
     log(arguments.log_json);
+    if !confined::is_fenced() {
+        tracing::warn!("this kernel has no Landlock: jobs are not kept from what else the service's user may read");
+    }
     super::interrupt::let_commands_end();
     serve::run(settings, Commands::new(super::command()), |address| {
         tell(format_args!("geo-adapt: listens at {address}; Ctrl-C ends it"));

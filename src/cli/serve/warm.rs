@@ -68,6 +68,19 @@ fn tell(answer: &Answer) {
     }
 }
 
+/// Whatever a child leaves behind becomes a child of this process: it can be ended.
+fn adopt() {
+    // SAFETY: a system call.
+    unsafe { libc::prctl(libc::PR_SET_CHILD_SUBREAPER, 1) };
+}
+
+/// The children of this process, as far as the kernel tells.
+fn children() -> Vec<i32> {
+    let own = std::process::id();
+    let text = std::fs::read_to_string(format!("/proc/{own}/task/{own}/children")).unwrap_or_default();
+    text.split_ascii_whitespace().filter_map(|process| process.parse().ok()).collect()
+}
+
 /// The runs of this process.
 #[derive(Default)]
 struct Runs {
@@ -77,6 +90,7 @@ struct Runs {
 
 /// Serves until the input ends. Returns a run in its own process.
 fn serve() -> io::Result<Option<Run>> {
+    adopt();
     let signals = Signals::new()?;
     let (mut runs, mut input) = (Runs::default(), Vec::new());
     loop {
@@ -124,6 +138,8 @@ impl Runs {
             }
             0 => {
                 signals.forget();
+                // What is left behind in a run stays within it until it ends.
+                adopt();
                 // SAFETY: system calls. Where the parent has died in between, its end was not heard of.
                 unsafe {
                     libc::setpgid(0, 0);
@@ -152,8 +168,18 @@ impl Runs {
         }
     }
 
-    /// Tells of those that have ended. What they have left behind in their groups ends too.
+    /// Tells of those that have ended. What they have left behind ends too.
     fn reap(&mut self) {
+        self.tell_ended();
+        for left in children() {
+            if !self.running.iter().any(|(known, _)| *known == left) {
+                // SAFETY: a system call on a child that has not been waited for. When it has ended, this is called again.
+                unsafe { libc::kill(left, libc::SIGKILL) };
+            }
+        }
+    }
+
+    fn tell_ended(&mut self) {
         loop {
             let (mut status, mut usage) = (0, MaybeUninit::<libc::rusage>::zeroed());
             // SAFETY: a system call on records that are ours; all zeroes are a value of rusage.

@@ -2,9 +2,11 @@
 //!
 //! All relative paths in it begin at the folder of the file.
 mod check;
+mod confined;
 mod parts;
 mod words;
 
+pub use confined::Solvers;
 pub use parts::{
     Adapt, Converged, FIRST, Growth, Mesh, Metric, NormWord, Output, Probe, Schedule, Transfer, TransferMethod,
 };
@@ -60,9 +62,15 @@ impl Loaded {
     /// # Errors
     /// When the file cannot be read or says what cannot be: the message names file, line or key, and remedy.
     pub fn read(path: &Path) -> Result<Self, String> {
+        Self::read_as(path, |_| Ok(()))
+    }
+
+    /// The same, with what `take` makes of it.
+    fn read_as(path: &Path, take: impl FnOnce(&mut Config) -> Result<(), String>) -> Result<Self, String> {
         let named = |error: std::io::Error| format!("{}: {error}", path.display());
         let text = std::fs::read_to_string(path).map_err(named)?;
-        let config = parse(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+        let mut config = parse(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+        take(&mut config).map_err(|error| format!("{}: {error}", path.display()))?;
         let path = path.canonicalize().map_err(named)?;
         let base = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
         let loaded = Self { path, base, config };

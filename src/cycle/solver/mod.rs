@@ -2,6 +2,7 @@
 pub mod analytic;
 pub mod command;
 mod handover;
+pub mod named;
 pub mod openfoam;
 mod reference;
 pub mod su2;
@@ -24,6 +25,8 @@ pub enum Choice {
     Analytic(analytic::Config),
     /// Any program.
     Command(command::Config),
+    /// One that the operator of a service has set up.
+    Named(named::Config),
     /// SU2.
     Su2(su2::Config),
     /// OpenFOAM's rhoCentralFoam or rhoSimpleFoam.
@@ -36,6 +39,7 @@ impl Choice {
         match self {
             Self::Analytic(solver) => solver,
             Self::Command(solver) => solver,
+            Self::Named(solver) => solver,
             Self::Su2(solver) => solver,
             Self::Openfoam(solver) => solver,
         }
@@ -48,7 +52,7 @@ impl Choice {
         match self {
             Self::Openfoam(solver) => solver.flow.area.is_none() || solver.flow.length.is_none(),
             Self::Su2(solver) => solver.flow.as_ref().is_some_and(|flow| flow.area.is_none() || flow.length.is_none()),
-            Self::Analytic(_) | Self::Command(_) => false,
+            Self::Analytic(_) | Self::Command(_) | Self::Named(_) => false,
         }
     }
 

@@ -52,6 +52,8 @@ pub struct Me {
     most_bytes: u64,
     /// Vertices that a job may make.
     most_vertices: u64,
+    /// The solvers that loops may use besides the analytic one, as `[solver.named]`.
+    solvers: Vec<String>,
     /// The version of the program.
     #[schema(value_type = String)]
     version: &'static str,
@@ -65,9 +67,10 @@ pub async fn me(State(service): State<Shared>, caller: Caller) -> Result<Json<Me
     let bytes = service.catalogue.bytes_of(&caller.owner).await?;
     let limits = service.settings.limits;
     let scopes = caller.scopes();
+    let solvers = service.settings.solvers.names.clone();
     let version = env!("CARGO_PKG_VERSION");
     let (most_bytes, most_vertices) = (limits.owner_bytes, limits.vertices);
-    Ok(Json(Me { owner: caller.owner, scopes, bytes, most_bytes, most_vertices, version, now: now() }))
+    Ok(Json(Me { owner: caller.owner, scopes, bytes, most_bytes, most_vertices, solvers, version, now: now() }))
 }
 
 /// Lists the commands that a job may run, with their arguments

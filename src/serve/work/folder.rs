@@ -1,5 +1,6 @@
 //! The folder of a run: its inputs are put there, and what it has made is taken out.
 use super::protocol::{FILES, LOG, PRINTED, TEMPORARY};
+use crate::cycle::left;
 use crate::serve::blobs::{Blobs, digest_of};
 use crate::serve::catalogue::Produced;
 use crate::serve::ids::is_file_name;
@@ -14,6 +15,12 @@ const MOST: usize = 1000;
 /// Names of results that the service gives.
 pub const LOG_NAME: &str = "log.txt";
 const PRINTED_NAME: &str = "printed.txt";
+
+/// A file with its name.
+fn named(path: PathBuf) -> Option<(String, PathBuf)> {
+    let name = path.file_name()?.to_str().filter(|name| is_file_name(name))?.to_owned();
+    Some((name, path))
+}
 
 /// The folder of a run. It goes when this is dropped.
 pub struct Folder {
@@ -56,6 +63,8 @@ impl Folder {
             let is_new = !self.inputs.contains(&name) && is_file_name(&name) && entry.file_type()?.is_file();
             if is_new && made.len() < MOST {
                 made.push((name, entry.path()));
+            } else if entry.file_type()?.is_dir() {
+                made.extend(left::files(&entry.path()).into_iter().filter_map(named).take(MOST));
             }
         }
         for (name, file) in [(LOG_NAME, LOG), (PRINTED_NAME, PRINTED)] {

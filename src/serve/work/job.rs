@@ -2,7 +2,7 @@
 use super::endings::{Ended, end_of};
 use super::events::{Events, tail};
 use super::folder::Folder;
-use super::protocol::{Answer, EVENTS, LOG, Run};
+use super::protocol::{Answer, EVENTS, LOG, Run, SOLVERS};
 use super::running::{CANCELLED, Running, SERVICE_ENDS};
 use super::worker::Shop;
 use crate::serve::catalogue::{Claim, End, State};
@@ -122,6 +122,10 @@ impl Shop {
             model = process.is_some().then(|| name.clone());
         }
         let process = process.map_or_else(|| self.pool.plain(), Ok)?;
+        let solvers = &self.service.settings.solvers;
+        if checked.is_loop {
+            std::fs::write(folder.path().join(SOLVERS), &solvers.text)?;
+        }
         let threads = (limits.threads / self.running().max(1)).max(1);
         let run = Run {
             number: 0,
@@ -131,10 +135,11 @@ impl Shop {
             memory: limits.job_memory,
             seconds: limits.job_time.as_secs(),
             file: limits.file,
+            reads: if checked.is_loop { solvers.reads.clone() } else { Vec::new() },
         };
         let mut answers = process.run(run).await?;
         let mut watched = Watched { events: Events::of(folder.path().join(EVENTS)), noted: None, said: None };
-        let mut asked = None;
+        let (began, mut too_long, mut asked) = (Instant::now(), false, None);
         loop {
             let answer = tokio::select! {
                 answer = answers.recv() => answer,
@@ -143,6 +148,10 @@ impl Shop {
                         job.kill();
                         while !matches!(answers.recv().await, None | Some(Answer::Ended { .. } | Answer::Refused { .. })) {}
                         return Ok(ended);
+                    }
+                    if began.elapsed() > limits.job_time {
+                        job.kill();
+                        too_long = true;
                     }
                     if job.ends() == CANCELLED && asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
                         job.kill();
@@ -154,6 +163,10 @@ impl Shop {
                 Some(Answer::Started { process, .. }) => job.began(process),
                 Some(Answer::Ended { code, signal, .. }) => {
                     self.look(&mut watched, job).await;
+                    if too_long {
+                        let most = limits.job_time.as_secs();
+                        return Ok(Ended::TooMuch(format!("it took longer than a job may, {most} s")));
+                    }
                     return Ok(Ended::Process { code, signal });
                 }
                 Some(Answer::Refused { why, .. }) => return Err(io::Error::other(why)),

@@ -20,6 +20,8 @@ pub struct Run {
     pub seconds: u64,
     /// Bytes of a file.
     pub file: u64,
+    /// What it reads besides its folder and the system's programs.
+    pub reads: Vec<PathBuf>,
 }
 
 /// The names of what is in the folder of a run.
@@ -30,11 +32,10 @@ pub const LOG: &str = "log";
 pub const PRINTED: &str = "printed";
 /// Its progress, one JSON object a line.
 pub const EVENTS: &str = "events";
+/// The solvers that a loop may use.
+pub const SOLVERS: &str = "solvers.toml";
 /// Where it may put files of its own.
 pub const TEMPORARY: &str = "tmp";
-
-/// The environment variable that names the file for progress.
-pub const EVENTS_VARIABLE: &str = "GEO_ADAPT_EVENTS";
 
 /// What a warm process answers.
 #[derive(Clone, Debug, Serialize, Deserialize)]

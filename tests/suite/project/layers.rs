@@ -58,7 +58,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("memory", &[]),
     ("process", &[]),
     ("ranks", &[]),
-    ("serve", &[]),
+    ("serve", &["cycle", "remote"]),
     ("remote", &[]),
 ];
 

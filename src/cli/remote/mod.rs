@@ -1,10 +1,14 @@
 //! A command on a service instead of here (`--server`): its files go up, it runs there, and its results come down to where they would be.
+mod cycle;
+
 use super::files::{Files, Outputs, Target};
 use super::waiting::Waiting;
+use super::workplace::Workplace;
 use super::{Outcome, interrupt, note, print, tell};
 use crate::formats;
 use crate::geometry::names;
 use crate::remote::Server;
+use crate::remote::words::{DECIDED, WRITTEN};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command};
 use serde_json::{Value, json};
@@ -26,13 +30,8 @@ pub struct Where {
 /// The environment variable with the token.
 const TOKEN: &str = "GEO_ADAPT_TOKEN";
 
-/// Arguments that name what is written.
-const WRITTEN: [&str; 3] = ["output", "report", "png"];
-
-/// Arguments that are for the terminal here,
-const OURS: [&str; 3] = ["server", "quiet", "verbose"];
-/// and those that the service decides.
-const THEIRS: [&str; 4] = ["threads", "scratch", "backend", "strategy"];
+/// Arguments that are for the terminal here.
+const OURS: [&str; 2] = ["server", "verbose"];
 
 /// What the service gives of its own.
 const LOG: &str = "log.txt";
@@ -45,6 +44,8 @@ struct Sent {
     read: BTreeMap<String, PathBuf>,
     /// What is written, by the same.
     written: BTreeMap<String, PathBuf>,
+    /// Where all results of a loop go.
+    folder: Option<PathBuf>,
 }
 
 /// Runs the command that was parsed on a service.
@@ -55,14 +56,15 @@ pub fn run(server: &str, all: &Command, matches: &ArgMatches) -> Outcome {
         leaf = below;
         command = command.find_subcommand(word).ok_or("no such command")?;
     }
-    let mut sent = Sent { words: Vec::new(), read: BTreeMap::new(), written: BTreeMap::new() };
+    let mut sent = Sent { words: Vec::new(), read: BTreeMap::new(), written: BTreeMap::new(), folder: None };
+    let place = Workplace::new()?;
     let mut positional = Vec::new();
     for argument in command.get_arguments() {
         let id = argument.get_id().as_str();
         if leaf.value_source(id) != Some(ValueSource::CommandLine) || OURS.contains(&id) {
             continue;
         }
-        if THEIRS.contains(&id) {
+        if DECIDED.contains(&id) {
             note(format_args!("--{id}: the service decides it"));
             continue;
         }
@@ -71,6 +73,9 @@ pub fn run(server: &str, all: &Command, matches: &ArgMatches) -> Outcome {
     positional.sort_by_key(|(at, _)| *at);
     sent.words.push("--".into());
     sent.words.extend(positional.into_iter().map(|(_, word)| word));
+    if name == ["cycle"] {
+        cycle::pack(&mut sent, &place)?;
+    }
     let mut files = Files::new().reads(sent.read.values());
     let server = Server::new(server, std::env::var(TOKEN).ok().filter(|token| !token.is_empty()));
     let mut ids = BTreeMap::new();
@@ -164,6 +169,9 @@ impl Sent {
 
     /// Where a result goes: beside the output whose name it begins with.
     fn target(&self, result: &str) -> PathBuf {
+        if let Some(folder) = &self.folder {
+            return folder.join(result);
+        }
         if let Some(path) = self.written.get(result) {
             return path.clone();
         }
@@ -232,6 +240,9 @@ fn taken(server: &Server, job: &str, sent: &Sent, files: &mut Files) -> Result<b
     let results = server.results(job)?;
     let mut outputs = Outputs::new();
     let mut targets: Vec<(usize, Target)> = Vec::new();
+    if let Some(folder) = sent.folder.as_ref().filter(|_| !results.is_empty()) {
+        std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
     for (at, result) in results.iter().enumerate() {
         let mut text = Vec::new();
         match result.name.as_str() {
