@@ -2,7 +2,8 @@
 
 A browser goes through the workbench: drops a model, makes a mesh of it, adapts that and downloads it. Then it starts `geo-adapt serve` on two cores. Twenty clients run 200 jobs, small adaptations of a few meshes and of a CAD model, inspections and
 conversions, and download what they make; another one asks for the state of a job 20 times a second. Then the program runs the same jobs, two at
-a time, and every result must be the same. --short: 40 jobs. Exit code: 0 when every floor is held, else 1. All lies under out/service.
+a time, and every result must be the same. --short: 40 jobs.
+--minutes M: the jobs again and again for so long instead, and what memory the service has meanwhile. Exit code: 0 when every floor is held, else 1. All lies under out/service.
 """
 
 import argparse
@@ -31,6 +32,8 @@ OUT = cycles.ROOT / "out" / "service"
 CLIENTS, JOBS, SHORT = 20, 200, 40
 # States that are asked for in a second.
 RATE = 20
+# Under load for long: errors, and memory in MB that it has in the last quarter beyond that of the second.
+LASTING = [Bound("errors", "≤", 0, 0), Bound("memory, more", "≤", 5, 5)]
 # Seconds that a whole run of the jobs may take.
 LIMIT = 1800
 # (target, floor of today); times in ms, memory in MB.
@@ -44,6 +47,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, default=cycles.ROOT / "target/release/geo-adapt")
     parser.add_argument("--short", action="store_true", help=f"{SHORT} jobs")
+    parser.add_argument("--minutes", type=float, help="load for so long, and its memory meanwhile")
     options = parser.parse_args()
     if not options.program.is_file():
         sys.exit(f"{options.program} is not there: cargo build --release, or cases/run service, which does it")
@@ -120,6 +124,30 @@ def looked_at(program, cores, cad):
     subprocess.run([program, "inspect", mesh, "-q", "--cad", model], check=True, timeout=LIMIT)
     cycles.say(f"the browser: from {model.name} to {mesh.name} in {seconds:.1f} s")
     return {"browser, s": seconds}
+
+
+def lasting(program, files, jobs, cores, minutes):
+    """The jobs again and again: the service's memory after each turn, and errors."""
+    shutil.rmtree(OUT / "data", ignore_errors=True)
+    until, memory, errors, done = time.monotonic() + 60 * minutes, [], [], 0
+    with service.started(program, OUT / "data", cores, OUT / "serve.log") as at_work:
+        ids = service.uploaded(at_work.port, files)
+        while time.monotonic() < until:
+            clients = service.Clients(at_work.port, ids, jobs, digest, time.monotonic() + LIMIT)
+            clients.run(CLIENTS)
+            errors += clients.errors
+            done += len(jobs)
+            memory.append(at_work.memory()[0])
+    for error in errors[:10]:
+        cycles.say(f"error: {error}")
+    cycles.say(f"{done} jobs; memory in MB, turn by turn: {' '.join(f'{one:.1f}' for one in memory)}")
+    return {"errors": len(errors), "memory, more": grown(memory)}
+
+
+def grown(memory):
+    """How much more of it there is at most in the last quarter than in the second; the first is for what is loaded once."""
+    quarter = max(len(memory) // 4, 1)
+    return max(memory[-quarter:]) - max(memory[quarter:2 * quarter] or memory)
 
 
 def alone(*given):
@@ -210,6 +238,8 @@ def main():
     cycles.say(f"{len(jobs)} jobs{'' if cad else ' without OpenCASCADE'}, {CLIENTS} clients, cores {cores}, load {os.getloadavg()[0]:.1f}")
     if os.getloadavg()[0] > 1:
         cycles.say("others are at work on this machine: it shares its cores out by sessions, and times against times say little")
+    if options.minutes:
+        return loops.judged(LASTING, lasting(options.program, files, jobs, cores, options.minutes))
     seconds = looked_at(options.program, cores, cad)
     there = served(options.program, files, jobs, cores)
     cycles.say(f"the service: {there['seconds']:.1f} s, {there['cpu']:.1f} s of the processor, load {os.getloadavg()[0]:.1f}")

@@ -6,7 +6,7 @@
 use super::interrupt::{self, Interrupted};
 use super::workplace::Workplace;
 use crate::memory::end;
-use crate::process::{Outcome, Runner, Tie, is_exhausted};
+use crate::process::{Outcome, Runner, Tie, is_exhausted, own};
 use std::error::Error;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
@@ -59,7 +59,7 @@ impl Task<'_> {
     /// When the child came to no end of its own: why, and the remedy.
     pub fn run(&self, place: &Workplace) -> Result<Answer, Box<dyn Error>> {
         let answer = place.file("answer.txt");
-        let Ok(program) = std::env::current_exe() else { return Ok(Answer::NotStarted) };
+        let Ok(program) = own() else { return Ok(Answer::NotStarted) };
         let mut command = Command::new(program);
         command.arg(self.name).arg(&answer).args(self.arguments);
         let stop = interrupt::end_at_once();

@@ -33,6 +33,7 @@ mod openfoam;
 mod remote;
 #[cfg(all(feature = "serve", target_os = "linux"))]
 mod serve;
+mod su2;
 mod surface;
 mod table;
 mod terminal;
@@ -86,6 +87,9 @@ enum Command {
     /// Run a case of OpenFOAM that `cycle` has prepared
     #[command(hide = true)]
     Openfoam(openfoam::Arguments),
+    /// Run a configuration of SU2 that `cycle` has prepared
+    #[command(hide = true)]
+    Su2(su2::Arguments),
     /// Start as one of several processes, meet the others, and end
     #[command(hide = true)]
     Ranks,
@@ -105,7 +109,9 @@ impl Command {
     #[cfg(feature = "serve")]
     fn may_be_elsewhere(&self) -> bool {
         match self {
-            Self::Completions(_) | Self::Man(_) | Self::Ranks | Self::Openfoam(_) | Self::Tune(_) => false,
+            Self::Completions(_) | Self::Man(_) | Self::Ranks | Self::Openfoam(_) | Self::Su2(_) | Self::Tune(_) => {
+                false
+            }
             #[cfg(target_os = "linux")]
             Self::Serve(_) => false,
             _ => true,
@@ -115,7 +121,9 @@ impl Command {
     /// What the terminal says while it works, of a command that has no progress of its own.
     fn line(&self) -> Option<Waiting> {
         let what = match self {
-            Self::Adapt(_) | Self::Bootstrap(_) | Self::Cycle(_) | Self::Openfoam(_) | Self::Tune(_) => return None,
+            Self::Adapt(_) | Self::Bootstrap(_) | Self::Cycle(_) | Self::Openfoam(_) | Self::Su2(_) | Self::Tune(_) => {
+                return None;
+            }
             Self::Completions(_) | Self::Man(_) | Self::Ranks => return None,
             #[cfg(all(feature = "serve", target_os = "linux"))]
             Self::Serve(_) => return None,
@@ -198,6 +206,7 @@ pub fn main() -> ExitCode {
         Command::Metric(arguments) => metric::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
         Command::Openfoam(arguments) => openfoam::run(&arguments),
+        Command::Su2(arguments) => su2::run(&arguments),
         Command::Ranks => ranks::start().map(drop).map(|()| ExitCode::SUCCESS).map_err(Into::into),
         #[cfg(all(feature = "serve", target_os = "linux"))]
         Command::Serve(arguments) => serve::run(&arguments),

@@ -17,6 +17,14 @@ use std::sync::atomic::AtomicBool;
 /// The environment variable that names a file for the progress of a run, one JSON object a line.
 pub const EVENTS: &str = "GEO_ADAPT_EVENTS";
 
+/// This program, to be started again: on Linux the very one that runs, also when a newer one has taken its file meanwhile.
+///
+/// # Errors
+/// When the system does not tell.
+pub fn own() -> std::io::Result<std::path::PathBuf> {
+    if cfg!(target_os = "linux") { Ok("/proc/self/exe".into()) } else { std::env::current_exe() }
+}
+
 /// What the user wants to end.
 #[derive(Debug, Default)]
 pub struct Stop {

@@ -31,6 +31,11 @@ def lost(result):
 
 
 class Judge(unittest.TestCase):
+    def test_memory_that_grows_is_told(self):
+        self.assertEqual(case.grown([20, 30, 30, 31, 30, 30, 30, 31]), 0)
+        self.assertEqual(case.grown([20, 22, 24, 26, 28, 30, 32, 34]), 8)
+        self.assertEqual(case.grown([20]), 0)
+
     def test_what_is_as_good_as_the_program_holds(self):
         result = case.figures(there(), HERE)
         self.assertEqual(lost(result), [])

@@ -3,6 +3,7 @@ use crate::common::program;
 use crate::service::{Service, cube};
 use serde_json::json;
 use std::fs;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// What the program itself makes of a mesh.
@@ -224,4 +225,20 @@ fn what_asks_for_too_much_is_ended_with_its_reason() {
     let ended = service.ended(&job);
     assert_eq!(ended["state"], "failed", "{ended}");
     assert!(ended["reason"].as_str().unwrap().contains("a job here may make 5000"), "{ended}");
+}
+
+#[test]
+fn a_service_goes_on_when_its_file_is_replaced() {
+    let (folder, place) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let own = place.path().join("geo-adapt");
+    fs::copy(env!("CARGO_BIN_EXE_geo-adapt"), &own).unwrap();
+    let service = Service::start_of(std::process::Command::new(&own), "127.0.0.1:0", folder.path(), &[]);
+    fs::remove_file(&own).unwrap();
+    fs::write(&own, "another version").unwrap();
+    let model = fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry/cube.step")).unwrap();
+    let id = service.upload("cube.step", &model);
+    // A warm process for the model, in a process that reads it apart.
+    let job = service.accepted("model", json!(["cube.step", "--json"]), json!({ "cube.step": id }));
+    let ended = service.ended(&job);
+    assert_eq!(ended["state"], "done", "{ended}");
 }

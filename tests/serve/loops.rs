@@ -81,7 +81,7 @@ fn only_what_the_operator_has_set_up_is_run() {
     for (table, why) in [
         ("[solver.command]\nrun = 'touch stolen'", "only [solver.analytic]"),
         ("[solver.named]\nname = 'other'", "there are own"),
-        ("[solver.su2]\nconfig = '/etc/passwd'\nfields = []", "no folders here"),
+        ("[solver.su2]\nconfig = '/etc/passwd'", "no folders here"),
     ] {
         let (job, end) = ended(&service, &with_solver(table));
         let reason = end["reason"].as_str().unwrap_or_default();

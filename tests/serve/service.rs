@@ -49,7 +49,11 @@ impl Service {
 
     /// The same, at an address.
     pub fn start_at(address: &str, data: &Path, arguments: &[&str]) -> Self {
-        let mut command: Command = program();
+        Self::start_of(program(), address, data, arguments)
+    }
+
+    /// The same, of a copy of the program.
+    pub fn start_of(mut command: Command, address: &str, data: &Path, arguments: &[&str]) -> Self {
         command.args(["serve", "--listen", address, "--data"]).arg(data).args(arguments);
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();

@@ -1,5 +1,6 @@
 //! A warm process of the program, which forks one for each run.
 use super::protocol::{Answer, Run};
+use crate::process::own;
 use std::collections::HashMap;
 use std::io;
 use std::path::Path;
@@ -38,7 +39,7 @@ impl Process {
     /// # Errors
     /// When it cannot be started.
     pub fn start(model: Option<&Path>) -> io::Result<Self> {
-        let mut command = Command::new(std::env::current_exe()?);
+        let mut command = Command::new(own()?);
         command.arg("warm").args(model).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         // Ctrl-C at the terminal is for the service, which ends its jobs in good order. In a session of their own jobs do not take from the service
         // what the system gives to its session (sched_autogroup).

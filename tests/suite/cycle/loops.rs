@@ -483,6 +483,7 @@ fn su2_restarts_from_the_transferred_solution() {
 file = "cube.meshb"
 [solver.su2]
 program = "./SU2_CFD"
+binary = false
 flow = { mach = 0.5, walls = ["wall"], farfield = ["inlet", "far"] }
 [metric]
 fields = ["Mach"]

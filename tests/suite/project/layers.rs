@@ -58,7 +58,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("memory", &[]),
     ("process", &[]),
     ("ranks", &[]),
-    ("serve", &["cycle", "remote"]),
+    ("serve", &["cycle", "remote", "process"]),
     ("remote", &[]),
 ];
 

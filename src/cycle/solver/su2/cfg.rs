@@ -50,6 +50,13 @@ impl Cfg {
         }
     }
 
+    /// The value of an option, without its comment.
+    pub fn get(&self, key: &str) -> Option<String> {
+        let (_, line) = self.entries.iter().find(|(known, _)| known == key)?;
+        let value = line.split_once('=')?.1.split('%').next().unwrap_or_default();
+        Some(value.trim().to_owned())
+    }
+
     /// Gives an option a value where it has none.
     pub fn set_missing(&mut self, key: &str, value: &str) {
         if self.entries.iter().all(|(known, _)| known != key) {

@@ -2,6 +2,27 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// Rows of the table, without its head.
+pub fn rows(path: &Path) -> u64 {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    text.lines().filter(|line| !line.trim().is_empty()).skip(1).count() as u64
+}
+
+/// Refuses a table that ends in what is no number.
+///
+/// # Errors
+/// What is wrong, or that it is not there.
+pub fn is_finite(path: &Path) -> Result<(), String> {
+    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let text = std::fs::read_to_string(path).map_err(|error| named(&error))?;
+    let last = text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default();
+    let is_finite = |word: &str| word.trim().parse::<f64>().is_ok_and(f64::is_finite);
+    match last.split(',').find(|word| !is_finite(word)) {
+        None => Ok(()),
+        Some(word) => Err(named(&format!("{} in the last row is no number: SU2 has diverged", word.trim()))),
+    }
+}
+
 /// The values of some columns in the last row.
 ///
 /// # Errors

@@ -1,17 +1,20 @@
-//! SU2: its configuration is written from a few flow conditions, or the user's is amended; restart and history are read.
+//! SU2: its configuration is written from a few flow conditions, or the user's is amended; restart and history are read. `drive` runs it (a process of
+//! its own, `geo-adapt su2 FOLDER`), and again where it diverges.
 //!
 //! Options by SU2's documentation (su2code.github.io/docs_v7: Configuration File, Custom Output, Restart File), versions 7 and 8.
 mod cfg;
 mod conditions;
+pub mod drive;
 mod history;
 
 pub use conditions::{Conditions, Model};
 
 use super::{Job, Solver, handover};
-use crate::cycle::data::{Call, Solved};
+use crate::cycle::data::{Call, Solved, text};
 use crate::cycle::launch::{self, find_program};
 use crate::formats::Dataset;
 use cfg::Cfg;
+use drive::{Outcome, PLAN, Plan, RESULT};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -35,6 +38,16 @@ pub struct Config {
     /// Further options of SU2, which win over all others: { CFL_NUMBER = "5" }.
     #[serde(default)]
     pub set: BTreeMap<String, String>,
+    /// Iterations of first order before a solve that has diverged is run again, slower.
+    #[serde(default = "first_order")]
+    pub first_order: u32,
+    /// A solve ends when the logarithm (base 10) of the density's residual is below this; of a `config` as that says without.
+    pub residual: Option<f64>,
+    /// Or when the functionals change by less than this from an iteration to the next, relatively, in the mean of the last hundred.
+    pub change: Option<f64>,
+    /// Whether solutions are handed over in SU2's binary files, or else as text.
+    #[serde(default = "yes")]
+    pub binary: bool,
     /// Columns of the history that are functionals.
     #[serde(default = "coefficients")]
     pub functionals: Vec<String>,
@@ -48,16 +61,44 @@ fn one() -> u32 {
     1
 }
 
+fn yes() -> bool {
+    true
+}
+
+fn first_order() -> u32 {
+    200
+}
+
 fn coefficients() -> Vec<String> {
     vec!["CL".into(), "CD".into()]
 }
 
-/// Names of our files in the folder of a step. SU2 adds .csv to what it reads and writes.
+/// Functionals that SU2 calls one way in the history and another way in its options.
+const CALLED: [(&str, &str); 10] = [
+    ("CL", "LIFT"),
+    ("CD", "DRAG"),
+    ("CSF", "SIDEFORCE"),
+    ("CMx", "MOMENT_X"),
+    ("CMy", "MOMENT_Y"),
+    ("CMz", "MOMENT_Z"),
+    ("CFx", "FORCE_X"),
+    ("CFy", "FORCE_Y"),
+    ("CFz", "FORCE_Z"),
+    ("CEff", "EFFICIENCY"),
+];
+
+/// Over how many iterations functionals are to stand still.
+const STILL: &str = "100";
+
+/// Names of our files in the folder of a step. SU2 adds the endings of its solutions and of the history.
 const MESH: &str = "mesh.su2";
 const BEFORE: &str = "before";
 const RESTART: &str = "restart";
 const HISTORY: &str = "history";
 const CONFIG: &str = "su2.cfg";
+
+/// What a solve tells besides.
+const ITERATIONS: &str = "iterations";
 
 impl Config {
     /// The configuration of a solve.
@@ -72,9 +113,9 @@ impl Config {
             ("MESH_FORMAT", "SU2"),
             ("RESTART_SOL", if restarts { "YES" } else { "NO" }),
             ("SOLUTION_FILENAME", BEFORE),
-            ("READ_BINARY_RESTART", "NO"),
+            ("READ_BINARY_RESTART", if self.binary { "YES" } else { "NO" }),
             ("RESTART_FILENAME", RESTART),
-            ("OUTPUT_FILES", "(RESTART_ASCII)"),
+            ("OUTPUT_FILES", if self.binary { "(RESTART)" } else { "(RESTART_ASCII)" }),
             ("TABULAR_FORMAT", "CSV"),
             ("CONV_FILENAME", HISTORY),
         ] {
@@ -86,14 +127,51 @@ impl Config {
         if let Some(iterations) = self.iterations {
             cfg.set("ITER", &iterations.to_string());
         }
+        self.until(&mut cfg);
         self.set.iter().for_each(|(key, value)| cfg.set(key, value));
         Ok(cfg)
+    }
+}
+
+impl Config {
+    /// When a solve ends, where that is said.
+    fn until(&self, cfg: &mut Cfg) {
+        let mut fields = Vec::new();
+        if let Some(residual) = self.residual {
+            cfg.set("CONV_RESIDUAL_MINVAL", &residual.to_string());
+            fields.push("RMS_DENSITY");
+        }
+        if let Some(change) = self.change {
+            cfg.set("CONV_CAUCHY_EPS", &change.to_string());
+            cfg.set("CONV_CAUCHY_ELEMS", STILL);
+            let called = |name: &str| CALLED.iter().find(|(column, _)| *column == name).map(|(_, called)| *called);
+            fields.extend(self.functionals.iter().map(|name| called(name).unwrap_or(name)));
+        }
+        if !fields.is_empty() {
+            cfg.set("CONV_FIELD", &format!("( {} )", fields.join(", ")));
+        }
+    }
+
+    /// The file of a solution.
+    fn solution(&self, folder: &Path, name: &str) -> PathBuf {
+        folder.join(name).with_extension(if self.binary { "dat" } else { "csv" })
+    }
+
+    /// What is started, before the name of a configuration.
+    fn words(&self, base: &Path) -> Vec<String> {
+        let program = find_program(&self.program, base).unwrap_or_else(|| self.program.clone().into());
+        let mut words = launch::words(self.processes);
+        words.push(text(&program));
+        words
     }
 }
 
 impl Solver for Config {
     fn check(&self, base: &Path) -> Result<(), String> {
         self.cfg(base, false)?;
+        if self.change.is_some_and(|change| !(change.is_finite() && change > 0.0)) {
+            return Err("[solver.su2] change: give a positive number, such as 1e-6".into());
+        }
         let remedy = "install SU2 (https://su2code.github.io) and put its bin folder on the PATH, or give [solver.su2] program with its folder";
         if find_program(&self.program, base).is_none() {
             return Err(format!("[solver.su2] {} is not there: {remedy}", self.program));
@@ -106,11 +184,11 @@ impl Solver for Config {
     }
 
     fn functionals(&self) -> Option<Vec<String>> {
-        Some(self.functionals.clone())
+        Some(self.functionals.iter().cloned().chain([ITERATIONS.to_owned()]).collect())
     }
 
     fn result(&self, data: &Dataset, folder: &Path) -> Result<Vec<PathBuf>, String> {
-        let (mesh, fields) = (folder.join(MESH), folder.join(RESTART).with_extension("csv"));
+        let (mesh, fields) = (folder.join(MESH), self.solution(folder, RESTART));
         handover::write_mesh(&mesh, data)?;
         handover::write_fields(&fields, data)?;
         Ok(vec![mesh, fields])
@@ -120,18 +198,27 @@ impl Solver for Config {
         let data = job.dataset()?;
         handover::write_mesh(&job.folder.join(MESH), &data)?;
         if job.before.is_some() {
-            handover::write_fields(&job.folder.join(BEFORE).with_extension("csv"), &data)?;
+            handover::write_fields(&self.solution(job.folder, BEFORE), &data)?;
         }
         self.cfg(job.base, job.before.is_some())?.write(&job.folder.join(CONFIG))?;
-        let program = find_program(&self.program, job.base).unwrap_or_else(|| self.program.clone().into());
-        let mut words = launch::words(self.processes);
-        words.extend([program.to_string_lossy().into_owned(), CONFIG.into()]);
-        Ok(vec![Call { words, env: launch::environment(self.processes), folder: job.folder.to_path_buf() }])
+        let environment = launch::environment(self.processes);
+        let plan = Plan { words: self.words(job.base), environment, first_order: self.first_order };
+        let path = job.folder.join(PLAN);
+        let plan = serde_json::to_string_pretty(&plan).map_err(|error| error.to_string())?;
+        std::fs::write(&path, plan).map_err(|error| format!("{}: {error}", path.display()))?;
+        let own = launch::own().map_err(|error| error.to_string())?;
+        let words = vec![own, "su2".into(), text(job.folder)];
+        Ok(vec![Call { words, env: Vec::new(), folder: job.folder.to_path_buf() }])
     }
 
     fn collect(&self, job: &Job<'_>) -> Result<Solved, String> {
-        let fields = handover::read_fields(&job.folder.join(RESTART).with_extension("csv"), job, &[])?;
-        let functionals = history::last(&job.folder.join(HISTORY).with_extension("csv"), &self.functionals)?;
+        let fields = handover::read_fields(&self.solution(job.folder, RESTART), job, &[])?;
+        let mut functionals = history::last(&job.folder.join(HISTORY).with_extension("csv"), &self.functionals)?;
+        let path = job.folder.join(RESULT);
+        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        let outcome = std::fs::read(&path).map_err(|error| named(&error))?;
+        let outcome: Outcome = serde_json::from_slice(&outcome).map_err(|error| named(&error))?;
+        functionals.insert(ITERATIONS.into(), outcome.iterations as f64);
         Ok(Solved { fields, functionals })
     }
 }
