@@ -6,6 +6,7 @@ use futures_util::stream::BoxStream;
 use object_store::aws::AmazonS3Builder;
 use object_store::buffered::BufWriter;
 use object_store::path::Path as Key;
+use object_store::prefix::PrefixStore;
 use object_store::{GetOptions, GetRange, ObjectStore};
 use sha2::{Digest, Sha256};
 use std::io::{self, Read};
@@ -17,6 +18,9 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 
 /// So many bytes are read at once.
 const BUFFER: usize = 1 << 18;
+
+/// What says in a store that a service has its contents there.
+const MARK: &str = "geo-adapt";
 
 /// Where contents lie.
 #[derive(Clone)]
@@ -50,14 +54,18 @@ pub fn digest_of(path: &Path) -> io::Result<String> {
 }
 
 impl Blobs {
-    /// As the operator has it: a folder of the data, another one, or s3://bucket with its keys in the environment (AWS_…).
+    /// As the operator has it: a folder of the data, another one, or s3://bucket/prefix with its keys in the environment (AWS_…).
     ///
     /// # Errors
-    /// When the address is none.
-    pub fn open(settings: &Settings) -> Result<Self, Error> {
+    /// When the address is none, or the store does not take what is sent.
+    pub async fn open(settings: &Settings) -> Result<Self, Error> {
         match settings.store.as_deref() {
             Some(address) if address.starts_with("s3://") => {
                 let store = AmazonS3Builder::from_env().with_url(address).build()?;
+                let prefix = address["s3://".len()..].split_once('/').map_or("", |(_, prefix)| prefix);
+                let store = PrefixStore::new(store, Key::from(prefix));
+                // What is wrong with the bucket or its keys is known before the first upload.
+                store.put(&Key::from(MARK), env!("CARGO_PKG_VERSION").into()).await?;
                 Ok(Self::Store(Arc::new(store)))
             }
             Some(address) if address.contains("://") => {

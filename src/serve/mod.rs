@@ -58,7 +58,7 @@ pub fn run(settings: Settings, commands: Commands, told: impl FnOnce(String)) ->
     runtime.map_err(Error::disk("threads"))?.block_on(async {
         let held = settings.hold()?;
         let catalogue = Catalogue::open(&settings).await?;
-        let blobs = Blobs::open(&settings)?;
+        let blobs = Blobs::open(&settings).await?;
         let service = Arc::new(Service::new(settings, commands, catalogue, blobs));
         let worker = work::start(Arc::clone(&service)).await?;
         let served = api::listen(&service, told).await;

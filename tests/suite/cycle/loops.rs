@@ -1,4 +1,5 @@
 //! `geo-adapt cycle`: the loop on its analytic solver and on programs; killed and resumed it ends with the same bytes.
+use super::place::{Place, files};
 use crate::common::adapting::{complaint, stderr};
 use crate::common::program;
 use serde_json::Value;
@@ -6,11 +7,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-
-/// A folder with a configuration.
-struct Place {
-    folder: tempfile::TempDir,
-}
 
 const ANALYTIC: &str = r#"
 threads = 1
@@ -26,62 +22,6 @@ max_complexity = 400
 [output]
 folder = "out"
 "#;
-
-impl Place {
-    fn new(config: &str) -> Self {
-        let place = Self { folder: tempfile::tempdir().unwrap() };
-        place.write("loop.toml", config);
-        place
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        std::fs::write(self.path(name), text).unwrap();
-    }
-
-    fn command(&self, words: &[&str]) -> Command {
-        let mut command = program();
-        command.arg("cycle").arg(self.path("loop.toml")).args(words);
-        command
-    }
-
-    /// A run that must come to its end; what it printed.
-    fn run(&self, words: &[&str]) -> String {
-        let run = self.command(words).output().unwrap();
-        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
-        String::from_utf8(run.stdout).unwrap()
-    }
-
-    /// A run that must fail, and say why.
-    fn refusal(&self, words: &[&str]) -> String {
-        complaint(&self.command(words).output().unwrap())
-    }
-
-    fn report(&self) -> Value {
-        serde_json::from_slice(&std::fs::read(self.path("out/report.json")).unwrap()).unwrap()
-    }
-
-    /// Every mesh, solution and metric by its place.
-    fn products(&self) -> BTreeMap<PathBuf, Vec<u8>> {
-        let mut found = BTreeMap::new();
-        files(&self.path("out"), &mut |path| {
-            if path.extension().is_some_and(|ending| ["meshb", "solb", "png"].iter().any(|&known| ending == known)) {
-                found.insert(path.strip_prefix(self.folder.path()).unwrap().to_owned(), std::fs::read(path).unwrap());
-            }
-        });
-        found
-    }
-}
-
-fn files(folder: &Path, each: &mut impl FnMut(&Path)) {
-    for entry in std::fs::read_dir(folder).into_iter().flatten() {
-        let path = entry.unwrap().path();
-        if path.is_dir() { files(&path, each) } else { each(&path) }
-    }
-}
 
 /// What a file says up to its first space: of a step's `pid` the number of the process.
 fn first_word(path: &Path) -> String {
@@ -449,81 +389,6 @@ fn examples_are_printed_and_the_analytic_one_runs() {
     assert_ne!(short, text);
     let place = Place::new(&short.replace("folder = \"analytic\"", "folder = \"out\""));
     place.run(&[]);
-}
-
-/// Stands for SU2_CFD: reads its configuration and mesh, writes restart and history as SU2 documents them. The density is 1 + x / 10, of
-/// which a transferred one must be found again; CL is the number of points, CD how far that is off.
-#[cfg(unix)]
-const SU2: &str = r#"#!/bin/sh
-value() { sed -n "s/^$1= *//p" "$2" | tail -1; }
-mesh=$(value MESH_FILENAME "$1")
-for tag in $(value MARKER_EULER "$1" | tr -d '(),') $(value MARKER_FAR "$1" | tr -d '(),'); do
-    grep -q "MARKER_TAG= *$tag" "$mesh" || { echo "no marker $tag in $mesh"; exit 1; }
-done
-[ "$(value MACH_NUMBER "$1")" = 0.5 ] || exit 1
-points="$(value RESTART_FILENAME "$1").csv"
-awk -v out="$points" '/^NPOIN=/ { n = $2; print "\"PointID\",\"x\",\"y\",\"z\",\"Density\",\"Momentum_x\",\"Momentum_y\",\"Momentum_z\",\"Energy\",\"Mach\"" > out
-    for (i = 0; i < n; i++) { getline; printf "%d, %.15e, %.15e, %.15e, %.15e, %e, %e, %e, %e, %.15e\n", i, $1, $2, $3, 1 + $1 / 10, $1, $2, $3, 2.5, $1 * $1 + $2 * $2 > out } }' "$mesh"
-off=9
-if [ "$(value RESTART_SOL "$1")" = YES ]; then
-    columns=$(head -1 "$(value SOLUTION_FILENAME "$1").csv" | tr -d '" ')
-    [ "$columns" = PointID,x,y,z,Density,Momentum_x,Momentum_y,Momentum_z,Energy,Mach ] || { echo "columns $columns"; exit 1; }
-    off=$(awk -F, 'NR > 1 { d = $5 - 1 - $2 / 10; if (d < 0) d = -d; if (d > m) m = d } END { printf "%e", m }' "$(value SOLUTION_FILENAME "$1").csv")
-fi
-printf '"Time_Iter","Inner_Iter",     "rms[Rho]"    ,       "CL"       ,       "CD"       \n0, 0, -1.0, 0.0, 0.0\n0, 1, -8.0, %d, %s\n' \
-    "$(($(wc -l < "$points") - 1))" "$off" > "$(value CONV_FILENAME "$1").csv"
-"#;
-
-#[cfg(unix)]
-#[test]
-fn su2_restarts_from_the_transferred_solution() {
-    use std::os::unix::fs::PermissionsExt;
-    let config = r#"
-[mesh]
-file = "cube.meshb"
-[solver.su2]
-program = "./SU2_CFD"
-binary = false
-flow = { mach = 0.5, walls = ["wall"], farfield = ["inlet", "far"] }
-[metric]
-fields = ["Mach"]
-[schedule]
-complexity = 60
-factor = 1.0
-cycles = 2
-[output]
-folder = "out"
-"#;
-    let place = Place::new(config);
-    place.write("SU2_CFD", SU2);
-    std::fs::set_permissions(place.path("SU2_CFD"), std::fs::Permissions::from_mode(0o755)).unwrap();
-    geo_adapt::mesh::io::write_mesh(&place.path("cube.meshb"), &crate::common::adapting::cube(3, |_| 1)).unwrap();
-    let label = |name: &str| serde_json::json!({ "name": name });
-    let names = serde_json::json!({ "triangles": { "1": label("far"), "2": label("inlet"), "3": label("far"), "4": label("far"), "5": label("wall"), "6": label("wall") } });
-    place.write("cube.names.json", &names.to_string());
-    place.run(&[]);
-    let report = place.report();
-    let cycles = report["cycles"].as_array().unwrap();
-    let told = |cycle: usize, name: &str| cycles[cycle]["functionals"][name].as_f64().unwrap();
-    assert_eq!((told(0, "CD"), told(0, "CL")), (9.0, 64.0), "the first solve has nothing to go on from");
-    assert_eq!(told(2, "CL"), cycles[2]["vertices"].as_f64().unwrap());
-    assert!(told(1, "CD") < 1e-12 && told(2, "CD") < 1e-12, "{report}");
-    let written = std::fs::read_to_string(place.path("out/cycle-02/solve/su2.cfg")).unwrap();
-    assert!(written.contains("RESTART_SOL= YES") && written.contains("MARKER_FAR= ( inlet, far )"), "{written}");
-
-    // Reference values that are not given are those of the walls, and said once.
-    let log = std::fs::read_to_string(place.path("out/start/log.txt")).unwrap();
-    let said = "reference area 1.000000 (the planform of the walls of the first mesh), reference length 1.000000";
-    assert_eq!(log.matches(said).count(), 1, "{log}");
-    // The result is there as SU2 reads it.
-    let data = geo_adapt::formats::read(&place.path("out/result/mesh.su2")).unwrap().content;
-    assert_eq!(data.mesh.vertices.len() as f64, told(2, "CL"));
-    let rows = std::fs::read_to_string(place.path("out/result/restart.csv")).unwrap();
-    assert_eq!(rows.lines().count(), 1 + data.mesh.vertices.len());
-
-    let place = Place::new(&config.replace("./SU2_CFD", "./none"));
-    place.write("cube.meshb", "");
-    assert!(place.refusal(&[]).contains("./none is not there: install SU2"));
 }
 
 #[test]

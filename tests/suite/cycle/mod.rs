@@ -3,3 +3,5 @@ mod browser;
 mod loops;
 mod openfoam;
 mod openfoam_viscous;
+mod place;
+mod su2;
