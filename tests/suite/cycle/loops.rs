@@ -1,8 +1,7 @@
 //! `geo-adapt cycle`: the loop on its analytic solver and on programs; killed and resumed it ends with the same bytes.
 use super::place::{Place, files};
-use crate::common::adapting::{complaint, stderr};
+use crate::common::adapting::stderr;
 use crate::common::program;
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

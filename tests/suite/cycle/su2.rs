@@ -112,7 +112,8 @@ fn what_diverges_is_run_again_slower_after_first_order() {
 #[test]
 fn what_always_diverges_and_what_is_refused_is_told() {
     let always = SU2.replacen("mesh=$(", "echo 'SU2 has diverged (NaN detected).'; exit 1\nmesh=$(", 1);
-    let place = place(CONFIG, &always);
+    // With reference values there is no note of them.
+    let place = place(&CONFIG.replace("mach = 0.5", "mach = 0.5, area = 1.0, length = 1.0"), &always);
     let said = place.refusal(&[]);
     assert!(said.contains("however slow it is") && said.contains("SU2 has diverged"), "{said}");
     let refused =
@@ -132,7 +133,10 @@ fn su2_itself_goes_round_where_it_is_there() {
         eprintln!("skipped: no SU2_CFD on the PATH");
         return;
     }
-    let config = CONFIG.replace("./SU2_CFD", "SU2_CFD").replace("binary = false", "iterations = 400\nchange = 1e-4");
+    let config = CONFIG
+        .replace("./SU2_CFD", "SU2_CFD")
+        .replace("binary = false", "iterations = 400\nchange = 1e-4")
+        .replace("mach = 0.5", "mach = 0.5, angle_of_attack = 8.0");
     let place = place(&config, "");
     place.run(&[]);
     let report = place.report();
