@@ -1,11 +1,16 @@
-//! Walls: surfaces of a mesh that an option names, and the faces of the model under them.
+//! Walls: surfaces of a mesh that an option names, the faces of the model under them, and the layers that a mesh has there.
 use super::adapt::parts::{Found, Part};
+use super::table::{Table, figure};
+use crate::formats::Dataset;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Model, Names, on_mesh};
 use crate::mesh::TetMesh;
-use crate::sizing::layer::{Asked, Walls};
+use crate::sizing::layer::{Asked, Measured, Walls, distances, from_triangles, measure};
+use crate::tasks::Team;
+use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// A mesh and what is known of it.
 pub struct Places<'a> {
@@ -60,4 +65,66 @@ pub fn surfaces(by: &str, parts: &[Part], mesh: &TetMesh, names: &Names) -> Resu
         }
     }
     Ok(references)
+}
+
+/// The layers of a mesh along a wall.
+#[derive(Serialize)]
+pub struct OfWall {
+    /// The wall, as the option names it.
+    wall: String,
+    #[serde(flatten)]
+    layers: Measured,
+}
+
+/// Measures the layers of a mesh along the walls of --wall, by the exact distance from the model on which it lies, or from its own triangles.
+///
+/// # Errors
+/// When the mesh has no such surface, or no layers are asked for there.
+pub fn measured(
+    team: Team<'_>,
+    (name, data): (&Path, &Dataset),
+    lies: Option<(&Model, &Classification)>,
+    walls: &[Walls],
+) -> Result<Vec<OfWall>, String> {
+    let mesh = &data.mesh;
+    let names = lies.map_or(Cow::Borrowed(&data.names), |(model, place)| names_on(&data.names, mesh, place, model));
+    let each = walls.iter().flat_map(|walls| &walls.0).map(|wall| {
+        let Some(growth) = &wall.growth else {
+            return Err(format!(
+                "--wall: {}: law=spalding alone has no first height: give growth=1.2 with it",
+                wall.place
+            ));
+        };
+        let references = surfaces("--wall", &[wall.place.parse()?], mesh, &names)?;
+        let distances = match lies {
+            Some((model, place)) => {
+                let on = Places { mesh, place, model, names: &names };
+                distances(team, mesh, place, model, &on.faces(&references))
+            }
+            None => from_triangles(team, mesh, &references),
+        };
+        let is_wall = |triangle: usize| references.contains(&mesh.triangles.refs[triangle]);
+        let layers = measure(mesh, &distances, is_wall, growth)
+            .ok_or_else(|| format!("--wall: {}: no tetrahedron stands on a triangle of it alone", wall.place))?;
+        Ok(OfWall { wall: wall.place.clone(), layers })
+    });
+    each.collect::<Result<_, String>>().map_err(|error| format!("{}: {error}", name.display()))
+}
+
+impl OfWall {
+    /// Rows that tell of it.
+    pub fn rows(&self, table: &mut Table) {
+        let Measured { vertices, asked, mean, least, greatest, deviation, depth, points_asked, points } = self.layers;
+        table.row(&format!("wall {}", self.wall), format_args!("{vertices} vertices"));
+        let [asked, mean, least, greatest] = [asked, mean, least, greatest].map(figure);
+        table.row(
+            "  first height",
+            format_args!(
+                "mean {mean}   least {least}   greatest {greatest}   scatter {:.1} % (asked {asked})",
+                100.0 * deviation
+            ),
+        );
+        let depth = figure(depth);
+        table.row("  points across", format_args!("{points:.1} up to {depth} (asked {points_asked:.1})"));
+    }
 }

@@ -66,14 +66,8 @@ impl InputArguments {
              quarter of {wanted} to the field (a greater {asked} keeps them)"
         ));
         let (limits, measure) = (Limits::default(), Measure::Between(Interpolation::default()));
-        let bounds = Bounds {
-            complexity: most,
-            measure,
-            gradation: None,
-            limits,
-            fixed: others.as_deref(),
-            by_others: None,
-        };
+        let bounds =
+            Bounds { complexity: most, measure, gradation: None, limits, fixed: others.as_deref(), by_others: None };
         let enlarged = bounded(team, mesh, &logs, &bounds).map_err(|error| format!("--wall: {error}"))?;
         Ok(Some(enlarged.0))
     }

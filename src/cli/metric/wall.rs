@@ -6,8 +6,8 @@ use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::{Table, figure};
 use crate::cli::walls::{Places, names_on};
 use crate::cli::{Outcome, positive};
-use crate::geometry::discrete::complete_boundary;
 use crate::geometry::Geometry;
+use crate::geometry::discrete::complete_boundary;
 use crate::metric::multiscale::Norm;
 use crate::metric::summary::Summary as Figures;
 use crate::sizing::layer::{self, OfWall, Options, Outside, Summary, Walls, wall_metric};
@@ -104,8 +104,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         arguments.run.note(&[notice]);
     }
     let (name, mesh) = (&arguments.mesh, &data.mesh);
-    let (model, place) =
-        arguments.surface.lies(team, (name, mesh), arguments.cad.as_deref(), arguments.tolerance)?;
+    let (model, place) = arguments.surface.lies(team, (name, mesh), arguments.cad.as_deref(), arguments.tolerance)?;
     let names = names_on(&data.names, mesh, &place, &model);
     let on = Places { mesh, place: &place, model: &model, names: &names };
     let named = |error: String| format!("{}: {error}", name.display());

@@ -58,8 +58,7 @@ impl Foot {
         let frame = regular_frame(evaluator, topology, face, on.uv);
         let normal = unit(way);
         let aside = norm(sub(way, scale(frame.normal, dot(way, frame.normal))));
-        let along =
-            if topology.faces[face as usize].kind == SurfaceKind::Discrete { ALONG_TRIANGLES } else { ALONG };
+        let along = if topology.faces[face as usize].kind == SurfaceKind::Discrete { ALONG_TRIANGLES } else { ALONG };
         if is_unit(frame.normal) && aside <= along * distance + exact {
             return Self::inside(&frame, distance, if distance > exact { normal } else { facing(&frame, way) });
         }
@@ -83,7 +82,9 @@ impl Foot {
             directions,
             curvatures: each(&|curvature, flat| -outward * curvature / flat.max(FOCAL)),
             bends: frame.curvatures.map(f64::abs),
-            radii: each(&|curvature, flat| if curvature == 0.0 { f64::INFINITY } else { flat.max(0.0) / curvature.abs() }),
+            radii: each(&|curvature, flat| {
+                if curvature == 0.0 { f64::INFINITY } else { flat.max(0.0) / curvature.abs() }
+            }),
             is_inside: true,
         }
     }

@@ -91,11 +91,9 @@ mod tests {
             let log = growth.log(&foot, &OUTSIDE, 1.0).unwrap();
             let across = 1e-5 + 0.2 * distance;
             let chord = 0.5 * (8.0 * across * (0.5 + distance)).sqrt();
-            for (direction, expected) in [
-                (foot.normal, across),
-                (foot.directions[0], chord.min(0.1)),
-                (foot.directions[1], 0.1),
-            ] {
+            for (direction, expected) in
+                [(foot.normal, across), (foot.directions[0], chord.min(0.1)), (foot.directions[1], 0.1)]
+            {
                 assert!((size(&log, direction) / expected - 1.0).abs() < 1e-9, "{distance} {direction:?}");
             }
         }

@@ -8,9 +8,7 @@ use crate::geometry::Model;
 use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
 use crate::metric::field::complexity_between;
-use crate::metric::multiscale::{
-    self, Bounds, Measure, Norm, Unreachable, bounded, multiscale_of_hessians, reach,
-};
+use crate::metric::multiscale::{self, Bounds, Measure, Norm, Unreachable, bounded, multiscale_of_hessians, reach};
 use crate::metric::{Interpolation, Limits, Sym3, intersect_all, restrict};
 use crate::tasks::{GRAIN, Team, stage};
 use serde::Serialize;
@@ -155,13 +153,7 @@ pub fn wall_metric(
 }
 
 /// ln M of the layers that are prescribed. Sizes along the walls and outside are multiplied by `along`, those across stay.
-fn layers(
-    team: Team<'_>,
-    walls: &[(&Feet, Growth)],
-    vertices: usize,
-    outside: &Outside,
-    along: f64,
-) -> Vec<Sym3> {
+fn layers(team: Team<'_>, walls: &[(&Feet, Growth)], vertices: usize, outside: &Outside, along: f64) -> Vec<Sym3> {
     let none = Sym3::ZERO.plus_identity(-2.0 * (outside.greatest * along).ln());
     team.map(GRAIN / 4, vertices, |v| {
         let of = |(feet, growth): &(&Feet, Growth)| {
@@ -205,9 +197,8 @@ impl OfWall {
             (vertices, [least, greatest])
         });
         let none = (0, [f64::INFINITY, 0.0]);
-        let (vertices, heights) = parts
-            .into_iter()
-            .fold(none, |(n, [a, b]), (m, [c, d])| (n + m, [f64::min(a, c), f64::max(b, d)]));
+        let (vertices, heights) =
+            parts.into_iter().fold(none, |(n, [a, b]), (m, [c, d])| (n + m, [f64::min(a, c), f64::max(b, d)]));
         let first_heights = (vertices > 0).then_some(heights);
         Self { wall: asked.wall.clone(), faces: asked.faces.len(), vertices, first_heights }
     }

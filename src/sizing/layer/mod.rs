@@ -30,12 +30,6 @@ use crate::tasks::Team;
 
 /// The exact distance of each vertex of a mesh from these faces of its model, shape (n,), model units; 0 on them. Faces that the mesh has no
 /// triangle on are not looked at.
-pub fn distances(
-    team: Team<'_>,
-    mesh: &TetMesh,
-    place: &Classification,
-    model: &Model,
-    faces: &[u32],
-) -> Vec<f64> {
+pub fn distances(team: Team<'_>, mesh: &TetMesh, place: &Classification, model: &Model, faces: &[u32]) -> Vec<f64> {
     Search::new(mesh, place, model, faces).distances(team)
 }

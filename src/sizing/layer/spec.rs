@@ -75,9 +75,11 @@ impl Words {
         if key == "chord" {
             let share = match value {
                 "off" => None,
-                _ => Some(number().filter(|&x| x <= 1.0).ok_or_else(|| {
-                    named("give a share of √(8 h R) above 0 and up to 1, or off")
-                })?),
+                _ => Some(
+                    number()
+                        .filter(|&x| x <= 1.0)
+                        .ok_or_else(|| named("give a share of √(8 h R) above 0 and up to 1, or off"))?,
+                ),
             };
             return once(&mut self.chord, share).map_err(|why| named(&why));
         }

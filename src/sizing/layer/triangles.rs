@@ -45,7 +45,9 @@ mod tests {
     #[test]
     fn the_distance_is_that_of_all_triangles() {
         let mut mesh = cube(5);
-        mesh.vertices.iter_mut().for_each(|p| *p = [p[0] + 0.1 * p[1] * p[2], p[1] * (1.0 + p[0]), p[2] - 0.3 * p[0] * p[0]]);
+        mesh.vertices
+            .iter_mut()
+            .for_each(|p| *p = [p[0] + 0.1 * p[1] * p[2], p[1] * (1.0 + p[0]), p[2] - 0.3 * p[0] * p[0]]);
         let references: Vec<i32> = mesh.triangles.refs.first().copied().into_iter().collect();
         let found = from_triangles(Team::alone(), &mesh, &references);
         let asked: Vec<[Vec3; 3]> = mesh
