@@ -130,6 +130,11 @@ impl InputArguments {
         self.cad.is_some() || self.surface.surface.is_some()
     }
 
+    /// Whether the metric of a field has the sizes of the geometry in it.
+    pub(super) fn has_geometry(&self) -> bool {
+        !self.field.field.is_empty() && self.has_model() && !self.no_geometry
+    }
+
     /// The files that are read.
     pub fn files(&self) -> Files {
         let Self { mesh, cad, surface, field, .. } = self;

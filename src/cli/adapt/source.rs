@@ -167,7 +167,7 @@ impl InputArguments {
         (wanted, notices): (Option<f64>, &mut Vec<String>),
     ) -> Result<(Vec<Sym3>, Option<Cut>), String> {
         let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth().filter(|_| self.is_graded()));
-        let fixed = self.with_walls(team, mesh, on, self.local_sizes(team, mesh, on)?, (wanted, notices))?;
+        let fixed = self.with_walls(team, mesh, on, self.local_sizes(team, mesh, on)?, (wanted, gradation), notices)?;
         let measure = Measure::Between(Interpolation::default());
         let complexity = wanted.unwrap_or(1.0);
         let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref(), by_others };
@@ -203,7 +203,7 @@ impl InputArguments {
         notices: &mut Vec<String>,
     ) -> Result<Option<Vec<Sym3>>, String> {
         let others = self.geometry_and_local(team, mesh, on, complexity, notices)?;
-        self.with_walls(team, mesh, on, others, (Some(complexity), notices))
+        self.with_walls(team, mesh, on, others, (Some(complexity), self.multiscale.growth()), notices)
     }
 
     /// That of the geometry and of the local sizes.
@@ -215,7 +215,7 @@ impl InputArguments {
         complexity: f64,
         notices: &mut Vec<String>,
     ) -> Result<Option<Vec<Sym3>>, String> {
-        if !self.has_model() || self.no_geometry {
+        if !self.has_geometry() {
             return self.local_sizes(team, mesh, on);
         }
         let gradation = self.multiscale.growth();

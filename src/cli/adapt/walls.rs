@@ -3,7 +3,7 @@ use super::input::InputArguments;
 use super::source::On;
 use crate::mesh::TetMesh;
 use crate::metric::multiscale::{Bounds, Measure, Norm, bounded, diameter};
-use crate::metric::{Interpolation, Limits, Sym3, field, intersect_all};
+use crate::metric::{Interpolation, Limits, Sym3, field, grade};
 use crate::sizing::layer::{self, Options, Outside, wall_metric};
 use crate::tasks::{Team, stage};
 
@@ -23,14 +23,19 @@ impl InputArguments {
         mesh: &TetMesh,
         on: On<'_>,
         others: Option<Vec<Sym3>>,
-        (wanted, notices): (Option<f64>, &mut Vec<String>),
+        (wanted, gradation): (Option<f64>, Option<f64>),
+        notices: &mut Vec<String>,
     ) -> Result<Option<Vec<Sym3>>, String> {
         if self.walls.is_empty() {
             return Ok(others);
         }
         let asked = on.places(mesh).walls(&self.walls)?;
-        // Outside the layers a wall asks for nothing.
-        let greatest = self.multiscale.limits()?.hmax.unwrap_or_else(|| diameter(team, mesh));
+        // Outside the layers a wall asks for nothing that is not asked for there anyway.
+        let limits = self.multiscale.limits()?;
+        let greatest = match &others {
+            Some(_) if self.has_geometry() => self.geometry.options(on.model, limits, None).greatest,
+            _ => limits.hmax.unwrap_or_else(|| diameter(team, mesh)),
+        };
         let is_law = asked.iter().any(|asked| asked.wall.spalding.is_some());
         let options = Options {
             outside: Outside { greatest, segments: SEGMENTS },
@@ -46,17 +51,22 @@ impl InputArguments {
         stage("walls");
         if summary.enlarged > 0 {
             notices.push(format!(
-                "the mesh is too coarse for the layers of --wall: their sizes are enlarged at {} vertices, and the next cycle brings them nearer \
+                "the mesh is too coarse for the layers of --wall: their sizes are enlarged there (vertices: {}), and the next cycle brings them nearer \
                  to what is asked for",
                 summary.enlarged
             ));
         }
+        let measure = Measure::Between(Interpolation::default());
+        let most = SHARE * wanted.unwrap_or(f64::INFINITY);
+        let limits = Limits::default();
+        let bounds = Bounds { complexity: most, measure, gradation, limits, fixed: others.as_deref(), by_others: None };
         let mut all = logs.clone();
-        if let Some(others) = &others {
-            intersect_all(team, &mut all, others);
-        }
+        bounds.apply(team, &mut all);
         let Some(wanted) = wanted else { return Ok(Some(all)) };
-        let (own, most) = (field::complexity_between(team, mesh, &all), SHARE * wanted);
+        // As it will be once it is graded.
+        let mut graded = all.clone();
+        gradation.into_iter().for_each(|ratio| drop(grade(team, mesh, &mut graded, ratio)));
+        let own = field::complexity_between(team, mesh, &graded);
         if own <= most {
             return Ok(Some(all));
         }
@@ -65,9 +75,6 @@ impl InputArguments {
             "the layers of --wall and the geometry ask for a complexity of {own:.0}: sizes in the layers are enlarged, across them too, to leave a \
              quarter of {wanted} to the field (a greater {asked} keeps them)"
         ));
-        let (limits, measure) = (Limits::default(), Measure::Between(Interpolation::default()));
-        let bounds =
-            Bounds { complexity: most, measure, gradation: None, limits, fixed: others.as_deref(), by_others: None };
         let enlarged = bounded(team, mesh, &logs, &bounds).map_err(|error| format!("--wall: {error}"))?;
         Ok(Some(enlarged.0))
     }

@@ -17,14 +17,15 @@ pub struct Measured {
     pub vertices: usize,
     /// First height that is asked for.
     pub asked: f64,
-    /// First heights of these vertices: the least distance from the wall of the vertices opposite to the wall's triangles there. Their mean,
+    /// Mean of the first heights of these vertices: each is the mean distance from the wall of the vertices opposite to the wall's triangles there. In
+    /// a regular tetrahedron that is √(2/3) = 0.816 of the size.
     pub mean: f64,
-    /// least,
-    pub least: f64,
-    /// and greatest,
-    pub greatest: f64,
-    /// and their standard deviation as a share of the mean.
+    /// Their standard deviation as a share of the mean.
     pub deviation: f64,
+    /// Least and greatest distance of a single one of the opposite vertices.
+    pub least: f64,
+    /// See `least`.
+    pub greatest: f64,
     /// As far from the wall points across are counted.
     pub depth: f64,
     /// Points across that are asked for, ∫ dd/h(d).
@@ -42,7 +43,7 @@ pub fn measure(
     is_wall: impl Fn(usize) -> bool,
     growth: &Growth,
 ) -> Option<Measured> {
-    let heights = first_heights(mesh, distances, is_wall);
+    let First { heights, least, greatest } = first_heights(mesh, distances, is_wall);
     let count = heights.len() as f64;
     let mean = heights.iter().sum::<f64>() / count;
     let square = heights.iter().map(|height| (height - mean).powi(2)).sum::<f64>() / count;
@@ -52,24 +53,31 @@ pub fn measure(
         vertices: heights.len(),
         asked: growth.first,
         mean,
-        least: heights.iter().copied().fold(f64::INFINITY, f64::min),
-        greatest: heights.iter().copied().fold(0.0, f64::max),
         deviation: square.sqrt() / mean,
+        least,
+        greatest,
         depth,
         points_asked,
         points: points_asked * share_across(mesh, distances, depth, growth),
     })
 }
 
-/// The first height at each vertex of the wall that has one, in the order of the vertices.
-fn first_heights(mesh: &TetMesh, distances: &[f64], is_wall: impl Fn(usize) -> bool) -> Vec<f64> {
+/// The first height at each vertex of the wall that has one, in the order of the vertices; and the least and greatest of a tetrahedron.
+struct First {
+    heights: Vec<f64>,
+    least: f64,
+    greatest: f64,
+}
+
+fn first_heights(mesh: &TetMesh, distances: &[f64], is_wall: impl Fn(usize) -> bool) -> First {
     let sorted = |mut nodes: [u32; 3]| {
         nodes.sort_unstable();
         nodes
     };
     let walls: HashSet<[u32; 3]> =
         (0..mesh.triangles.len()).filter(|&t| is_wall(t)).map(|t| sorted(mesh.triangles.nodes[t])).collect();
-    let mut heights = vec![f64::INFINITY; mesh.vertices.len()];
+    let mut sums = vec![(0.0, 0u32); mesh.vertices.len()];
+    let (mut least, mut greatest) = (f64::INFINITY, 0.0f64);
     for nodes in &mesh.tets.nodes {
         if nodes.iter().filter(|&&v| distances[v as usize] == 0.0).count() < 3 {
             continue;
@@ -78,12 +86,16 @@ fn first_heights(mesh: &TetMesh, distances: &[f64], is_wall: impl Fn(usize) -> b
             let height = distances[nodes[opposite] as usize];
             let face = face.map(|i| nodes[i]);
             if height > 0.0 && walls.contains(&sorted(face)) {
-                face.iter().for_each(|&v| heights[v as usize] = heights[v as usize].min(height));
+                (least, greatest) = (least.min(height), greatest.max(height));
+                for v in face {
+                    let (sum, count) = &mut sums[v as usize];
+                    (*sum, *count) = (*sum + height, *count + 1);
+                }
             }
         }
     }
-    heights.retain(|height| height.is_finite());
-    heights
+    let heights = sums.into_iter().filter(|(_, count)| *count > 0).map(|(sum, count)| sum / f64::from(count));
+    First { heights: heights.collect(), least, greatest }
 }
 
 /// The points across that a mesh has within a depth, as a share of those asked for: both integrated over the tetrahedra there.

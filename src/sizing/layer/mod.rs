@@ -1,4 +1,4 @@
-//! The layers along walls (METHOD.md §1.14): sizes that depend on the exact distance from some faces of a model.
+//! The layers along walls (METHOD.md §1.15): sizes that depend on the exact distance from some faces of a model.
 //!
 //! `search` finds the closest points of faces, `foot` what the distance is like there: its gradient, and its second derivatives, which are the
 //! curvatures of the surfaces of equal distance. `growth` has the sizes that a user prescribes, `spalding` the profile of a turbulent boundary

@@ -119,7 +119,8 @@ impl<'a> Search<'a> {
         let mut of: Vec<u32> = Vec::new();
         if self.is_on(self.place.entities[vertex]) {
             for (face, uv) in own_faces(self.topology, self.place, evaluator, vertex) {
-                if self.faces.binary_search(&face).is_ok() {
+                // A vertex may lie on two edges of a face, whose normals there are the same.
+                if self.faces.binary_search(&face).is_ok() && !of.contains(&face) {
                     found.extend(Foot::on_wall(evaluator, self.topology, face, uv));
                     of.push(face);
                 }

@@ -1,4 +1,4 @@
-//! Spalding's law of the wall (METHOD.md §1.14): u⁺ of y⁺, and the height of a y⁺ from Reynolds' number.
+//! Spalding's law of the wall (METHOD.md §1.15): u⁺ of y⁺, and the height of a y⁺ from Reynolds' number.
 
 /// Kármán's constant.
 pub const KAPPA: f64 = 0.41;
@@ -67,7 +67,7 @@ pub fn held_velocity(y: f64) -> Velocity {
     Velocity { second: -bend / (slope * slope * slope), ..velocity }
 }
 
-/// The height of y⁺ = 1, ν/u_τ, in units of the length: u_τ = U √(c_f/2), c_f = 0.026 Re^(−1/7) of a flat plate (METHOD.md §1.14). `reynolds` is U L/ν,
+/// The height of y⁺ = 1, ν/u_τ, in units of the length: u_τ = U √(c_f/2), c_f = 0.026 Re^(−1/7) of a flat plate (METHOD.md §1.15). `reynolds` is U L/ν,
 /// of this `length` L.
 pub fn viscous_length(reynolds: f64, length: f64) -> f64 {
     length / (reynolds * (0.5 * friction(reynolds)).sqrt())

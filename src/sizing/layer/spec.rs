@@ -34,7 +34,7 @@ impl FromStr for Walls {
     fn from_str(text: &str) -> Result<Self, String> {
         let mut begun: Vec<Words> = Vec::new();
         for piece in text.split(',').map(str::trim) {
-            let Some((key, value)) = piece.split_once('=') else { return Err(format!("`{piece}`: {USAGE}")) };
+            let Some((key, value)) = piece.rsplit_once('=') else { return Err(format!("`{piece}`: {USAGE}")) };
             let key = match (key.rsplit_once(':'), begun.is_empty()) {
                 (Some((place, key)), _) if !place.trim().is_empty() => {
                     begun.push(Words { place: place.trim().into(), ..Words::default() });
@@ -178,6 +178,13 @@ mod tests {
         assert!(alone.growth.is_none() && (alone.spalding.unwrap() / 4.456_878e-6 - 1.0).abs() < 1e-6);
         let both = &read("wing:law=spalding,h=2e-6,yplus=0.5,growth=1.2").unwrap()[0];
         assert_eq!((both.spalding, both.growth.unwrap().first), (Some(4e-6), 2e-6));
+    }
+
+    #[test]
+    fn names_may_have_signs_in_them() {
+        let found = read("z=0:h=1e-3,growth=1.5,a:b=c:h=1").unwrap();
+        assert_eq!(found.iter().map(|wall| wall.place.as_str()).collect::<Vec<_>>(), ["z=0", "a:b=c"]);
+        assert_eq!(found[0].growth.unwrap().growth, 1.5);
     }
 
     #[test]
