@@ -186,6 +186,13 @@ def _words(wall: Mapping[str, Any]) -> str:
     return ",".join(f"{key}={'off' if value is None else value}" for key, value in wall.items())
 
 
+def _surfaces(mesh: Mesh, wall: str | int) -> list[int]:
+    if not isinstance(wall, str) or wall in mesh.names:
+        return mesh.surface(wall)
+    parts = [part.strip() for part in wall.split("+")]
+    return [reference for part in parts for reference in mesh.surface(int(part) if part.isdigit() else part)]
+
+
 def wall(
     mesh: Mesh,
     walls: Mapping[str | int, Mapping[str, Any]],
@@ -206,7 +213,7 @@ def wall(
     mesh : Mesh
         A mesh on the model.
     walls : mapping of str or int to mapping
-        For each wall, by the name or reference of its surface, what its layers are like: ``h``, the first height, or ``yplus``, ``re`` and ``length``;
+        For each wall, by the name or reference of its surface (of several "3+4+tail"), what its layers are like: ``h``, the first height, or ``yplus``, ``re`` and ``length``;
         ``growth``, ``tangential``, ``chord`` (None leaves that bound out) and ``law``, as ``geo-adapt metric wall --help`` tells.
     model : Model, optional
         The CAD model. Without it the walls are smooth patches through the mesh's own triangles.
@@ -247,7 +254,7 @@ def wall(
     >>> bool(np.allclose(m[on, 5] ** -0.5, 0.01))
     True
     """
-    asked = [(str(name), mesh.surface(name), _words(given)) for name, given in walls.items()]
+    asked = [(str(name), _surfaces(mesh, name), _words(given)) for name, given in walls.items()]
     how = {
         "complexity": complexity,
         "hmax": hmax,

@@ -3,7 +3,7 @@ use super::adapt::parts::{Found, Part};
 use super::table::{Table, figure};
 use crate::formats::Dataset;
 use crate::geometry::classify::Classification;
-use crate::geometry::{Model, Names, on_mesh};
+use crate::geometry::{Model, Names, called, on_mesh};
 use crate::mesh::TetMesh;
 use crate::sizing::layer::{Asked, Measured, Walls, distances, from_triangles, measure};
 use crate::tasks::Team;
@@ -36,7 +36,7 @@ impl Places<'_> {
     pub fn walls(&self, walls: &[Walls]) -> Result<Vec<Asked>, String> {
         let each = walls.iter().flat_map(|walls| &walls.0);
         let asked = each.map(|wall| {
-            let references = surfaces("--wall", &[wall.place.parse()?], self.mesh, self.names)?;
+            let references = surfaces_of(&wall.place, self.mesh, self.names)?;
             Ok(Asked { wall: wall.clone(), faces: self.faces(&references) })
         });
         asked.collect()
@@ -46,6 +46,14 @@ impl Places<'_> {
 /// The names of a mesh's references: its own, else those of its model.
 pub fn names_on<'n>(own: &'n Names, mesh: &TetMesh, place: &Classification, model: &Model) -> Cow<'n, Names> {
     if own.is_empty() { Cow::Owned(on_mesh(mesh, place, model)) } else { Cow::Borrowed(own) }
+}
+
+/// The references of the surfaces that are a wall: one, or several as 3+4+tail.
+fn surfaces_of(place: &str, mesh: &TetMesh, names: &Names) -> Result<Vec<i32>, String> {
+    let is_whole = !called(&names.triangles, place).is_empty();
+    let parts: Result<Vec<Part>, String> =
+        if is_whole { place.parse().map(|part| vec![part]) } else { place.split('+').map(str::parse).collect() };
+    surfaces("--wall", &parts?, mesh, names)
 }
 
 /// The references of the surfaces that an option names.
@@ -95,7 +103,7 @@ pub fn measured(
                 wall.place
             ));
         };
-        let references = surfaces("--wall", &[wall.place.parse()?], mesh, &names)?;
+        let references = surfaces_of(&wall.place, mesh, &names)?;
         let distances = match lies {
             Some((model, place)) => {
                 let on = Places { mesh, place, model, names: &names };

@@ -1,14 +1,14 @@
 //! Layers along walls: exact distances, `geo-adapt metric wall`, and what becomes of the layers when meshes are adapted to it.
 
 use crate::common::adapting::{Workplace, complaint, isotropic, stderr, text, write_tensors};
-use crate::common::models::data;
+use crate::common::models::{Random, data};
 use crate::common::program;
 use geo_adapt::geometry::classify::{self, Classification};
-use geo_adapt::geometry::{Entity, Geometry, Model};
-use geo_adapt::mesh::vector::Vec3;
+use geo_adapt::geometry::{Entity, Evaluate, Geometry, Model};
+use geo_adapt::mesh::vector::{Vec3, add, dot, scale, unit};
 use geo_adapt::mesh::{TetMesh, io};
 use geo_adapt::metric::Sym3;
-use geo_adapt::sizing::layer::distances;
+use geo_adapt::sizing::layer::{Foot, distances};
 use geo_adapt::tasks::{Plan, Pool, Team};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -124,6 +124,47 @@ fn distances_from_several_spline_faces_are_those_of_opencascade() {
     }
 }
 
+/// The gradient and the second derivatives of the distance from single faces, by differences of exact distances: beside the faces, and about their
+/// edges and corners.
+#[test]
+fn second_derivatives_of_the_distance_are_those_of_differences() {
+    let models = ["cylinder", "torus", "sphere", "cube", "spheroid"];
+    let paths = models.map(|name| Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("geometry/{name}.step")));
+    let (mut beside, mut about) = (0, 0);
+    for path in paths.into_iter().chain([data("nurbs-torus.brep")]) {
+        let model = Model::read(&path).unwrap();
+        let (topology, mut on, mut random) = (model.topology(), model.evaluator(), Random(7));
+        let diagonal = topology.diagonal();
+        for i in 0..400 {
+            let p = random.within(topology.bounds, 0.3);
+            let face = i % topology.faces.len() as u32;
+            let mut foot = |p: Vec3| {
+                let closest = on.closest_on_face(face, p, None);
+                Foot::off_wall(&mut on, topology, (face, closest), p, 1e-9 * diagonal)
+            };
+            let (here, step) = (foot(p), 1e-3 * diagonal);
+            let direction = unit([0; 3].map(|_| random.between([-1.0, 1.0])));
+            let [before, after] = [-step, step].map(|s| foot(add(p, scale(direction, s))));
+            let is_like = |other: &Foot| {
+                other.is_inside == here.is_inside
+                    && other.bends[0].is_finite() == here.bends[0].is_finite()
+                    && dot(other.normal, here.normal) > 0.99
+            };
+            let radius = here.radii[0].min(here.radii[1]).min(here.distance);
+            if radius < 0.03 * diagonal || !is_like(&before) || !is_like(&after) {
+                continue;
+            }
+            let slope = (after.distance - before.distance) / (2.0 * step);
+            assert!((slope - dot(here.normal, direction)).abs() < 2e-3, "{path:?} {face} {p:?}");
+            let second = (after.distance - 2.0 * here.distance + before.distance) / (step * step);
+            let found = here.hessian([1.0, 0.0]).quadratic(direction);
+            assert!((second - found).abs() < 0.02 / radius, "{path:?} {face} {p:?}: {second} {found} {here:?}");
+            *(if here.is_inside { &mut beside } else { &mut about }) += 1;
+        }
+    }
+    assert!(beside > 300 && about > 100, "{beside} {about}");
+}
+
 #[test]
 fn sizes_are_those_of_the_law_at_each_vertex() {
     let (work, [model, start]) = (Workplace::new(), cube_cylinder());
@@ -219,7 +260,8 @@ fn a_corner_of_two_walls_has_the_layers_of_both() {
     let [a, b] = sides.map(|side| format!(r#""{side}": {{"name": "sides"}}"#));
     std::fs::write(work.path("in.names.json"), format!(r#"{{"triangles": {{{a}, {b}}}}}"#)).unwrap();
     let two = format!("{}:h=1e-3,{}:h=2e-3", sides[0], sides[1]);
-    for (spec, first) in [(two.as_str(), [1e-3, 2e-3]), ("sides:h=1e-3", [1e-3; 2])] {
+    let several = format!("{}+{}:h=1e-3", sides[0], sides[1]);
+    for (spec, first) in [(two.as_str(), [1e-3, 2e-3]), ("sides:h=1e-3", [1e-3; 2]), (several.as_str(), [1e-3; 2])] {
         made(&["metric", "wall", &input, "--cad", &model, "--wall", spec, "--exact", "-o", &out]);
         for (p, metric) in mesh.vertices.iter().zip(tensors(&out)) {
             for (axis, direction) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].into_iter().enumerate() {

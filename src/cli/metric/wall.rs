@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 /// Help on --wall.
-pub const WALL: &str = "A wall, and the layers along it. WALL is a surface of the mesh by name or reference. h=1e-6 is the first height; or \
+pub const WALL: &str = "A wall, and the layers along it. WALL is a surface of the mesh by name or reference, or several that are one wall: 3+4+tail. h=1e-6 is the first height; or \
 yplus=1 is its y⁺ at the Reynolds number re=6e6 of the length length=1, by the friction of a flat plate. growth=1.2 is the ratio of the heights of a \
 layer and the one below it: at the distance d the size across is h + 0.2 d. Sizes along the wall are 1/(segments κ) of its curvature κ, or \
 tangential=H, and at most 0.5 √(8 h R), R its radius; chord=SHARE is another share, chord=off leaves that out. law=spalding makes the metric of the \
