@@ -65,7 +65,9 @@ impl InputArguments {
         let Some(wanted) = wanted else { return Ok(Some(all)) };
         // As it will be once it is graded.
         let mut graded = all.clone();
-        gradation.into_iter().for_each(|ratio| drop(grade(team, mesh, &mut graded, ratio)));
+        if let Some(ratio) = gradation {
+            grade(team, mesh, &mut graded, ratio);
+        }
         let own = field::complexity_between(team, mesh, &graded);
         if own <= most {
             return Ok(Some(all));
