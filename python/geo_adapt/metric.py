@@ -7,7 +7,7 @@ numbers are those of ``geo-adapt metric``, bit for bit, on any number of threads
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -180,6 +180,133 @@ def geometry(
         "tolerance": tolerance,
     }
     return _kernel.geometry(mesh, None if model is None else model._kernel, how, threads or 0)
+
+
+def _words(wall: Mapping[str, Any]) -> str:
+    return ",".join(f"{key}={'off' if value is None else value}" for key, value in wall.items())
+
+
+def _surfaces(mesh: Mesh, wall: str | int) -> list[int]:
+    if not isinstance(wall, str) or wall in mesh.names:
+        return mesh.surface(wall)
+    parts = [part.strip() for part in wall.split("+")]
+    return [reference for part in parts for reference in mesh.surface(int(part) if part.isdigit() else part)]
+
+
+def wall(
+    mesh: Mesh,
+    walls: Mapping[str | int, Mapping[str, Any]],
+    model: Model | None = None,
+    complexity: float | None = None,
+    *,
+    hmax: float | None = None,
+    segments: float = 2.0,
+    norm: float = 2.0,
+    exact: bool = False,
+    tolerance: float | None = None,
+    threads: int | None = None,
+) -> Floats:
+    """The metric of layers along walls, from the exact distance to the faces of the model.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A mesh on the model.
+    walls : mapping of str or int to mapping
+        For each wall, by the name or reference of its surface (of several "3+4+tail"), what its layers are like: ``h``, the first height, or ``yplus``, ``re`` and ``length``;
+        ``growth``, ``tangential``, ``chord`` (None leaves that bound out) and ``law``, as ``geo-adapt metric wall --help`` tells.
+    model : Model, optional
+        The CAD model. Without it the walls are smooth patches through the mesh's own triangles.
+    complexity : float, optional
+        That is met, by the sizes along the walls and outside, or by Spalding's law.
+    hmax : float, optional
+        Greatest size; by default a tenth of the model's diagonal.
+    segments : float
+        Segments for a radian of a wall's curvature.
+    norm : float
+        With Spalding's law: the p of the norm of the interpolation error of u⁺.
+    exact : bool
+        Sizes as they are asked for, also where the mesh is too coarse to interpolate them.
+    tolerance, threads : optional
+        How far a point may be from the model; by default all cores.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Raises
+    ------
+    InputError
+        When a wall is not there, or its words are wrong.
+    MetricError
+        When the complexity cannot be reached.
+
+    References
+    ----------
+    D. B. Spalding, A single formula for the law of the wall, J. Appl. Mech. 28 (1961).
+
+    Examples
+    --------
+    >>> import numpy as np, geo_adapt
+    >>> mesh = geo_adapt.examples.cube(4)
+    >>> m = geo_adapt.metric.wall(mesh, {"z=0": dict(h=0.01, growth=1.2)}, exact=True)
+    >>> on = geo_adapt.examples.cube(4).on("z=0")
+    >>> bool(np.allclose(m[on, 5] ** -0.5, 0.01))
+    True
+    """
+    asked = [(str(name), _surfaces(mesh, name), _words(given)) for name, given in walls.items()]
+    how = {
+        "complexity": complexity,
+        "hmax": hmax,
+        "segments": segments,
+        "norm": norm,
+        "exact": exact,
+        "tolerance": tolerance,
+    }
+    return _kernel.wall(mesh, None if model is None else model._kernel, asked, how, threads or 0)
+
+
+def distance(
+    mesh: Mesh,
+    faces: str | int | Sequence[str | int],
+    model: Model | None = None,
+    *,
+    tolerance: float | None = None,
+    threads: int | None = None,
+) -> Floats:
+    """The exact distance of the points from some surfaces: from the faces of the model there, or from the mesh's own triangles.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A mesh on the model.
+    faces : str, int, or sequence of these
+        The surfaces, by name or reference.
+    model : Model, optional
+        The CAD model.
+    tolerance, threads : optional
+        How far a point may be from the model; by default all cores.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        0 on the surfaces.
+
+    Raises
+    ------
+    InputError
+        When a surface is not there.
+
+    Examples
+    --------
+    >>> import numpy as np, geo_adapt
+    >>> mesh = geo_adapt.examples.cube(4)
+    >>> bool(np.array_equal(geo_adapt.metric.distance(mesh, "z=0"), mesh.points[:, 2]))
+    True
+    """
+    given = [faces] if isinstance(faces, (str, int)) else list(faces)
+    references = sorted({reference for name in given for reference in mesh.surface(name)})
+    return _kernel.distance(mesh, None if model is None else model._kernel, references, tolerance, threads or 0)
 
 
 def isotropic(sizes: npt.ArrayLike) -> Floats:

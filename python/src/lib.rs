@@ -37,6 +37,8 @@ fn _kernel(module: &Bound<'_, PyModule>) -> PyResult<()> {
         function!(metric::from_points, module)?,
         function!(metric::multiscale, module)?,
         function!(metric::geometry, module)?,
+        function!(metric::wall, module)?,
+        function!(metric::distance, module)?,
         function!(transfer::transfer, module)?,
         function!(transfer::inspect, module)?,
     ] {

@@ -11,10 +11,12 @@ use geo_adapt::metric::multiscale::{self as of_field, Bounds, Measure, Norm};
 use geo_adapt::metric::recovery::Recovery;
 use geo_adapt::metric::{self, Field, Interpolation, Limits, Sym3, field};
 use geo_adapt::sizing;
+use geo_adapt::sizing::layer::{self, Asked, Outside, Wall, Walls, wall_metric};
 use geo_adapt::tasks::{GRAIN, Team};
 use geo_adapt::{DiscreteOptions, Geometry, TetMesh};
-use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Metrics, shape (n, 6).
@@ -226,6 +228,118 @@ pub fn multiscale<'py>(
     arrays::give_rows(py, made)
 }
 
+/// Where a mesh lies on its model, or on its own surface, which is that model then.
+fn lies(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    model: Option<&geo_adapt::Model>,
+    tolerance: Option<f64>,
+) -> PyResult<(Option<geo_adapt::Model>, Classification)> {
+    if let Some(model) = model {
+        let options = classify::Options { tolerance, ..classify::Options::default() };
+        let (place, _) = classify::classify(team, mesh, model, &options)
+            .map_err(|error| errors::of_adapter(geo_adapt::Error::Model(error.into())))?;
+        return Ok((None, place));
+    }
+    let (own, place) =
+        Discrete::new(team, mesh, &DiscreteOptions::default()).map_err(|error| errors::of_adapter(error.into()))?;
+    Ok((Some(geo_adapt::Model::Discrete(own)), place))
+}
+
+/// The faces of a model under the triangles of some references, ascending.
+fn faces(mesh: &TetMesh, place: &Classification, references: &[i32]) -> Vec<u32> {
+    let all = place.faces.iter().zip(&mesh.triangles.refs);
+    let found: BTreeSet<u32> =
+        all.filter(|(_, reference)| references.contains(reference)).map(|(&face, _)| face).collect();
+    found.into_iter().collect()
+}
+
+/// How layers along walls are made.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct OfWalls {
+    complexity: Option<f64>,
+    hmax: Option<f64>,
+    segments: f64,
+    norm: f64,
+    exact: bool,
+    tolerance: Option<f64>,
+}
+
+/// The layers along walls, each by its name, the references of its triangles and its words.
+#[pyfunction]
+#[pyo3(signature = (mesh, model, walls, how, threads))]
+pub fn wall<'py>(
+    py: Python<'py>,
+    mesh: Arrays<'_>,
+    model: Option<Py<Model>>,
+    walls: Vec<(String, Vec<i32>, String)>,
+    how: OfWalls,
+    threads: usize,
+) -> Made<'py> {
+    let (view, pool) = (mesh.view()?, arrays::pool(threads)?);
+    positive("segments", how.segments)?;
+    for (name, value) in [("hmax", how.hmax), ("complexity", how.complexity)] {
+        value.map(|value| positive(name, value)).transpose()?;
+    }
+    let norm = Norm::of(how.norm).ok_or_else(|| errors::input(format!("norm {}: give 1 or more", how.norm)))?;
+    let model = model.as_ref().map(|model| &*model.get().0);
+    let made = py.detach(|| {
+        let team = team(&pool);
+        let mut mesh = view.to_mesh().map_err(errors::of_adapter)?;
+        complete_boundary(team, &mut mesh);
+        let (own, place) = lies(team, &mesh, model, how.tolerance)?;
+        let model = own.as_ref().or(model).ok_or_else(|| errors::input("no model"))?;
+        let mut asked = Vec::with_capacity(walls.len());
+        for (name, references, words) in &walls {
+            // A name may have signs in it that words have not.
+            let read: Walls = format!("wall:{words}").parse().map_err(errors::input)?;
+            let faces = faces(&mesh, &place, references);
+            if faces.is_empty() {
+                return Err(errors::input(format!(
+                    "walls: {name}: the mesh has no triangle with reference {references:?}"
+                )));
+            }
+            let named = |wall: Wall| Asked { wall: Wall { place: name.clone(), ..wall }, faces: faces.clone() };
+            asked.extend(read.0.into_iter().map(named));
+        }
+        let greatest = how.hmax.unwrap_or(sizing::Options::of(model.topology()).greatest);
+        let outside = Outside { greatest, segments: how.segments };
+        let options = layer::Options { outside, complexity: how.complexity, norm, exact: how.exact };
+        let (logs, _) = wall_metric(team, (&mesh, &place, model), &asked, &options).map_err(errors::metric)?;
+        exp(team, &logs)
+    })?;
+    arrays::give_rows(py, made)
+}
+
+/// The distance of the points from the faces of a model under the triangles of some references, or from these.
+#[pyfunction]
+#[pyo3(signature = (mesh, model, references, tolerance, threads))]
+pub fn distance<'py>(
+    py: Python<'py>,
+    mesh: Arrays<'_>,
+    model: Option<Py<Model>>,
+    references: Vec<i32>,
+    tolerance: Option<f64>,
+    threads: usize,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let (view, pool) = (mesh.view()?, arrays::pool(threads)?);
+    let model = model.as_ref().map(|model| &*model.get().0);
+    let found = py.detach(|| {
+        let team = team(&pool);
+        let mut mesh = view.to_mesh().map_err(errors::of_adapter)?;
+        complete_boundary(team, &mut mesh);
+        if !mesh.triangles.refs.iter().any(|reference| references.contains(reference)) {
+            return Err(errors::input(format!("faces: the mesh has no triangle with reference {references:?}")));
+        }
+        let Some(model) = model else { return Ok(layer::from_triangles(team, &mesh, &references)) };
+        let (_, place) = lies(team, &mesh, Some(model), tolerance)?;
+        let faces = faces(&mesh, &place, &references);
+        Ok(layer::distances(team, &mesh, &place, model, &faces))
+    })?;
+    Ok(PyArray1::from_vec(py, found))
+}
+
 /// What the geometry's metric is made by.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -257,21 +371,8 @@ pub fn geometry<'py>(
         let team = team(&pool);
         let mut mesh = view.to_mesh().map_err(errors::of_adapter)?;
         complete_boundary(team, &mut mesh);
-        let own;
-        let (model, place): (_, Classification) = match model {
-            Some(model) => {
-                let options = classify::Options { tolerance: how.tolerance, ..classify::Options::default() };
-                let (place, _) = classify::classify(team, &mesh, model, &options)
-                    .map_err(|error| errors::of_adapter(geo_adapt::Error::Model(error.into())))?;
-                (model, place)
-            }
-            None => {
-                let (model, place) = Discrete::new(team, &mesh, &DiscreteOptions::default())
-                    .map_err(|error| errors::of_adapter(error.into()))?;
-                own = geo_adapt::Model::Discrete(model);
-                (&own, place)
-            }
-        };
+        let (own, place) = lies(team, &mesh, model, how.tolerance)?;
+        let model = own.as_ref().or(model).ok_or_else(|| errors::input("no model"))?;
         let usual = sizing::Options::of(model.topology());
         let greatest = limits.hmax.unwrap_or(usual.greatest.max(limits.hmin.unwrap_or(0.0)));
         let options = sizing::Options {

@@ -114,3 +114,29 @@ def test_inspect_tells_what_the_program_tells(tmp_path, typed, step, model, file
     mesh, _, m = files
     told = json.loads(typed("inspect", "mesh.meshb", "--cad", step, "--metric", "m.solb", "--json").stdout)
     assert geo_adapt.inspect(mesh, m, model, order="medit") == told
+
+
+@pytest.mark.parametrize("threads", THREADS)
+@pytest.mark.parametrize("on_cad", [True, False])
+def test_walls(tmp_path, typed, step, model, files, threads, on_cad):
+    mesh, _, _ = files
+    wall = int(mesh.references[0])
+    with_model = model if on_cad else None
+    cad = ["--cad", step] if on_cad else []
+    made = metric.wall(mesh, {wall: {"h": 1e-3, "growth": 1.3}}, with_model, threads=threads)
+    geo_adapt.write_sol(tmp_path / "ours.solb", made)
+    words = ["--wall", f"{wall}:h=0.001,growth=1.3", "-o", "theirs.solb", "--threads", threads]
+    typed("metric", "wall", "mesh.meshb", *cad, *words)
+    _same(tmp_path, ".solb")
+    geo_adapt.write_sol(tmp_path / "ours.solb", metric.distance(mesh, wall, with_model, threads=threads))
+    typed("field", "distance", "mesh.meshb", *cad, "--faces", wall, "-o", "theirs.solb", "--threads", threads)
+    _same(tmp_path, ".solb")
+
+
+def test_walls_that_are_not_there(mesh):
+    with pytest.raises(geo_adapt.InputError, match="no surface is called"):
+        metric.wall(mesh, {"nothing": {"h": 1e-3}})
+    with pytest.raises(geo_adapt.InputError, match="no triangle with reference"):
+        metric.distance(mesh, 12345)
+    with pytest.raises(geo_adapt.InputError, match="give a positive number"):
+        metric.wall(mesh, {int(mesh.references[0]): {"h": 0}})

@@ -2,7 +2,7 @@
 use clap::Command;
 
 /// Commands, by the words that are typed for them, each with its examples.
-const EXAMPLES: [(&str, &[&str]); 36] = [
+const EXAMPLES: [(&str, &[&str]); 38] = [
     (
         "",
         &[
@@ -52,6 +52,13 @@ const EXAMPLES: [(&str, &[&str]); 36] = [
         ],
     ),
     ("field", &["geo-adapt field evaluate a.meshb --function tanh3 -o u.solb"]),
+    (
+        "field distance",
+        &[
+            "geo-adapt field distance a.meshb --cad wing.step --faces wing -o d.solb",
+            "geo-adapt field distance a.meshb --cad wing.step --faces wing --spalding --re 6e6 -o uplus.solb",
+        ],
+    ),
     ("field error", &["geo-adapt field error coarse.meshb coarse.solb --truth fine.meshb fine.solb"]),
     ("field evaluate", &["geo-adapt field evaluate a.meshb --function tanh3 -o u.solb"]),
     ("field pick", &["geo-adapt field pick flow.solb --take 5,norm:2-4 -o u.solb"]),
@@ -67,6 +74,7 @@ const EXAMPLES: [(&str, &[&str]); 36] = [
         &[
             "geo-adapt inspect a.meshb",
             "geo-adapt inspect a.meshb --metric a.solb --cad wing.step",
+            "geo-adapt inspect a.meshb --cad wing.step --wall wing:h=1e-5,growth=1.2",
             "geo-adapt inspect large.meshb --metric large.solb --memory 2GiB",
         ],
     ),
@@ -84,6 +92,14 @@ const EXAMPLES: [(&str, &[&str]); 36] = [
     ("metric multiscale", &["geo-adapt metric multiscale a.meshb mach.solb --complexity 50000 -o m.solb"]),
     ("metric scale", &["geo-adapt metric scale a.meshb m.solb --complexity 50000 -o scaled.solb"]),
     ("metric show", &["geo-adapt metric show a.meshb m.solb"]),
+    (
+        "metric wall",
+        &[
+            "geo-adapt metric wall a.meshb --cad wing.step --wall wing:h=1e-5,growth=1.2 -o m.solb",
+            "geo-adapt metric wall a.meshb --cad wing.step --wall wing:yplus=1,re=6e6,length=1 -o m.solb",
+            "geo-adapt metric wall a.meshb --cad wing.step --wall wing:re=6e6,law=spalding --complexity 20000 -o m.solb",
+        ],
+    ),
     (
         "model",
         &[

@@ -4,9 +4,12 @@ use super::amount::bytes;
 use super::figures::FigureArguments;
 use super::files::reading::{self, Carrier};
 use super::files::{Files, JSON, Outputs};
+use super::metric::wall::WALL;
 use super::surface::SurfaceArguments;
 use super::table::{Table, place};
+use super::walls::{self, OfWall};
 use crate::formats::Dataset;
+use crate::geometry::classify::Classification;
 use crate::geometry::fidelity::{self, Fidelity};
 use crate::geometry::{Model, classify};
 use crate::inspection::{self, Inspected, Metrics};
@@ -16,6 +19,7 @@ use crate::mesh::numbers::from_one;
 use crate::mesh::validity::{self, Validity};
 use crate::mesh::vector::{Vec3, add, scale};
 use crate::metric::{Analytic, Field, Statistics, Sym3};
+use crate::sizing::layer::Walls;
 use crate::tasks::{Plan, Team};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -39,6 +43,9 @@ pub struct Arguments {
     /// is checked as without it. The boundary must fit
     #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with_all = ["cad", "surface"])]
     memory: Option<u64>,
+    /// A wall, and the layers that it is to have: first heights and points across are measured against these
+    #[arg(long = "wall", value_name = "WALL:h=H[,growth=G…],…", conflicts_with = "memory", allow_negative_numbers = true, long_help = WALL)]
+    walls: Vec<Walls>,
     #[command(flatten)]
     surface: SurfaceArguments,
     #[command(flatten)]
@@ -76,6 +83,8 @@ struct Inspection {
     worst_tet: Option<WorstTet>,
     #[serde(skip_serializing_if = "Option::is_none")]
     cad: Option<Cad>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    walls: Vec<OfWall>,
 }
 
 /// Runs the subcommand: code 0 for a valid mesh (that fits the model, if one is given), else 1.
@@ -106,10 +115,13 @@ fn in_memory(team: Team<'_>, arguments: &Arguments) -> Result<Inspection, Box<dy
         None => Statistics::in_space(team, mesh),
     };
     let validity = validity::check_on(team, mesh);
-    let cad = model.map(|model| on_model(team, mesh, &model));
+    let placed = model.as_ref().map(|model| on_model(team, mesh, model));
+    let (cad, place) = placed.map_or((None, None), |(cad, place)| (Some(cad), place));
+    let lies = model.as_ref().zip(place.as_ref());
+    let walls = walls::measured(team, (&arguments.mesh, &data), lies, &arguments.walls)?;
     let valid = validity.is_valid() && !matches!(cad, Some(Cad::Off { .. }));
     let worst_tet = worst(mesh, &statistics);
-    Ok(Inspection { valid, validity, statistics, worst_tet, cad })
+    Ok(Inspection { valid, validity, statistics, worst_tet, cad, walls })
 }
 
 /// Checks and measures from the file, within so many bytes.
@@ -132,7 +144,7 @@ fn of_file(team: Team<'_>, arguments: &Arguments, memory: u64) -> Result<Inspect
     };
     let Inspected { validity, statistics, worst } = inspection::inspect(team, &mesh, metrics, memory).map_err(named)?;
     let worst_tet = worst.map(|corners| WorstTet::of(&statistics, corners));
-    Ok(Inspection { valid: validity.is_valid(), validity, statistics, worst_tet, cad: None })
+    Ok(Inspection { valid: validity.is_valid(), validity, statistics, worst_tet, cad: None, walls: Vec::new() })
 }
 
 /// Reads the mesh and shows the notices.
@@ -165,13 +177,13 @@ fn metrics(
     Ok(arguments.analytic.map(|field| data.mesh.vertices.iter().map(|&p| field.at(p)).collect()))
 }
 
-fn on_model(team: Team<'_>, mesh: &TetMesh, model: &Model) -> Cad {
+fn on_model(team: Team<'_>, mesh: &TetMesh, model: &Model) -> (Cad, Option<Classification>) {
     match classify::classify(team, mesh, model, &classify::Options::default()) {
         Ok((classification, report)) => {
             show(&report.notices);
-            Cad::On(fidelity::measure(team, mesh, model, &classification))
+            (Cad::On(fidelity::measure(team, mesh, model, &classification)), Some(classification))
         }
-        Err(error) => Cad::Off { error: error.to_string() },
+        Err(error) => (Cad::Off { error: error.to_string() }, None),
     }
 }
 
@@ -209,5 +221,6 @@ fn describe(inspection: &Inspection) -> String {
         Some(Cad::Off { error }) => table.row("on the model", format_args!("NO: {error}")),
         None => {}
     }
+    inspection.walls.iter().for_each(|wall| wall.rows(&mut table));
     table.text().into()
 }

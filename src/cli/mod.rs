@@ -43,6 +43,7 @@ mod tune;
 mod value_enums;
 mod view;
 mod waiting;
+mod walls;
 mod workplace;
 
 /// Adapts tetrahedral meshes to a metric, on the real CAD model.

@@ -1,7 +1,7 @@
 //! Options for what has no CAD model: a surface given as triangles, and how triangles become a model.
 use super::load;
 use crate::formats::read_surface;
-use crate::geometry::classify::Classification;
+use crate::geometry::classify::{self, Classification};
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, DiscreteOptions};
 use crate::geometry::{Discrete, Model};
 use crate::mesh::TetMesh;
@@ -70,6 +70,32 @@ impl SurfaceArguments {
         let model = self.model(team, &mut notices)?;
         notices.iter().for_each(crate::cli::note);
         Ok(model)
+    }
+
+    /// The model of --cad or of --surface, else the mesh's own surface, and where the mesh of a file lies on it; notices are printed.
+    ///
+    /// # Errors
+    /// When a file is no such model, or the mesh does not lie on it.
+    pub fn lies(
+        &self,
+        team: Team<'_>,
+        (name, mesh): (&Path, &TetMesh),
+        cad: Option<&Path>,
+        tolerance: Option<f64>,
+    ) -> Result<(Model, Classification), Box<dyn std::error::Error>> {
+        let name = name.display();
+        let (Some(path), Some(model)) = (cad.or(self.surface.as_deref()), self.model_or(team, cad)?) else {
+            let own = self.own(team, mesh).map_err(|error| format!("{name}: {error}"))?;
+            crate::cli::note(
+                "without --cad the curvature is an estimate from the mesh's triangles; it can be no better than they are",
+            );
+            return Ok(own);
+        };
+        let options = classify::Options { tolerance, ..classify::Options::default() };
+        let (place, report) = classify::classify(team, mesh, &model, &options)
+            .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
+        report.notices.iter().for_each(crate::cli::note);
+        Ok((model, place))
     }
 
     /// The mesh's own surface as its model, and where it lies on that.

@@ -4,7 +4,8 @@
 //! entities that come near without touching (`touch`), by boxes over samples of the model (`pieces`, `tree`), where nothing stands between
 //! (`sight`), of the same body (`bodies`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together;
 //! `resolve` adds vertices to a coarse mesh until it resolves the metric. `around` has the sizes that a user asks for in some places.
-//! `chords` cuts the sizes of any metric along the curved faces near a vertex (`walls`), so that straight edges can have them.
+//! `chords` cuts the sizes of any metric along the curved faces near a vertex (`walls`), so that straight edges can have them. `layer` has the
+//! layers along walls, from the exact distance.
 pub mod around;
 mod bodies;
 mod bound;
@@ -14,6 +15,7 @@ mod curvature;
 mod estimate;
 mod feature;
 mod field;
+pub mod layer;
 mod options;
 mod others;
 mod pieces;

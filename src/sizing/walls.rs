@@ -136,7 +136,7 @@ impl<'a> Search<'a> {
             return;
         }
         let point = self.place.projected[vertex];
-        let own = self.own_faces(evaluator, vertex);
+        let own = own_faces(self.topology, self.place, evaluator, vertex);
         let reach = Reach::of(&eigen);
         let begin = found.len();
         for &face in &self.curved {
@@ -165,30 +165,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The faces that a vertex lies on, with its parameters there.
-    fn own_faces(&self, evaluator: &mut Evaluator, vertex: usize) -> Vec<(u32, [f64; 2])> {
-        let parameters = self.place.parameters[vertex];
-        let mut own = Vec::new();
-        let mut add_beside = |edge: u32, t: f64| {
-            for &face in &self.topology.edges[edge as usize].faces {
-                own.extend(evaluator.edge_on_face(edge, t, face).map(|uv| (face, uv)));
-            }
-        };
-        match self.place.entities[vertex] {
-            Entity::Face(face) => own.push((face, parameters)),
-            Entity::Edge(edge) => add_beside(edge, parameters[0]),
-            Entity::Vertex(vertex) => {
-                for &edge in &self.topology.vertices[vertex as usize].edges {
-                    let entity = &self.topology.edges[edge as usize];
-                    let ends = (0..2).filter(|&i| entity.vertices[i] == Some(vertex));
-                    ends.for_each(|i| add_beside(edge, entity.range[i]));
-                }
-            }
-            Entity::Interior => {}
-        }
-        own
-    }
-
     /// Whether a wall is behind another one, whose layers lie here.
     fn is_hidden(&self, evaluator: &mut Evaluator, own: &[(u32, [f64; 2])], point: Vec3, wall: &Wall) -> bool {
         let limit = NEARER * wall.distance;
@@ -210,8 +186,37 @@ impl<'a> Search<'a> {
     }
 }
 
+/// The faces that a vertex of a mesh lies on, with its parameters there.
+pub(super) fn own_faces(
+    topology: &Topology,
+    place: &Classification,
+    evaluator: &mut Evaluator,
+    vertex: usize,
+) -> Vec<(u32, [f64; 2])> {
+    let parameters = place.parameters[vertex];
+    let mut own = Vec::new();
+    let mut add_beside = |edge: u32, t: f64| {
+        for &face in &topology.edges[edge as usize].faces {
+            own.extend(evaluator.edge_on_face(edge, t, face).map(|uv| (face, uv)));
+        }
+    };
+    match place.entities[vertex] {
+        Entity::Face(face) => own.push((face, parameters)),
+        Entity::Edge(edge) => add_beside(edge, parameters[0]),
+        Entity::Vertex(vertex) => {
+            for &edge in &topology.vertices[vertex as usize].edges {
+                let entity = &topology.edges[edge as usize];
+                let ends = (0..2).filter(|&i| entity.vertices[i] == Some(vertex));
+                ends.for_each(|i| add_beside(edge, entity.range[i]));
+            }
+        }
+        Entity::Interior => {}
+    }
+    own
+}
+
 /// How far a box is.
-fn away(point: Vec3, [low, high]: &Box3) -> f64 {
+pub(super) fn away(point: Vec3, [low, high]: &Box3) -> f64 {
     norm(std::array::from_fn(|i| (low[i] - point[i]).max(point[i] - high[i]).max(0.0)))
 }
 

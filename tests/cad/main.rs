@@ -20,3 +20,4 @@ mod reading;
 mod settled;
 mod spline_faces;
 mod view_model;
+mod walls;

@@ -28,6 +28,6 @@ pub struct FieldArguments {
 pub fn only_with_field(command: clap::Command) -> clap::Command {
     let options = fields::OPTIONS.into_iter().chain(["segments", "feature_cells", "no_geometry"]);
     let command = options.fold(command, |command, name| command.mut_arg(name, |option| option.requires("field")));
-    let bounds = fields::BOUNDS.into_iter().chain(["local", "limit_chords"]);
+    let bounds = fields::BOUNDS.into_iter().chain(["local", "walls", "limit_chords"]);
     bounds.fold(command, |command, name| command.mut_arg(name, |option| option.conflicts_with("analytic")))
 }

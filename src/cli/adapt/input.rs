@@ -9,6 +9,7 @@ use super::source::{How, On, Raw};
 use crate::cli::metric::common::Amount;
 use crate::cli::metric::fields::MultiscaleArguments;
 use crate::cli::metric::geometry::GeometryArguments;
+use crate::cli::metric::wall::WALL;
 use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::place;
 use crate::formats::{Dataset, NamedField};
@@ -21,6 +22,7 @@ use crate::mesh::crossing::{self, Crossings};
 use crate::mesh::io::Read;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::metric::{Source, Sym3};
+use crate::sizing::layer::Walls;
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -51,6 +53,9 @@ pub struct InputArguments {
     /// the distance d the size is h + 0.2 d
     #[arg(long, value_name = "PLACE:h=H[,growth=G],…", allow_negative_numbers = true)]
     pub(super) local: Vec<Locals>,
+    /// A wall, and the layers along it, whose sizes hold whatever the metric says. They are made anew on the mesh of each cycle
+    #[arg(long = "wall", value_name = "WALL:h=H[,growth=G…],…", allow_negative_numbers = true, long_help = WALL)]
+    pub(super) walls: Vec<Walls>,
     /// Cuts sizes along curved walls of the model to this share of √(8 h R), h the size across the wall and R its radius [without a value: 0.5]. The
     /// chord of that length has the sagitta h: longer edges dive through the layers, and no mesh meets such sizes
     #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", value_parser = share, allow_negative_numbers = true)]
@@ -123,6 +128,11 @@ impl InputArguments {
     /// Whether the model is given: it is no surface of the mesh itself.
     pub fn has_model(&self) -> bool {
         self.cad.is_some() || self.surface.surface.is_some()
+    }
+
+    /// Whether the metric of a field has the sizes of the geometry in it.
+    pub(super) fn has_geometry(&self) -> bool {
+        !self.field.field.is_empty() && self.has_model() && !self.no_geometry
     }
 
     /// The files that are read.

@@ -1,14 +1,12 @@
 //! Sizes in some places: on surfaces, in regions, in boxes, and around surfaces and boxes.
 use super::parts::{Found, Part};
-use crate::geometry::classify::Classification;
-use crate::geometry::{Model, Names};
+use crate::cli::walls::Places;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::Vec3;
 use crate::metric::Sym3;
 use crate::metric::multiscale::diameter;
 use crate::sizing::around::{Cuboid, from_faces, grown};
 use crate::tasks::Team;
-use std::collections::BTreeSet;
 use std::str::FromStr;
 
 /// How a local size is written.
@@ -74,14 +72,6 @@ impl FromStr for Place {
     }
 }
 
-/// A mesh and what is known of it.
-pub struct Places<'a> {
-    pub mesh: &'a TetMesh,
-    pub place: &'a Classification,
-    pub model: &'a Model,
-    pub names: &'a Names,
-}
-
 /// Bounds the sizes of ln M at the vertices by those of all places.
 pub fn apply(team: Team<'_>, locals: &[Locals], on: &Places<'_>, logs: &mut [Sym3]) -> Result<(), String> {
     for local in locals.iter().flat_map(|locals| &locals.0) {
@@ -125,15 +115,13 @@ impl Local {
 
 /// The faces of the model under surfaces of the mesh.
 fn faces(found: &[Found], on: &Places<'_>) -> Result<Vec<u32>, String> {
-    let mut faces = BTreeSet::new();
-    for found in found {
-        let &Found::Surface(wanted) = found else {
-            return Err("--local: a size grows around a surface or a box; of a region leave the growth out".into());
-        };
-        let all = on.place.faces.iter().zip(&on.mesh.triangles.refs);
-        faces.extend(all.filter(|&(_, &reference)| reference == wanted).map(|(&face, _)| face));
-    }
-    Ok(faces.into_iter().collect())
+    let surface = |found: &Found| match *found {
+        Found::Surface(reference) => Ok(reference),
+        Found::Region(_) => {
+            Err("--local: a size grows around a surface or a box; of a region leave the growth out".to_owned())
+        }
+    };
+    Ok(on.faces(&found.iter().map(surface).collect::<Result<Vec<i32>, _>>()?))
 }
 
 /// The error about a box that meets nothing.

@@ -14,6 +14,7 @@ mod scratch;
 mod sliced;
 mod slices;
 mod source;
+mod walls;
 
 use super::figures::FigureArguments;
 use super::waiting::Waiting;

@@ -31,7 +31,7 @@ pub struct Part {
 
 /// Triangles or tetrahedra of a reference.
 #[derive(Clone, Copy)]
-pub(super) enum Found {
+pub enum Found {
     /// Triangles.
     Surface(i32),
     /// Tetrahedra.
@@ -62,7 +62,7 @@ impl FromStr for Part {
 
 impl Part {
     /// The parts that are meant. Refuses what the mesh does not have, and lists what it has.
-    pub(super) fn find(&self, mesh: &TetMesh, names: &Names) -> Result<Vec<Found>, String> {
+    pub fn find(&self, mesh: &TetMesh, names: &Names) -> Result<Vec<Found>, String> {
         let name = match &self.key {
             Key::Reference(reference) if self.kind == Kind::Region => {
                 return has("region", *reference, &mesh.tets.refs).map(|()| vec![Found::Region(*reference)]);

@@ -1,10 +1,11 @@
 //! The metric of a run, on the mesh as it was put on its model: bounded, graded, and of its complexity.
 use super::input::{Error, InputArguments};
-use super::local::{self, Places};
+use super::local;
 use crate::adapt;
 use crate::cli::files::reading::Carrier;
 use crate::cli::metric::fields::Made;
 use crate::cli::table::{Table, figure};
+use crate::cli::walls::Places;
 use crate::formats::NamedField;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Model, Names};
@@ -72,8 +73,8 @@ pub(super) struct On<'a> {
 }
 
 impl On<'_> {
-    /// The places of --local on a mesh.
-    fn places<'a>(&'a self, mesh: &'a TetMesh) -> Places<'a> {
+    /// The places of --local and --wall on a mesh.
+    pub(super) fn places<'a>(&'a self, mesh: &'a TetMesh) -> Places<'a> {
         Places { mesh, place: self.place, model: self.model, names: self.names }
     }
 }
@@ -125,7 +126,8 @@ impl InputArguments {
         let (logs, cut, made) = match raw.logs.or(uniform) {
             Some(logs) if !self.is_bounded() => (logs, None, None),
             Some(logs) => {
-                let (logs, cut) = self.bounded(team, mesh, on, (logs, by_others), complexity).map_err(named)?;
+                let bounded = self.bounded(team, mesh, on, (logs, by_others), (complexity, notices));
+                let (logs, cut) = bounded.map_err(named)?;
                 (logs, cut, None)
             }
             None => {
@@ -146,7 +148,7 @@ impl InputArguments {
 
     /// Whether sizes that are given are to be changed by more than a scale.
     pub(super) fn is_bounded(&self) -> bool {
-        self.is_graded() || self.limit_chords.is_some()
+        self.is_graded() || self.limit_chords.is_some() || !self.walls.is_empty()
     }
 
     /// Whether sizes that are given are to be graded.
@@ -162,10 +164,10 @@ impl InputArguments {
         mesh: &TetMesh,
         on: On<'_>,
         (mut logs, by_others): (Vec<Sym3>, Option<&dyn SizeBound>),
-        wanted: Option<f64>,
+        (wanted, notices): (Option<f64>, &mut Vec<String>),
     ) -> Result<(Vec<Sym3>, Option<Cut>), String> {
         let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth().filter(|_| self.is_graded()));
-        let fixed = self.local_sizes(team, mesh, on)?;
+        let fixed = self.with_walls(team, mesh, on, self.local_sizes(team, mesh, on)?, (wanted, gradation), notices)?;
         let measure = Measure::Between(Interpolation::default());
         let complexity = wanted.unwrap_or(1.0);
         let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref(), by_others };
@@ -191,7 +193,7 @@ impl InputArguments {
         Ok(Some(logs))
     }
 
-    /// ln of the metric that holds whatever the field says: that of the geometry, on a CAD model, and of the local sizes.
+    /// ln of the metric that holds whatever the field says: that of the geometry, on a CAD model, of the local sizes and of walls.
     fn fixed(
         &self,
         team: Team<'_>,
@@ -200,7 +202,20 @@ impl InputArguments {
         complexity: f64,
         notices: &mut Vec<String>,
     ) -> Result<Option<Vec<Sym3>>, String> {
-        if !self.has_model() || self.no_geometry {
+        let others = self.geometry_and_local(team, mesh, on, complexity, notices)?;
+        self.with_walls(team, mesh, on, others, (Some(complexity), self.multiscale.growth()), notices)
+    }
+
+    /// That of the geometry and of the local sizes.
+    fn geometry_and_local(
+        &self,
+        team: Team<'_>,
+        mesh: &TetMesh,
+        on: On<'_>,
+        complexity: f64,
+        notices: &mut Vec<String>,
+    ) -> Result<Option<Vec<Sym3>>, String> {
+        if !self.has_geometry() {
             return self.local_sizes(team, mesh, on);
         }
         let gradation = self.multiscale.growth();

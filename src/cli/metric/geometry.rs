@@ -1,14 +1,12 @@
 //! `geo-adapt metric geometry`.
-use super::common::{Failure, GradationArgument, LimitArguments, OutputArgument, RunArguments};
+use super::common::{GradationArgument, LimitArguments, OutputArgument, RunArguments};
 use crate::cli::figures::FigureArguments;
 use crate::cli::files::{Files, JSON, Outputs, reading};
 use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::{Table, figure, place};
-use crate::cli::{Outcome, load, positive};
-use crate::geometry::classify::{self, Classification};
+use crate::cli::{Outcome, positive};
 use crate::geometry::discrete::complete_boundary;
 use crate::geometry::{Geometry, Model};
-use crate::mesh::TetMesh;
 use crate::metric::Limits;
 use crate::metric::summary::Summary as Figures;
 use crate::sizing::{self, Options, Summary};
@@ -112,7 +110,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     arguments.run.note(&read.notices);
     let (data, mesh) = (&read.content, &read.content.mesh);
-    let (model, lies) = lies(team, arguments, mesh)?;
+    let (cad, tolerance) = (arguments.cad.as_deref(), arguments.tolerance);
+    let (model, lies) = arguments.surface.lies(team, (&arguments.mesh, mesh), cad, tolerance)?;
     let read_and_classify = start.elapsed().as_secs_f64();
     let options = arguments.sizes.options(&model, limits, arguments.gradation.ratio());
     let (logs, summary) = sizing::geometry_metric(team, mesh, &lies, &model, &options);
@@ -133,29 +132,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
     outputs.commit()?;
     arguments.figures.print(&report, || describe(&report, !mesh.tets.is_empty()))?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// The model, and where the mesh lies on it.
-fn lies(team: Team<'_>, arguments: &Arguments, mesh: &TetMesh) -> Result<(Model, Classification), Failure> {
-    let name = arguments.mesh.display();
-    let Some(path) = arguments.cad.as_ref().or(arguments.surface.surface.as_ref()) else {
-        let (model, place) = arguments.surface.own(team, mesh).map_err(|error| format!("{name}: {error}"))?;
-        let note =
-            "without --cad the curvature is an estimate from the mesh's triangles; it can be no better than they are";
-        arguments.run.note(&[note.into()]);
-        return Ok((model, place));
-    };
-    let mut notices = Vec::new();
-    let model = match arguments.surface.model(team, &mut notices)? {
-        Some(model) => model,
-        None => load::model(path)?,
-    };
-    arguments.run.note(&notices);
-    let options = classify::Options { tolerance: arguments.tolerance, ..classify::Options::default() };
-    let (place, report) = classify::classify(team, mesh, &model, &options)
-        .map_err(|error| format!("{name} on {}: {error}", path.display()))?;
-    arguments.run.note(&report.notices);
-    Ok((model, place))
 }
 
 impl GeometryArguments {

@@ -13,6 +13,7 @@ mod limit;
 mod multiscale;
 mod scale;
 mod show;
+pub(super) mod wall;
 
 use super::Outcome;
 use clap::Subcommand;
@@ -50,6 +51,8 @@ enum Command {
     Scale(scale::Arguments),
     /// Measure a metric: complexity, sizes, aspect ratios, how fast sizes grow
     Show(show::Arguments),
+    /// Make the metric of layers along walls: prescribed heights and growth, or a turbulent boundary layer
+    Wall(wall::Arguments),
 }
 
 /// Runs the subcommand.
@@ -67,5 +70,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Command::Multiscale(arguments) => multiscale::run(arguments),
         Command::Scale(arguments) => scale::run(arguments),
         Command::Show(arguments) => show::run(arguments),
+        Command::Wall(arguments) => wall::run(arguments),
     }
 }

@@ -2,6 +2,7 @@
 use super::{FIRST, Growth, Loaded, NormWord};
 use crate::cycle::field_value::{Value, values_of};
 use crate::metric::multiscale::Norm;
+use crate::sizing::layer::Walls;
 use crate::view::cut::Plane;
 use std::path::Path;
 
@@ -103,6 +104,9 @@ impl Loaded {
         }
         if metric.aspect_ratio.is_some_and(|ratio| !(ratio.is_finite() && ratio >= 1.0)) {
             return Err("[metric] aspect_ratio: give 1 or more".into());
+        }
+        for wall in &metric.walls {
+            wall.parse::<Walls>().map_err(|error| format!("[metric] walls: {error}"))?;
         }
         let mesh = &self.config.mesh;
         if metric.geometry == Some(true) && mesh.cad.is_none() && mesh.bootstrap.is_none() && mesh.surface.is_none() {

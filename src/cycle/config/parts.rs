@@ -61,6 +61,9 @@ pub struct Metric {
     /// Greatest sizes on some surfaces and regions, as `adapt --local` has them: "wall:h=0.01".
     #[serde(default)]
     pub local: Vec<String>,
+    /// Walls and the layers along them, as `adapt --wall` has them: "wing:yplus=1,re=6e6,length=1". They are made anew on the mesh of each cycle.
+    #[serde(default)]
+    pub walls: Vec<String>,
     /// Whether the sizes that the geometry asks for are intersected; by default where there is a model.
     pub geometry: Option<bool>,
     /// Segments for a radian of curvature.

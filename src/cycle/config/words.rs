@@ -15,6 +15,9 @@ impl Config {
         if !metric.local.is_empty() {
             words.extend(["--local".into(), metric.local.join(",")]);
         }
+        for wall in &metric.walls {
+            option(&mut words, "--wall", Some(wall));
+        }
         if has_model && metric.geometry == Some(false) {
             words.push("--no-geometry".into());
         }

@@ -33,4 +33,5 @@ pub use evaluate::DiscreteEvaluator;
 pub(crate) use chains::{Chain, trace_chains};
 pub(crate) use edges::EdgeTable;
 pub(crate) use features::Features;
+pub(crate) use polyline::closest_on_triangle;
 pub(crate) use tree::{BoxTree, box_of};

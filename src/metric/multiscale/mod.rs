@@ -26,8 +26,8 @@ use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
 pub(super) use optimal::Spectrum;
-pub use reach::Unreachable;
-pub(super) use reach::{reach, try_reach};
+pub(super) use reach::try_reach;
+pub use reach::{Unreachable, reach};
 use serde::Serialize;
 
 /// Which metric is made.
@@ -145,7 +145,7 @@ pub fn multiscale(
         let found = sensor::absolute(team, mesh, &rings, options.recovery, (number, steps), diameter)?;
         unfitted = unfitted.max(found.unfitted);
         stage("hessians");
-        let logs = optimal_logs(team, mesh, &found, options, hmax)?;
+        let logs = optimal_logs(team, mesh, (&found.hessians, found.floor), options, hmax)?;
         stage("optimal");
         if raw.is_empty() {
             raw = logs;
@@ -158,6 +158,24 @@ pub fn multiscale(
     Ok((logs, Summary { unfitted, ..summary }))
 }
 
+/// ln M at the vertices, shape (n,), of a field whose |H| at the vertices is known, shape (n,), and need not be recovered from the mesh. `range` is
+/// the greatest difference of its values.
+///
+/// # Errors
+/// [`Error::Unreachable`] when the bounds do not let the complexity come near.
+pub fn multiscale_of_hessians(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    (hessians, range): (&[Sym3], f64),
+    options: &Options<'_>,
+) -> Result<(Vec<Sym3>, Summary), Error> {
+    let diameter = diameter(team, mesh);
+    let limits = within(options.bounds.limits, diameter);
+    let floor = sensor::floor(range, diameter);
+    let raw = optimal_logs(team, mesh, (hessians, floor), options, limits.hmax.unwrap_or(diameter))?;
+    bounded(team, mesh, &raw, &Bounds { limits, ..options.bounds })
+}
+
 /// The limits, where no size is above the diameter.
 pub(super) fn within(limits: Limits, diameter: f64) -> Limits {
     Limits { hmax: Some(limits.hmax.unwrap_or(diameter).min(diameter)), ..limits }
@@ -167,11 +185,11 @@ pub(super) fn within(limits: Limits, diameter: f64) -> Limits {
 fn optimal_logs(
     team: Team<'_>,
     mesh: &TetMesh,
-    found: &sensor::Absolute,
+    (hessians, floor): (&[Sym3], f64),
     options: &Options<'_>,
     hmax: f64,
 ) -> Result<Vec<Sym3>, Error> {
-    let spectra = team.map(GRAIN, found.hessians.len(), |v| Spectrum::of(&found.hessians[v], found.floor));
+    let spectra = team.map(GRAIN, hessians.len(), |v| Spectrum::of(&hessians[v], floor));
     let mut logs = Vec::new();
     // Unless sizes are at their bound, the second round is right.
     let reached = reach(options.bounds.complexity, |scale| {

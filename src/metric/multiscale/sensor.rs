@@ -78,6 +78,11 @@ impl Bounds {
     }
 }
 
+/// Below this eigenvalues of |H| are rounding, of a field of this range on a domain of this diameter: see [`Absolute::floor`].
+pub(super) fn floor(range: f64, diameter: f64) -> f64 {
+    1e-12 * range / (diameter * diameter)
+}
+
 /// What the values of a sensor span, over its steps.
 #[derive(Clone, Copy, Default)]
 pub(in crate::metric) struct Span {
@@ -95,7 +100,7 @@ impl Span {
 
     /// See [`Absolute::floor`].
     pub fn floor(self, diameter: f64) -> f64 {
-        1e-12 * self.range / (diameter * diameter)
+        floor(self.range, diameter)
     }
 
     /// Whether eᵀ|H|e, the second difference along an edge e from a vertex to one of its neighbours, is above rounding. A Hessian has the

@@ -5,3 +5,4 @@ mod larger_than_memory;
 mod multiscale;
 mod transfer;
 mod transfer_larger_than_memory;
+mod walls;

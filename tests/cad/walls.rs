@@ -1,0 +1,354 @@
+//! Layers along walls: exact distances, `geo-adapt metric wall`, and what becomes of the layers when meshes are adapted to it.
+
+use crate::common::adapting::{Workplace, complaint, isotropic, stderr, text, write_tensors};
+use crate::common::models::{Random, data};
+use crate::common::program;
+use geo_adapt::geometry::classify::{self, Classification};
+use geo_adapt::geometry::{Entity, Evaluate, Geometry, Model};
+use geo_adapt::mesh::vector::{Vec3, add, dot, scale, unit};
+use geo_adapt::mesh::{TetMesh, io};
+use geo_adapt::metric::Sym3;
+use geo_adapt::sizing::layer::{Foot, distances};
+use geo_adapt::tasks::{Plan, Pool, Team};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+fn cube_cylinder() -> [String; 2] {
+    ["geometry/cube-cylinder.step", "cases/cube-cylinder/start.meshb"]
+        .map(|path| text(&Path::new(env!("CARGO_MANIFEST_DIR")).join(path)))
+}
+
+fn run(arguments: &[&str]) -> Output {
+    program().args(arguments).output().unwrap()
+}
+
+/// A run that must succeed: what it printed.
+fn made(arguments: &[&str]) -> String {
+    let run = run(arguments);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    String::from_utf8(run.stdout).unwrap()
+}
+
+fn mesh_of(path: &str) -> TetMesh {
+    io::read_mesh(Path::new(path)).unwrap().content
+}
+
+fn scalars(path: &str) -> Vec<f64> {
+    io::read_solution(Path::new(path)).unwrap().content.fields.remove(0).values
+}
+
+fn tensors(path: &str) -> Vec<Sym3> {
+    scalars(path).as_chunks().0.iter().map(|&terms| Sym3(terms)).collect()
+}
+
+fn length(metric: &Sym3, direction: Vec3) -> f64 {
+    metric.quadratic(direction).sqrt().recip()
+}
+
+/// The cylinder of the radius 0.5 about z: its reference on the start mesh is that of the triangles all of whose corners are on it.
+fn reference(mesh: &TetMesh) -> i32 {
+    let on = |v: &u32| {
+        let p = mesh.vertices[*v as usize];
+        (p[0].hypot(p[1]) - 0.5).abs() < 1e-9
+    };
+    mesh.triangles.iter().find(|(nodes, _)| nodes.iter().all(on)).unwrap().1
+}
+
+/// Along the radius, about the axis, along it.
+fn axes(p: Vec3) -> [Vec3; 3] {
+    let r = p[0].hypot(p[1]);
+    let [x, y] = [p[0] / r, p[1] / r];
+    [[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]]
+}
+
+#[test]
+fn the_distance_from_a_cylinder_is_exact_and_zero_on_it() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let (mesh, out) = (mesh_of(&start), text(&work.path("d.solb")));
+    let wall = reference(&mesh).to_string();
+    made(&["field", "distance", &start, "--cad", &model, "--faces", &wall, "-o", &out]);
+    let found = scalars(&out);
+    let mut on = 0;
+    for (p, distance) in mesh.vertices.iter().zip(&found) {
+        let expected = p[0].hypot(p[1]) - 0.5;
+        assert!((distance - expected).abs() < 1e-12, "{distance} {expected} at {p:?}");
+        if expected.abs() < 1e-9 {
+            assert_eq!(*distance, 0.0);
+            on += 1;
+        }
+    }
+    assert!(on > 20, "{on}");
+    // Without the model it is that from the triangles, whose chords rise above the cylinder.
+    made(&["field", "distance", &start, "--faces", &wall, "-o", &out, "--report", &text(&work.path("r.json"))]);
+    let flat = scalars(&out);
+    assert!(flat.iter().zip(&found).all(|(flat, exact)| (flat - exact).abs() < 0.03 && *flat >= exact - 1e-12));
+    let report: Value = serde_json::from_slice(&std::fs::read(work.path("r.json")).unwrap()).unwrap();
+    assert_eq!((&report["on_faces"], &report["field"]), (&on.into(), &"distance".into()));
+}
+
+/// A mesh that `bootstrap` makes of a model, on it.
+fn bootstrapped(work: &Workplace, path: &Path) -> (TetMesh, Model, Classification) {
+    let out = text(&work.path("start.meshb"));
+    made(&["bootstrap", &text(path), "-o", &out, "--complexity", "1500", "-q"]);
+    let (mesh, model) = (mesh_of(&out), Model::read(path).unwrap());
+    let (place, _) = classify::classify(Team::alone(), &mesh, &model, &classify::Options::default()).unwrap();
+    (mesh, model, place)
+}
+
+/// On spline faces, against OpenCASCADE's own search at each vertex on each face; and bit for bit on any number of threads.
+#[test]
+fn distances_from_several_spline_faces_are_those_of_opencascade() {
+    for name in ["nurbs-torus.brep", "vase.brep"] {
+        let work = Workplace::new();
+        let (mesh, model, place) = bootstrapped(&work, &data(name));
+        let Model::Occt(occt) = &model else { panic!("a CAD model") };
+        let faces: Vec<u32> = (0..model.topology().faces.len() as u32).collect();
+        let found = distances(Team::alone(), &mesh, &place, &model, &faces);
+        let (evaluator, diagonal) = (occt.evaluator(), model.topology().diagonal());
+        let mut looked = 0;
+        for (v, &p) in mesh.vertices.iter().enumerate() {
+            if place.entities[v] != Entity::Interior {
+                assert_eq!(found[v], 0.0);
+                continue;
+            }
+            let each = faces.iter().filter_map(|&face| evaluator.reference_distance(true, face, p));
+            let expected = each.fold(f64::INFINITY, f64::min);
+            assert!((found[v] - expected).abs() < 1e-7 * diagonal, "{name} {} {expected} at {p:?}", found[v]);
+            looked += 1;
+        }
+        assert!(looked > 100, "{name} {looked}");
+        let pool = Pool::new(3).unwrap();
+        let again = distances(Team::new(&pool, Plan::default()), &mesh, &place, &model, &faces);
+        assert!(again.iter().zip(&found).all(|(a, b)| a.to_bits() == b.to_bits()), "{name}");
+    }
+}
+
+/// The gradient and the second derivatives of the distance from single faces, by differences of exact distances: beside the faces, and about their
+/// edges and corners.
+#[test]
+fn second_derivatives_of_the_distance_are_those_of_differences() {
+    let models = ["cylinder", "torus", "sphere", "cube", "spheroid"];
+    let paths = models.map(|name| Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("geometry/{name}.step")));
+    let (mut beside, mut about) = (0, 0);
+    for path in paths.into_iter().chain([data("nurbs-torus.brep")]) {
+        let model = Model::read(&path).unwrap();
+        let (topology, mut on, mut random) = (model.topology(), model.evaluator(), Random(7));
+        let diagonal = topology.diagonal();
+        for i in 0..400 {
+            let p = random.within(topology.bounds, 0.3);
+            let face = i % topology.faces.len() as u32;
+            let mut foot = |p: Vec3| {
+                let closest = on.closest_on_face(face, p, None);
+                Foot::off_wall(&mut on, topology, (face, closest), p, 1e-9 * diagonal)
+            };
+            let (here, step) = (foot(p), 1e-3 * diagonal);
+            let direction = unit([0; 3].map(|_| random.between([-1.0, 1.0])));
+            let [before, after] = [-step, step].map(|s| foot(add(p, scale(direction, s))));
+            let is_like = |other: &Foot| {
+                other.is_inside == here.is_inside
+                    && other.bends[0].is_finite() == here.bends[0].is_finite()
+                    && dot(other.normal, here.normal) > 0.99
+            };
+            let radius = here.radii[0].min(here.radii[1]).min(here.distance);
+            if radius < 0.03 * diagonal || !is_like(&before) || !is_like(&after) {
+                continue;
+            }
+            let slope = (after.distance - before.distance) / (2.0 * step);
+            assert!((slope - dot(here.normal, direction)).abs() < 2e-3, "{path:?} {face} {p:?}");
+            let second = (after.distance - 2.0 * here.distance + before.distance) / (step * step);
+            let found = here.hessian([1.0, 0.0]).quadratic(direction);
+            assert!((second - found).abs() < 0.02 / radius, "{path:?} {face} {p:?}: {second} {found} {here:?}");
+            *(if here.is_inside { &mut beside } else { &mut about }) += 1;
+        }
+    }
+    assert!(beside > 300 && about > 100, "{beside} {about}");
+}
+
+#[test]
+fn sizes_are_those_of_the_law_at_each_vertex() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let (mesh, out) = (mesh_of(&start), text(&work.path("m.solb")));
+    let spec = format!("{}:h=1e-4,growth=1.3", reference(&mesh));
+    let arguments = ["metric", "wall", &start, "--cad", &model, "--wall", &spec, "--hmax", "0.2", "-o", &out];
+    made(&[&arguments[..], &["--exact"]].concat());
+    let metrics = tensors(&out);
+    for (&p, metric) in mesh.vertices.iter().zip(&metrics) {
+        let distance = p[0].hypot(p[1]) - 0.5;
+        let across = f64::min(1e-4 + 0.3 * distance.max(0.0), 0.2);
+        let about = f64::min(0.25 + 0.3 * distance.max(0.0), 0.5 * (8.0 * across * p[0].hypot(p[1])).sqrt());
+        let expected = if across >= 0.2 { [0.2; 3] } else { [across, about.clamp(across, 0.2), 0.2] };
+        for (axis, expected) in axes(p).into_iter().zip(expected) {
+            let found = length(metric, axis);
+            assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected} at {p:?}");
+        }
+    }
+    // Between the vertices of so coarse a mesh sizes of 1e-4 cannot be interpolated, and are enlarged.
+    let told = made(&arguments);
+    assert!(told.contains("made larger"), "{told}");
+    let least = tensors(&out).iter().zip(&mesh.vertices).map(|(metric, &p)| length(metric, axes(p)[0]));
+    let least = least.fold(f64::INFINITY, f64::min);
+    assert!(least > 3e-4 && least < 0.02, "{least}");
+}
+
+#[test]
+fn an_intersection_keeps_the_size_across_the_wall() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let mesh = mesh_of(&start);
+    let [wall, flow, both] = ["w.solb", "f.solb", "b.solb"].map(|name| text(&work.path(name)));
+    let spec = format!("{}:h=1e-5", reference(&mesh));
+    made(&["metric", "wall", &start, "--cad", &model, "--wall", &spec, "--exact", "-o", &wall]);
+    write_tensors(Path::new(&flow), mesh.vertices.iter().map(|p| isotropic(0.02 + 0.1 * p[2])));
+    made(&["metric", "intersect", &wall, &flow, "-o", &both]);
+    let mut on = 0;
+    for (&p, metric) in mesh.vertices.iter().zip(tensors(&both)) {
+        if (p[0].hypot(p[1]) - 0.5).abs() < 1e-9 {
+            let found = length(&metric, axes(p)[0]);
+            assert!((found / 1e-5 - 1.0).abs() < 1e-8, "{found}");
+            assert!(length(&metric, axes(p)[2]) <= (0.02 + 0.1 * p[2]) * (1.0 + 1e-8));
+            on += 1;
+        }
+    }
+    assert!(on > 20);
+}
+
+fn inspected(mesh: &str, model: &str, spec: &str) -> Value {
+    let told = made(&["inspect", mesh, "--cad", model, "--wall", spec, "--json"]);
+    serde_json::from_str::<Value>(&told).unwrap()["walls"][0].clone()
+}
+
+fn figure(found: &Value, name: &str) -> f64 {
+    found[name].as_f64().unwrap_or_else(|| panic!("{name} in {found}"))
+}
+
+/// Cycles of metric and adaptation, the metric made anew on each mesh.
+#[test]
+fn layers_are_there_after_some_cycles_and_stay() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let spec = format!("{}:h=1e-3,growth=1.2", reference(&mesh_of(&start)));
+    let (mut input, metric) = (start, text(&work.path("m.solb")));
+    let mut found = Vec::new();
+    for cycle in 1..=4 {
+        let out = text(&work.path(&format!("{cycle}.meshb")));
+        made(&["metric", "wall", &input, "--cad", &model, "--wall", &spec, "-o", &metric]);
+        made(&["adapt", &input, "--cad", &model, "--metric", &metric, "-o", &out, "--threads", "1"]);
+        found.push(inspected(&out, &model, &spec));
+        input = out;
+    }
+    for layers in &found[2..] {
+        // A unit mesh has the vertices opposite to the wall's triangles at √(2/3) of the size.
+        let mean = figure(layers, "mean") / figure(layers, "asked");
+        assert!((0.7..0.95).contains(&mean), "{layers}");
+        assert!(figure(layers, "deviation") < 0.2, "{layers}");
+        let share = figure(layers, "points") / figure(layers, "points_asked");
+        assert!((0.9..1.15).contains(&share), "{layers}");
+    }
+}
+
+/// The sides x = 1 and y = 1 of the cube meet at right angles: as two walls, and as one.
+#[test]
+fn a_corner_of_two_walls_has_the_layers_of_both() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let mesh = mesh_of(&start);
+    let [input, out] = ["in.meshb", "m.solb"].map(|name| text(&work.path(name)));
+    let side = |axis: usize| {
+        let on = |v: &u32| mesh.vertices[*v as usize][axis] == 1.0;
+        mesh.triangles.iter().find(|(nodes, _)| nodes.iter().all(on)).unwrap().1
+    };
+    let sides = [side(0), side(1)];
+    io::write_mesh(Path::new(&input), &mesh).unwrap();
+    let [a, b] = sides.map(|side| format!(r#""{side}": {{"name": "sides"}}"#));
+    std::fs::write(work.path("in.names.json"), format!(r#"{{"triangles": {{{a}, {b}}}}}"#)).unwrap();
+    let two = format!("{}:h=1e-3,{}:h=2e-3", sides[0], sides[1]);
+    let several = format!("{}+{}:h=1e-3", sides[0], sides[1]);
+    for (spec, first) in [(two.as_str(), [1e-3, 2e-3]), ("sides:h=1e-3", [1e-3; 2]), (several.as_str(), [1e-3; 2])] {
+        made(&["metric", "wall", &input, "--cad", &model, "--wall", spec, "--exact", "-o", &out]);
+        for (p, metric) in mesh.vertices.iter().zip(tensors(&out)) {
+            for (axis, direction) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].into_iter().enumerate() {
+                let expected = f64::min(first[axis] + 0.2 * (1.0 - p[axis]), 3f64.sqrt() / 10.0);
+                let found = length(&metric, direction);
+                assert!((found / expected - 1.0).abs() < 1e-6, "{spec}: {found} {expected} at {p:?}");
+            }
+        }
+    }
+}
+
+/// The metric of Spalding's law is exact at the vertices: on a mesh that was adapted to it the sizes on the wall stay.
+#[test]
+fn spaldings_law_has_its_complexity_and_stays() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let wall = reference(&mesh_of(&start));
+    let spec = format!("{wall}:re=1e4,law=spalding");
+    let (mut input, metric) = (start, text(&work.path("m.solb")));
+    let mut sizes = Vec::new();
+    for cycle in 1..=3 {
+        let (out, report) = (text(&work.path(&format!("{cycle}.meshb"))), text(&work.path("r.json")));
+        let wanted = ["--complexity", "2000", "--report", &report];
+        let arguments = ["metric", "wall", &input, "--cad", &model, "--wall", &spec, "-o", &metric];
+        made(&[&arguments[..], &wanted].concat());
+        let told: Value = serde_json::from_slice(&std::fs::read(&report).unwrap()).unwrap();
+        assert!((figure(&told["metric"], "complexity_between") / 2000.0 - 1.0).abs() < 0.01, "{told}");
+        sizes.push(told["walls"][0]["first_heights"].clone());
+        made(&["adapt", &input, "--cad", &model, "--metric", &metric, "-o", &out, "--threads", "1"]);
+        input = out;
+    }
+    let [second, third] = [1, 2].map(|i: usize| sizes[i][0].as_f64().unwrap());
+    assert!((second / third - 1.0).abs() < 0.1, "{sizes:?}");
+    let refused = complaint(&run(&["metric", "wall", &input, "--cad", &model, "--wall", &spec, "-o", &metric]));
+    assert!(refused.contains("--complexity"), "{refused}");
+}
+
+#[test]
+fn adapt_keeps_the_layers_whatever_the_field_asks_for() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let spec = format!("{}:h=1e-3,growth=1.2", reference(&mesh_of(&start)));
+    let mut input = PathBuf::from(&start);
+    let field = text(&work.path("u.solb"));
+    for cycle in 1..=4 {
+        made(&["field", "evaluate", &text(&input), "--function", "tanh3", "-o", &field, "-q"]);
+        let wanted = ["--cad", &model, "--field", &field, "--complexity", "3000", "--wall", &spec];
+        let found = work.adapt(&input, &wanted);
+        input = work.path(&format!("{cycle}.meshb"));
+        io::write_mesh(&input, &found.mesh).unwrap();
+    }
+    let layers = inspected(&text(&input), &model, &spec);
+    let share = figure(&layers, "points") / figure(&layers, "points_asked");
+    assert!((0.9..1.3).contains(&share) && figure(&layers, "mean") < 1e-3, "{layers}");
+    // Layers that leave nothing to the field are enlarged, and that is said.
+    made(&["field", "evaluate", &text(&input), "--function", "tanh3", "-o", &field, "-q"]);
+    let few = ["--cad", &model, "--field", &field, "--complexity", "600", "--wall", &spec];
+    let run = work.command(&input, &few).output().unwrap();
+    assert!(
+        run.status.code() == Some(0) && stderr(&run).contains("sizes in the layers are enlarged"),
+        "{}",
+        stderr(&run)
+    );
+}
+
+#[test]
+fn what_is_wrong_with_a_wall_is_said() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let out = text(&work.path("m.solb"));
+    let wall = reference(&mesh_of(&start));
+    let refused = |spec: &str| {
+        let run = run(&["metric", "wall", &start, "--cad", &model, "--wall", spec, "-o", &out]);
+        let message = complaint(&run);
+        assert!(!Path::new(&out).exists(), "{message}");
+        message
+    };
+    for (spec, part) in [
+        ("99:h=1e-4".to_owned(), "no surface with reference 99; its surfaces are"),
+        ("wing:h=1e-4".to_owned(), "no surface or region called wing"),
+        (format!("{wall}:h=0"), "give a positive number"),
+        (format!("{wall}:h=1e-4,growth=1"), "give a number above 1"),
+        (format!("{wall}:yplus=1"), "yplus needs the Reynolds number"),
+        (format!("{wall}:h=1e-4,size=1"), "there are h, growth"),
+    ] {
+        let message = refused(&spec);
+        assert!(message.contains(part), "{spec}: {message}");
+    }
+    let faces = complaint(&run(&["field", "distance", &start, "--cad", &model, "--faces", "wing", "-o", &out]));
+    assert!(faces.contains("start.meshb") && faces.contains("--faces") && faces.contains("called wing"), "{faces}");
+    let inner = run(&["inspect", &start, "--cad", &model, "--wall", &format!("{wall}:re=1e5,law=spalding")]);
+    assert!(complaint(&inner).contains("give growth=1.2"));
+}
