@@ -10,9 +10,11 @@ mod rings;
 mod tests;
 
 pub use rings::Rings;
+pub(super) use l2::gradients_of;
 
 use super::Sym3;
 use crate::mesh::TetMesh;
+use crate::mesh::vector::Vec3;
 use crate::tasks::Team;
 use serde::Serialize;
 
@@ -56,4 +58,10 @@ impl Recovery {
             Self::L2 => (l2::hessians(team, mesh, rings, values), 0),
         }
     }
+}
+
+/// The gradient at the vertices of a mesh, shape (n,), of a field with these values there, shape (n,), in the field's units over length: those of the
+/// elements, averaged by volume (Clément 1975). `rings` are those of the mesh.
+pub fn gradients(team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -> Vec<Vec3> {
+    gradients_of(team, mesh, rings, values.len(), |v| [values[v as usize]]).into_iter().map(|[gradient]| gradient).collect()
 }
