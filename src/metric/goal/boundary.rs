@@ -4,7 +4,7 @@ use crate::metric::recovery::{Rings, extrapolate};
 use crate::tasks::{GRAIN, Team};
 
 /// What vertices on the boundary of the domain get.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Boundary {
     /// |H| is carried on from inside: the mean of the neighbours'. Weights are at most the greatest of the neighbours inside.

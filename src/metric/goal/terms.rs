@@ -1,5 +1,5 @@
 //! The terms of a goal as a file says them, TOML: `geo-adapt metric goal --terms`. Relative paths begin at its folder.
-use super::{Derivative, Gas, Variables, Viscosity};
+use super::{Boundary, Derivative, Gas, Variables, Viscosity};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,6 +13,9 @@ pub const PRANDTL: f64 = 0.72;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Terms {
+    /// What vertices on the boundary get.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<Boundary>,
     /// Pairs of a weight and a field.
     #[serde(default)]
     pub terms: Vec<Term>,

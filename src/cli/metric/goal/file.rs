@@ -5,7 +5,7 @@ use crate::cli::transfer::rows;
 use crate::mesh::io::Solution;
 use crate::mesh::split_nonmanifold::copy_values;
 use crate::metric::goal::terms::{Flow, Terms, Values};
-use crate::metric::goal::{Goal, Weight};
+use crate::metric::goal::{Boundary, Goal, Weight};
 use crate::tasks::Team;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -44,7 +44,12 @@ impl Asked {
     /// Of a flow that the command line names.
     pub fn flow(flow: Flow) -> Self {
         let path = flow.primal.clone();
-        Self { path, base: PathBuf::new(), terms: Terms { terms: Vec::new(), flow: Some(flow) } }
+        Self { path, base: PathBuf::new(), terms: Terms { flow: Some(flow), ..Terms::default() } }
+    }
+
+    /// What vertices on the boundary get, where the file says.
+    pub fn boundary(&self) -> Option<Boundary> {
+        self.terms.boundary
     }
 
     /// The files that it names, where they are there; else they are names of fields.

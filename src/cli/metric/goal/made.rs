@@ -27,14 +27,15 @@ pub struct Made {
     summary: Summary,
 }
 
-/// ln M at the vertices of the mesh, shape (n,), and what was done. The last vertices are `copies`, on which the files have nothing.
+/// ln M at the vertices of the mesh, shape (n,), and what was done; `boundary` stands before that of the file. The last vertices are `copies`, on which the files have nothing.
 pub fn make(
     team: Team<'_>,
     (mesh, copies): (&TetMesh, &[u32]),
     (asked, of): (&Asked, Carrier<'_>),
-    (options, boundary): (&Options<'_>, Boundary),
+    (options, boundary): (&Options<'_>, Option<Boundary>),
     notices: &mut Vec<String>,
 ) -> Result<(Vec<Sym3>, Made), Failure> {
+    let boundary = boundary.or(asked.boundary()).unwrap_or_default();
     let mut goal = Goal::new(team, mesh, options.recovery, boundary);
     asked.add_to(&mut goal, (team, of, copies), notices)?;
     stage("terms");

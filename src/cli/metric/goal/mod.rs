@@ -23,6 +23,7 @@ use std::process::ExitCode;
 
 /// A file of terms, for the help.
 const FILE: &str = "A file of --terms. Paths begin at its folder, and may be names of fields of the mesh's file:
+  boundary = \"inside\"                          # as --boundary
   [[terms]]                                      # Q is the sum of weight times |H(field)| over the terms
   field = \"u.solb\"
   weight = \"weights.solb\"                        # from 0 on
@@ -55,9 +56,9 @@ pub struct Arguments {
     /// How second derivatives are recovered
     #[arg(long, value_enum, default_value_t = Recovery::default())]
     hessian: Recovery,
-    /// What vertices on the boundary of the domain get
-    #[arg(long, value_enum, default_value_t = Boundary::default())]
-    boundary: Boundary,
+    /// What vertices on the boundary of the domain get [default: as the file of --terms says, else inside]
+    #[arg(long, value_enum)]
+    boundary: Option<Boundary>,
     #[command(flatten)]
     gradation: GradationArgument,
     #[command(flatten)]
