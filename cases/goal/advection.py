@@ -1,6 +1,6 @@
 """Advection and diffusion in the unit cube: a layer off the path of the goal.
 
--ε Δu + b·∇u = f, whose solution is smooth but for a layer tanh((y - 0.1 x - 0.75)/δ) along the flow b. J is a mean of u about a point; what reaches it came
+-ε Δu + b·∇u = f, whose solution is a plume and a layer of height 1, both along the flow b. J is a mean of u about a point of the plume; what reaches it came
 along the flow, half of the cube away from the layer. The fluxes of the exact solution are given where the flow comes in, its derivatives elsewhere, so that
 the adjoint has no layers of its own.
 """
@@ -12,26 +12,29 @@ from skfem.helpers import dot, grad
 
 import fem
 
-EPSILON, FLOW = 0.005, np.array([1.0, 0.1, 0.0])
-# The smooth field 1 + HEIGHT sin(2x + y) cos(z).
-HEIGHT = 0.1
-# The layer, along the flow: its place at x = 0, half of its thickness.
-LAYER, DELTA = 0.75, 0.02
-# The goal: a point and the width of the mean about it.
-POINT, MEAN = np.array([0.75, 0.25, 0.5]), 0.1
+EPSILON, FLOW = 0.01, np.array([1.0, 0.1, 0.0])
+# The plume HEIGHT (1 + sin(WAVES x)/2) exp(-(y² + z²)/(2 WIDTH²)), y and z from its middle, which is MIDDLE at x = 0 and goes along the flow.
+HEIGHT, WAVES, WIDTH, MIDDLE = 0.05, 3.0, 0.3, (0.2, 0.5)
+# The layer, from 0 to 1: its place at x = 0, half of its thickness. It goes along the flow too.
+LAYER, DELTA = 0.8, 0.02
+# The goal: a point in the plume and the width of the mean about it.
+POINT, MEAN = np.array([0.75, 0.275, 0.5]), 0.12
 ORDER = 6
 
 
 def exact(x):
     """u, ∇u and f at points (3, ...)."""
-    wave, z = 2 * x[0] + x[1], x[2]
-    along, across = HEIGHT * np.cos(wave) * np.cos(z), HEIGHT * np.sin(wave) * np.sin(z)
-    smooth = HEIGHT * np.sin(wave) * np.cos(z)
-    t = np.tanh((x[1] - FLOW[1] * x[0] - LAYER) / DELTA)
+    drift = FLOW[1] / FLOW[0]
+    y, z = x[1] - drift * x[0] - MIDDLE[0], x[2] - MIDDLE[1]
+    plume = HEIGHT * np.exp(-(y**2 + z**2) / (2 * WIDTH**2))
+    wave, rising = 1 + 0.5 * np.sin(WAVES * x[0]), 0.5 * WAVES * np.cos(WAVES * x[0])
+    by_y, by_z = -y / WIDTH**2 * plume, -z / WIDTH**2 * plume
+    by_yy, by_zz = (y**2 / WIDTH**2 - 1) / WIDTH**2 * plume, (z**2 / WIDTH**2 - 1) / WIDTH**2 * plume
+    t = np.tanh((x[1] - drift * x[0] - LAYER) / DELTA)
     rise = 0.5 * (1 - t**2) / DELTA
-    slope = np.stack([2 * along - FLOW[1] * rise, along + rise, -across])
-    laplacian = -6 * smooth - 2 * (1 + FLOW[1] ** 2) * t * rise / DELTA
-    return 1 + smooth + 0.5 * (1 + t), slope, -EPSILON * laplacian + np.einsum("i,i...->...", FLOW, slope)
+    slope = np.stack([rising * plume - drift * (wave * by_y + rise), wave * by_y + rise, wave * by_z])
+    laplacian = (1 - wave) * WAVES**2 * plume - 2 * drift * rising * by_y + (1 + drift**2) * (wave * by_yy - 2 * t * rise / DELTA) + wave * by_zz
+    return wave * plume + 0.5 * (1 + t), slope, -EPSILON * laplacian + np.einsum("i,i...->...", FLOW, slope)
 
 
 def weight(x):

@@ -56,8 +56,8 @@ class System:
         return whole
 
 
-def hessians(mesh, values):
-    """Second derivatives (n, 3, 3) at the vertices of a field (n,): weighted least squares over two rings, in coordinates in which their points have
+def derivatives(mesh, values):
+    """Gradients (n, 3) and second derivatives (n, 3, 3) at the vertices of a field (n,): weighted least squares over two rings, in coordinates in which their points have
     the identity for second moments, so that a stretched mesh is fitted as any other."""
     points, count = mesh.p.T, mesh.p.shape[1]
     ends = mesh.edges
@@ -67,7 +67,7 @@ def hessians(mesh, values):
     rings = (ring @ ring + ring).tocoo()
     others = rings.row != rings.col
     rings = sp.coo_matrix((rings.data[others], (rings.row[others], rings.col[others])), (count, count)).tocsr()
-    found = np.empty((count, 3, 3))
+    slopes, bends = np.empty((count, 3)), np.empty((count, 3, 3))
     for start in range(0, count, CHUNK):
         stop = min(start + CHUNK, count)
         first, last = rings.indptr[start], rings.indptr[stop]
@@ -87,17 +87,22 @@ def hessians(mesh, values):
         normal = sums(terms[:, :, None] * terms[:, None, :])
         # Where the points do not tell a term, it is small rather than any.
         normal += 1e-9 * np.einsum("nii->n", normal)[:, None, None] * np.eye(9)
-        fitted = np.linalg.solve(normal, sums(terms * (weight * rise)[:, None])[:, :, None])[:, 3:, 0]
-        own = fitted[:, [0, 1, 3, 1, 2, 4, 3, 4, 5]].reshape(-1, 3, 3)
-        found[start:stop] = np.einsum("nki,nkl,nlj->nij", inverse, own, inverse)
-    return found
+        fitted = np.linalg.solve(normal, sums(terms * (weight * rise)[:, None])[:, :, None])[:, :, 0]
+        own = fitted[:, [3, 4, 6, 4, 5, 7, 6, 7, 8]].reshape(-1, 3, 3)
+        slopes[start:stop] = np.einsum("nki,nk->ni", inverse, fitted[:, :3])
+        bends[start:stop] = np.einsum("nki,nkl,nlj->nij", inverse, own, inverse)
+    return slopes, bends
 
 
-def bubbles(mesh, quadratic, values):
-    """What a recovered field has beyond its linear interpolation, as a vector of the quadratic basis."""
-    bends = hessians(mesh, values)
+def bubbles(mesh, quadratic, values, moved=None):
+    """What a recovered field has beyond its linear interpolation, as a vector of the quadratic basis. `moved`, (3, edges), is how far the middles of
+    the edges of quadratic tetrahedra lie from those of straight ones."""
+    slopes, bends = derivatives(mesh, values)
     first, second = mesh.edges
     along = (mesh.p[:, second] - mesh.p[:, first]).T
+    middles = -np.einsum("ei,eij,ej->e", along, bends[first] + bends[second], along) / 16
+    if moved is not None:
+        middles += np.einsum("ie,ei->e", moved, slopes[first] + slopes[second]) / 2
     beyond = np.zeros(quadratic.N)
-    beyond[quadratic.edge_dofs[0]] = -np.einsum("ei,eij,ej->e", along, bends[first] + bends[second], along) / 16
+    beyond[quadratic.edge_dofs[0]] = middles
     return beyond
