@@ -1,4 +1,4 @@
-//! The metric of a goal: the mesh whose interpolation error does the least harm to a functional J for its number of vertices (METHOD.md §1.14;
+//! The metric of a goal: the mesh whose interpolation error does the least harm to a functional J for its number of vertices (METHOD.md §1.15;
 //! Loseille, Dervieux & Alauzet 2010; Belme, Dervieux & Alauzet 2012).
 //!
 //! Terms are pairs of a weight g_i ≥ 0 and a field u_i: |δJ| ≲ Σ ∫ g_i |u_i - Πu_i|. Q = Σ g_i |H(u_i)| then stands where the multiscale metric has
