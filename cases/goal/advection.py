@@ -14,11 +14,11 @@ import fem
 
 EPSILON, FLOW = 0.01, np.array([1.0, 0.1, 0.0])
 # The plume HEIGHT (1 + sin(WAVES x)/2) exp(-(y² + z²)/(2 WIDTH²)), y and z from its middle, which is MIDDLE at x = 0 and goes along the flow.
-HEIGHT, WAVES, WIDTH, MIDDLE = 0.05, 3.0, 0.3, (0.2, 0.5)
+HEIGHT, WAVES, WIDTH, MIDDLE = 0.02, 3.0, 0.3, (0.125, 0.5)
 # The layer, from 0 to 1: its place at x = 0, half of its thickness. It goes along the flow too.
-LAYER, DELTA = 0.8, 0.02
+LAYER, DELTA = 0.85, 0.02
 # The goal: a point in the plume and the width of the mean about it.
-POINT, MEAN = np.array([0.75, 0.275, 0.5]), 0.12
+POINT, MEAN = np.array([0.5, 0.175, 0.5]), 0.1
 ORDER = 6
 
 

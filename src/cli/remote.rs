@@ -182,7 +182,9 @@ fn of_terms(path: &Path) -> Result<Vec<PathBuf>, String> {
     }
     let beside = |name: &Path| match name.components().count() {
         1 => Ok(path.with_file_name(name)),
-        _ => Err(format!("{}: {}: for a service the files of terms must lie beside it", path.display(), name.display())),
+        _ => {
+            Err(format!("{}: {}: for a service the files of terms must lie beside it", path.display(), name.display()))
+        }
     };
     Asked::read(path)?.names().map(beside).collect()
 }

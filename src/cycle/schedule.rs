@@ -59,7 +59,15 @@ mod tests {
     use super::*;
 
     fn schedule() -> Schedule {
-        Schedule { complexity: 100.0, factor: 2.0, every: 2, max_complexity: None, cycles: None, converged: None, until: None }
+        Schedule {
+            complexity: 100.0,
+            factor: 2.0,
+            every: 2,
+            max_complexity: None,
+            cycles: None,
+            converged: None,
+            until: None,
+        }
     }
 
     #[test]

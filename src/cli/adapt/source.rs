@@ -11,8 +11,8 @@ use crate::geometry::classify::Classification;
 use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
-use crate::metric::held::GREATEST_RATIO;
 use crate::metric::goal::NORM;
+use crate::metric::held::GREATEST_RATIO;
 use crate::metric::multiscale::{Bounds, Cut, Measure, Options, SizeBound, bounded, diameter};
 use crate::metric::{self, Background, Interpolation, Limits, Source, Sym3, field, grade, restrict};
 use crate::sizing::{self, chords};
@@ -168,8 +168,7 @@ impl InputArguments {
         notices: &mut Vec<String>,
     ) -> Result<(Vec<Sym3>, goal::Made), Error> {
         let ((norm, recovery), gradation) = (self.multiscale.how(), self.multiscale.growth());
-        let bounds =
-            Bounds { complexity, measure, gradation, limits: self.multiscale.limits()?, fixed, by_others };
+        let bounds = Bounds { complexity, measure, gradation, limits: self.multiscale.limits()?, fixed, by_others };
         let options = Options { recovery, norm: norm.unwrap_or(NORM), bounds };
         goal::make(team, mesh, asked, (&options, None), notices)
     }

@@ -135,7 +135,8 @@ impl Loaded {
                 goal.functional, until.functional, goal.functional, until.below
             )),
             Some(_) if goal.estimate.is_none() => {
-                Err("[schedule] until: the solver estimates no error: give [goal] estimate, what it calls its estimate".into())
+                Err("[schedule] until: the solver estimates no error: give [goal] estimate, what it calls its estimate"
+                    .into())
             }
             _ => Ok(()),
         }

@@ -6,10 +6,10 @@ mod goal;
 mod parts;
 mod words;
 
+pub use goal::{Goal, Until};
 pub use parts::{
     Adapt, Converged, FIRST, Growth, Mesh, Metric, NormWord, Output, Probe, Schedule, Transfer, TransferMethod,
 };
-pub use goal::{Goal, Until};
 pub use words::option;
 
 use super::solver::Choice;

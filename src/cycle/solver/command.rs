@@ -246,8 +246,7 @@ mod tests {
 
     #[test]
     fn places_are_filled_and_quoted() {
-        let filled =
-            filled("python {config}/s.py {mesh} {solution_in} -n {threads} ${{HOME}} {cycle}", &job());
+        let filled = filled("python {config}/s.py {mesh} {solution_in} -n {threads} ${{HOME}} {cycle}", &job());
         assert_eq!(filled, "python /case/s.py '/out/a b/mesh.meshb' none -n 2 ${HOME} 3");
     }
 

@@ -36,19 +36,28 @@ impl Boundary {
         *hessians = team.map(GRAIN, filled.len(), |v| filled[v].unwrap_or(hessians[v]));
     }
 
-    /// Limits weights, shape (n,), on the boundary.
-    pub(super) fn limit(self, team: Team<'_>, rings: &Rings, weights: &mut Vec<f64>) {
+    /// Limits weights, shape (n,), on the boundary. Where no neighbour is inside, the limits of theirs count.
+    pub(super) fn limit(self, team: Team<'_>, rings: &Rings, weights: &mut [f64]) {
         if self == Self::Own {
             return;
         }
-        *weights = team.map(GRAIN, weights.len(), |v| {
-            let own = weights[v];
-            if rings.is_inside(v as u32) {
-                return own;
+        let mut most = team.map(GRAIN, weights.len(), |v| rings.is_inside(v as u32).then_some(weights[v]));
+        loop {
+            let next = team.collect(GRAIN, most.len(), |range, found| {
+                for vertex in range.filter(|&v| most[v].is_none()) {
+                    let near = rings.neighbours(vertex as u32).iter().filter_map(|&other| most[other as usize]);
+                    found.extend(near.reduce(f64::max).map(|limit| (vertex, limit)));
+                }
+            });
+            if next.is_empty() {
+                break;
             }
-            let inside = rings.neighbours(v as u32).iter().filter(|&&other| rings.is_inside(other));
-            let most = inside.map(|&other| weights[other as usize]).reduce(f64::max);
-            most.map_or(own, |most| own.min(most))
+            next.into_iter().for_each(|(vertex, limit)| most[vertex] = Some(limit));
+        }
+        team.fill(GRAIN, weights, |start, weights| {
+            for (weight, limit) in weights.iter_mut().zip(&most[start..]) {
+                *weight = limit.map_or(*weight, |limit| weight.min(limit));
+            }
         });
     }
 }

@@ -143,9 +143,8 @@ impl Goal<'_> {
     ) -> Result<(), Error> {
         let (team, count) = (self.team, states.len());
         let component = |k: usize| team.map(GRAIN, count, |v| adjoint[v][k]);
-        let bends: Vec<_> = (1..5)
-            .map(|k| self.recovery.hessians(team, self.mesh, &self.rings, &component(k)).0)
-            .collect();
+        let bends: Vec<_> =
+            (1..5).map(|k| self.recovery.hessians(team, self.mesh, &self.rings, &component(k)).0).collect();
         let energy = &bends[3];
         for j in 0..3 {
             let weights = team.map(GRAIN, count, |v| {
@@ -165,8 +164,7 @@ impl Goal<'_> {
             self.add_weighted(weights, &velocity)?;
         }
         let conductivity = mu * gamma / ((gamma - 1.0) * prandtl);
-        let weights =
-            team.map(GRAIN, count, |v| conductivity * (0..3).map(|d| energy[v].at(d, d).abs()).sum::<f64>());
+        let weights = team.map(GRAIN, count, |v| conductivity * (0..3).map(|d| energy[v].at(d, d).abs()).sum::<f64>());
         let temperature = team.map(GRAIN, count, |v| states[v].pressure / states[v].density);
         self.add_weighted(weights, &temperature)
     }

@@ -18,7 +18,8 @@ fn on<T>(mesh: &TetMesh, f: impl Fn(Vec3) -> T) -> Vec<T> {
 
 fn options<'f>(complexity: f64, hmax: f64) -> Options<'f> {
     let limits = Limits { hmin: None, hmax: Some(hmax), aspect_ratio: None };
-    let bounds = Bounds { complexity, measure: Measure::AtVertices, gradation: None, limits, fixed: None, by_others: None };
+    let bounds =
+        Bounds { complexity, measure: Measure::AtVertices, gradation: None, limits, fixed: None, by_others: None };
     Options { recovery: Recovery::Fit, norm: NORM, bounds }
 }
 
@@ -132,9 +133,7 @@ fn bends(f: impl Fn(Vec3) -> f64, p: Vec3) -> Sym3 {
     let h = 1e-3;
     let at = |steps: [f64; 3]| f(std::array::from_fn(|i| p[i] + h * steps[i]));
     let unit = |i: usize, s: f64| std::array::from_fn::<f64, 3, _>(|k| if k == i { s } else { 0.0 });
-    let both = |i: usize, a: f64, j: usize, b: f64| {
-        std::array::from_fn::<f64, 3, _>(|k| unit(i, a)[k] + unit(j, b)[k])
-    };
+    let both = |i: usize, a: f64, j: usize, b: f64| std::array::from_fn::<f64, 3, _>(|k| unit(i, a)[k] + unit(j, b)[k]);
     let second = |i: usize, j: usize| {
         (at(both(i, 1.0, j, 1.0)) - at(both(i, 1.0, j, -1.0)) - at(both(i, -1.0, j, 1.0)) + at(both(i, -1.0, j, -1.0)))
             / (4.0 * h * h)
@@ -239,10 +238,7 @@ fn what_is_no_goal_is_refused() {
     let refused = sum.add_flow(&gas, Variables::Primitive, &primal, &adjoint);
     assert!(matches!(refused, Err(Error::State { vertex: 7, density: -0.5, .. })), "{refused:?}");
     primal[7][0] = f64::INFINITY;
-    assert_eq!(
-        sum.add_flow(&gas, Variables::Primitive, &primal, &adjoint),
-        Err(Error::NotFinite { vertex: 7 })
-    );
+    assert_eq!(sum.add_flow(&gas, Variables::Primitive, &primal, &adjoint), Err(Error::NotFinite { vertex: 7 }));
     let metric = |terms: &[(&[f64], &[f64])], complexity| {
         let mut sum = goal(&mesh, Boundary::Inside);
         terms.iter().for_each(|(weight, field)| sum.add(Weight::Given(weight), field).unwrap());

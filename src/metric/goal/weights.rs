@@ -63,10 +63,10 @@ impl Weight<'_> {
             Self::Given(values) => values.to_vec(),
             Self::Adjoint(adjoint, coefficients) => {
                 check_finite(team, adjoint)?;
-                let has = |second: bool| coefficients.iter().any(|(d, _)| matches!(d, Derivative::Second(..)) == second);
+                let has =
+                    |second: bool| coefficients.iter().any(|(d, _)| matches!(d, Derivative::Second(..)) == second);
                 let first = if has(false) { gradients(team, mesh, rings, adjoint) } else { Vec::new() };
-                let second =
-                    if has(true) { recovery.hessians(team, mesh, rings, adjoint).0 } else { Vec::new() };
+                let second = if has(true) { recovery.hessians(team, mesh, rings, adjoint).0 } else { Vec::new() };
                 let of = |v: usize, derivative: Derivative| match derivative {
                     Derivative::First(i) => first[v][i],
                     Derivative::Second(i, j) => second[v].at(i, j),

@@ -88,11 +88,8 @@ impl Asked {
                 (Some(from), _) | (None, Some(from)) => (from, reader.values(from)?),
                 (None, None) => return Err(named(number, "no weight".into()).into()),
             };
-            let weight = if term.weight.is_some() {
-                Weight::Given(&weights)
-            } else {
-                Weight::Adjoint(&weights, &coefficients)
-            };
+            let weight =
+                if term.weight.is_some() { Weight::Given(&weights) } else { Weight::Adjoint(&weights, &coefficients) };
             let at = from.file().display();
             goal.add(weight, &field).map_err(|error| named(number, format!("{at}: {error}")))?;
         }
@@ -135,7 +132,9 @@ impl Reader<'_> {
             for field in &solution.fields {
                 if let Some(at) = field.values.iter().position(|value| !value.is_finite()) {
                     let (vertex, value) = (at / field.kind.values() + 1, field.values[at]);
-                    return Err(format!("{name}: the value of vertex {vertex} is {value}: did the solver diverge?").into());
+                    return Err(
+                        format!("{name}: the value of vertex {vertex} is {value}: did the solver diverge?").into()
+                    );
                 }
             }
             self.read.insert(path.clone(), solution);

@@ -153,8 +153,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let bounds = Bounds { complexity, measure, gradation, limits, fixed: None, by_others: None };
     let options = Options { recovery: arguments.hessian, norm: arguments.norm, bounds };
     let (of, mut notices) = (Carrier::of(&arguments.mesh, &data), Vec::new());
-    let (logs, made) =
-        make(team, (&data.mesh, &[]), (&asked, of), (&options, arguments.boundary), &mut notices)?;
+    let (logs, made) = make(team, (&data.mesh, &[]), (&asked, of), (&options, arguments.boundary), &mut notices)?;
     arguments.run.note(&notices);
     let mut outputs = Outputs::new();
     arguments.run.note(&outputs.logs(team, &target, &logs, common::on(&data))?);
