@@ -121,6 +121,122 @@ def multiscale(
     return _kernel.multiscale(mesh, sensors, how, other, threads or 0)
 
 
+def goal(
+    mesh: Mesh,
+    terms: Sequence[tuple[npt.ArrayLike, npt.ArrayLike] | tuple[npt.ArrayLike, npt.ArrayLike, Mapping[str, float]]],
+    complexity: float | None = None,
+    *,
+    vertices: float | None = None,
+    norm: float = 1.0,
+    hessian: str = "fit",
+    boundary: str = "inside",
+    gradation: float | None = 1.5,
+    hmin: float | None = None,
+    hmax: float | None = None,
+    aspect_ratio: float | None = None,
+    fixed: npt.ArrayLike | None = None,
+    order: str | None = None,
+    between: bool = False,
+    threads: int | None = None,
+) -> Floats:
+    """The metric whose mesh does the least harm to a functional for its number of points: fields weighted by an adjoint.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh that has the fields.
+    terms : sequence of (field, weight) or (field, adjoint, derivatives)
+        Arrays of shape (n,). A weight is 0 or more. Of an adjoint λ the weight is Σ abs(c ∂λ) over its derivatives with their coefficients c:
+        {"x": 1, "yy": 0.01}, b_x for "x" of an advection b ∂u/∂x, ε for "yy" of a diffusion ε ∂²u/∂y².
+    complexity : float
+        Of the metric: about half the number of points of the adapted mesh. Or give
+    vertices : float
+        twice that.
+    norm : float
+        The p of the exponent -1/(2p + 3).
+    boundary : {"inside", "own"}
+        What points on the boundary get: second derivatives of the neighbours inside, and weights no greater than theirs; or what is recovered there.
+    hessian, gradation, hmin, hmax, aspect_ratio, fixed, order, between, threads : optional
+        As of `multiscale`.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+
+    Raises
+    ------
+    MetricError
+        When a value is not finite, a weight is negative, no size follows from the terms, or the bounds leave no such metric.
+
+    References
+    ----------
+    A. Loseille, A. Dervieux and F. Alauzet, Fully anisotropic goal-oriented mesh adaptation for 3D steady Euler equations, J. Comput. Phys. 229
+    (2010). A. Belme, A. Dervieux and F. Alauzet, Time accurate anisotropic goal-oriented mesh adaptation for unsteady flows, J. Comput. Phys.
+    231 (2012).
+
+    Examples
+    --------
+    >>> import numpy as np, geo_adapt
+    >>> mesh = geo_adapt.examples.cube(6)
+    >>> x, y, z = mesh.points.T
+    >>> u, adjoint = np.sin(3 * x) + np.sin(3 * y), np.exp(-9 * (x**2 + y**2 + z**2))
+    >>> m = geo_adapt.metric.goal(mesh, [(u, adjoint, {"x": 1, "y": 1})], 500)
+    >>> bool(abs(geo_adapt.metric.complexity(mesh, m, order="medit") / 500 - 1) < 0.02)
+    True
+    """
+    if (complexity is None) == (vertices is None):
+        raise InputError("give a complexity or a number of vertices")
+    given = []
+    for term in terms:
+        if len(term) not in (2, 3):
+            raise InputError("terms: give (field, weight), or (field, adjoint, derivatives)")
+        derivatives = dict(term[2]) if len(term) == 3 else {}
+        if len(term) == 3 and not derivatives:
+            raise InputError('terms: an adjoint has no derivatives: give some, as {"x": 1}')
+        given.append({"field": _scalars(term[0], "field"), "weight": _scalars(term[1], "weight"), "derivatives": derivatives})
+    how = {
+        "complexity": float(complexity if complexity is not None else vertices / 2.0),  # type: ignore[operator]
+        "norm": norm,
+        "hessian": hessian,
+        "boundary": boundary,
+        "gradation": gradation,
+        "hmin": hmin,
+        "hmax": hmax,
+        "aspect_ratio": aspect_ratio,
+        "between": between,
+    }
+    other = None if fixed is None else packed(fixed, order)
+    return _kernel.goal(mesh, given, how, other, threads or 0)
+
+
+def hessian(mesh: Mesh, field: npt.ArrayLike, *, recovery: str = "fit", threads: int | None = None) -> Floats:
+    """The second derivatives of a field, as the metrics recover them: of an adjoint they tell what its linear interpolation leaves out.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    field : array_like, shape (n,)
+        Values at the points.
+    recovery : {"fit", "l2", "jumps"}
+        A quadratic function fitted to two rings of neighbours; gradients averaged twice; or as the first, for shocks.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+        In the order "medit", in the field's unit over length squared.
+
+    Examples
+    --------
+    >>> import geo_adapt
+    >>> mesh = geo_adapt.examples.cube(4)
+    >>> x, y, z = mesh.points.T
+    >>> geo_adapt.metric.hessian(mesh, x**2 + x * y).round(6)[0] + 0.0
+    array([2., 1., 0., 0., 0., 0.])
+    """
+    return _kernel.hessian(mesh, _scalars(field, "field"), recovery, threads or 0)
+
+
 def geometry(
     mesh: Mesh,
     model: Model | None = None,

@@ -4,6 +4,7 @@ mod adapter;
 mod arrays;
 mod errors;
 mod files;
+mod goal;
 mod metric;
 mod model;
 mod transfer;
@@ -36,6 +37,8 @@ fn _kernel(module: &Bound<'_, PyModule>) -> PyResult<()> {
         function!(metric::implied, module)?,
         function!(metric::from_points, module)?,
         function!(metric::multiscale, module)?,
+        function!(goal::goal, module)?,
+        function!(goal::hessian, module)?,
         function!(metric::geometry, module)?,
         function!(metric::wall, module)?,
         function!(metric::distance, module)?,

@@ -389,7 +389,8 @@ pub fn geometry<'py>(
     arrays::give_rows(py, made)
 }
 
-fn limits(hmin: Option<f64>, hmax: Option<f64>, aspect_ratio: Option<f64>) -> PyResult<Limits> {
+/// Bounds of sizes.
+pub fn limits(hmin: Option<f64>, hmax: Option<f64>, aspect_ratio: Option<f64>) -> PyResult<Limits> {
     for (name, value) in [("hmin", hmin), ("hmax", hmax), ("aspect_ratio", aspect_ratio)] {
         value.map(|value| positive(name, value)).transpose()?;
     }
@@ -402,7 +403,8 @@ fn limits(hmin: Option<f64>, hmax: Option<f64>, aspect_ratio: Option<f64>) -> Py
     Ok(Limits { hmin, hmax, aspect_ratio })
 }
 
-fn positive(name: &str, value: f64) -> PyResult<()> {
+/// Refuses what is not above zero.
+pub fn positive(name: &str, value: f64) -> PyResult<()> {
     if value > 0.0 && value.is_finite() {
         return Ok(());
     }

@@ -67,10 +67,18 @@ def test_metric(tmp_path, typed, step, model, files, threads):
     geo_adapt.write_sol(tmp_path / "h.solb", sizes)
     np.savetxt(tmp_path / "cloud.txt", cloud, fmt="%.17g")
     iso, n = metric.isotropic(sizes), {"threads": threads}
+    adjoint = np.exp(-4 * (mesh.points**2).sum(1))
+    geo_adapt.write_sol(tmp_path / "adjoint.solb", adjoint)
+    (tmp_path / "terms.toml").write_text(
+        "[[terms]]\nfield = 'u.solb'\nadjoint = 'adjoint.solb'\nderivatives = { x = 1, yz = 0.1 }\n[[terms]]\nfield = 'u.solb'\nweight = 'h.solb'\n"
+    )
     geo_adapt.write_sol(tmp_path / "iso.solb", iso)
     made = {
         "multiscale mesh.meshb u.solb --complexity 700 --norm 4 --hessian jumps --hmin 0.01": metric.multiscale(
             mesh, u, 700, norm=4, hessian="jumps", hmin=0.01, **n
+        ),
+        "goal mesh.meshb --terms terms.toml --complexity 600": metric.goal(
+            mesh, [(u, adjoint, {"x": 1, "yz": 0.1}), (u, sizes)], 600, **n
         ),
         f"geometry mesh.meshb --cad {step}": metric.geometry(mesh, model, **n),
         "geometry mesh.meshb": metric.geometry(mesh, **n),

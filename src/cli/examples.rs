@@ -2,7 +2,7 @@
 use clap::Command;
 
 /// Commands, by the words that are typed for them, each with its examples.
-const EXAMPLES: [(&str, &[&str]); 38] = [
+const EXAMPLES: [(&str, &[&str]); 39] = [
     (
         "",
         &[
@@ -83,6 +83,14 @@ const EXAMPLES: [(&str, &[&str]); 38] = [
     ("metric from-image", &["geo-adapt metric from-image scan.nrrd --mesh a.meshb --complexity 20000 -o m.solb"]),
     ("metric from-points", &["geo-adapt metric from-points a.meshb cloud.csv --neighbours 12 -o m.solb"]),
     ("metric geometry", &["geo-adapt metric geometry a.meshb --cad wing.step -o m.solb"]),
+    (
+        "metric goal",
+        &[
+            "geo-adapt metric goal a.meshb --terms terms.toml --complexity 50000 -o m.solb",
+            "geo-adapt metric goal a.meshb --euler flow.solb --adjoint adjoint.solb --complexity 50000 -o m.solb",
+            "geo-adapt metric goal a.meshb --navier-stokes flow.solb --adjoint adjoint.solb --reynolds 4000 --complexity 50000 -o m.solb",
+        ],
+    ),
     ("metric grade", &["geo-adapt metric grade a.meshb m.solb --ratio 1.5 -o graded.solb"]),
     ("metric implied", &["geo-adapt metric implied a.meshb -o own.solb"]),
     ("metric interpolate", &["geo-adapt metric interpolate old.meshb old.solb new.meshb -o new.solb"]),

@@ -76,7 +76,7 @@ struct Bench<'b> {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let json = arguments.figures.target(&mut arguments.input.files(), JSON)?;
+    let json = arguments.figures.target(&mut arguments.input.files()?, JSON)?;
     let pool = Pool::new(arguments.threads.map_or_else(super::cores, usize::from))?;
     let backends = match &arguments.backends[..] {
         [] => Backend::ALL.into_iter().filter(|backend| backend.is_built()).collect(),

@@ -1,5 +1,6 @@
 //! The library's enumerations as words on the command line: their names are the library's, the help is ours.
 use crate::adapt::{Criterion, PointCreation, Scheduler};
+use crate::metric::goal::{Boundary, Variables};
 use crate::metric::recovery::Recovery;
 use crate::metric::{Analytic, Scalar};
 use crate::tasks::{Backend, Strategy};
@@ -25,6 +26,14 @@ macro_rules! value_enums {
 }
 
 value_enums! {
+    Boundary {
+        Inside: "Second derivatives of the neighbours inside; weights no greater than theirs",
+        Own: "As recovered there",
+    }
+    Variables {
+        Conservative: "Density, momentum (3), total energy, each for a unit of volume",
+        Primitive: "Density, velocity (3), pressure",
+    }
     Criterion {
         Delaunay: "No vertex of the cavity inside the circumsphere, measured in five metrics (anisotropic Delaunay)",
         EdgeWeight: "Least greatest Laplacian edge weight (max-min)",

@@ -1,5 +1,5 @@
 //! The command of an adaptation.
-use super::config::{FIRST, Loaded, option};
+use super::config::{Config, FIRST, Loaded, option};
 use super::data::{Begun, Call, text};
 use super::error::Error;
 use super::launch;
@@ -17,6 +17,14 @@ pub fn begun(loaded: &Loaded, first: &Path) -> Begun {
     Begun { cad, surface: mesh.surface.as_deref().map(at) }
 }
 
+/// The file of the terms of a goal, in the folder of the metric.
+pub const TERMS: &str = "terms.toml";
+
+/// The option of `adapt` that says what the metric is made of, and its file in the folder of the metric.
+pub fn made_of(config: &Config) -> (&'static str, &'static str) {
+    if config.goal.is_some() { ("--goal", TERMS) } else { ("--field", "sensors.solb") }
+}
+
 /// The command that makes the next mesh after a cycle; `threads` there are for it.
 ///
 /// # Errors
@@ -27,7 +35,8 @@ pub fn call(loaded: &Loaded, layout: &Layout, threads: usize, cycle: u32, begun:
     let mut words = launch::words(processes);
     words.extend([launch::own()?, "adapt".into(), text(&layout.mesh(cycle))]);
     words.extend(["-o".into(), text(&folder.join("mesh.meshb"))]);
-    words.extend(["--field".into(), text(&layout.step(cycle, "metric").join("sensors.solb"))]);
+    let (option_of, file) = made_of(config);
+    words.extend([option_of.into(), text(&layout.step(cycle, "metric").join(file))]);
     words.extend(["--report".into(), text(&folder.join("report.json"))]);
     option(&mut words, "--cad", begun.cad.as_deref().map(text).as_ref());
     option(&mut words, "--surface", begun.surface.as_deref().map(text).as_ref());

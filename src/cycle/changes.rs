@@ -28,6 +28,9 @@ fn touches(layout: &Layout, key: &str, old: &Config, new: &Config) -> bool {
     let is_done = |step: &str| !layout.finished(step).is_empty();
     match key.split('.').next().unwrap_or_default() {
         "solver" | "probes" => is_done("solve"),
+        "goal" if key.starts_with("goal.terms") || key == "goal.boundary" => is_done("metric"),
+        // Its errors are among the functionals of each solve.
+        "goal" => is_done("solve"),
         "metric" if key == "metric.fields" => is_done("metric"),
         "metric" | "adapt" => is_done("adapt"),
         "schedule" => {

@@ -10,6 +10,7 @@ mod done;
 mod error;
 pub mod example;
 mod field_value;
+mod goal;
 mod history;
 mod inputs;
 pub mod launch;
@@ -27,6 +28,7 @@ mod schedule;
 pub mod solver;
 mod step;
 
+pub use adaptation::made_of;
 pub use config::{Config, FIRST, Loaded, Schedule, Solvers, parse};
 pub use error::Error;
 pub use history::{Cycle, History, Seconds};

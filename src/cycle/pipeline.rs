@@ -1,5 +1,5 @@
 //! The steps of a cycle, each by the commands that make it.
-use super::adaptation::{self, begun};
+use super::adaptation::{self, TERMS, begun};
 use super::config::{Loaded, TransferMethod, option};
 use super::data::{Adapted, Begun, FieldName, SolveResult, text};
 use super::done::Done;
@@ -11,7 +11,7 @@ use super::probe;
 use super::solver::{Before, Choice, Job};
 use super::step::Steps;
 use crate::geometry::{Label, Names, called, names};
-use crate::mesh::io::{Solution, SolutionField, read_mesh, write_mesh, write_solution};
+use crate::mesh::io::{Solution, SolutionField, read_mesh, write_beside, write_mesh, write_solution};
 use crate::mesh::samples::cube;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -83,6 +83,7 @@ impl<'a> Pipeline<'a> {
             let counted = read_mesh(&mesh)?.content;
             solved.check(counted.vertices.len())?;
             probe::add(&self.loaded.config.probes, &counted, &mut solved)?;
+            self.loaded.config.goal.as_ref().map_or(Ok(()), |goal| goal.add(&mut solved))?;
             let fields: Vec<FieldName> = solved.fields.iter().map(FieldName::of).collect();
             let called: Vec<String> = fields.iter().map(|field| field.name.clone()).collect();
             let content =
@@ -152,10 +153,15 @@ impl<'a> Pipeline<'a> {
         Ok(())
     }
 
-    /// What the metric is made from: the fields of the configuration, of the solution.
+    /// What the metric is made from: the fields of the configuration, of the solution; or the terms of the goal.
     pub fn metric(&self, cycle: u32, fields: &[FieldName]) -> Result<(), Error> {
         let layout = self.layout();
         self.steps.step(layout.step(cycle, "metric"), |running| {
+            if let Some(goal) = &self.loaded.config.goal {
+                let terms = goal.terms(&layout.solution(cycle), fields)?;
+                let text = toml::to_string(&terms).map_err(|error| error.to_string())?;
+                return Ok(write_beside(&running.file(TERMS), |file| file.write_all(text.as_bytes()))?);
+            }
             let sensors = self.sensors(fields)?;
             let solution = text(&layout.solution(cycle));
             let target = text(&running.file("sensors.solb"));

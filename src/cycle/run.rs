@@ -206,7 +206,8 @@ fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<E
             })?;
             functional.push(*value);
         }
-        let ends = config.schedule.ends(cycle - 1, &functional);
+        let estimated = config.goal.as_ref().and_then(|goal| goal.estimated(&solved.functionals));
+        let ends = config.schedule.ends_with(estimated).or_else(|| config.schedule.ends(cycle - 1, &functional));
         // The last mesh of a complexity is shown.
         let last =
             cycle > 1 && (ends.is_some() || config.schedule.of_cycle(cycle - 1) != config.schedule.of_cycle(cycle));

@@ -1,5 +1,5 @@
 //! Which complexity a cycle has, and when the loop ends.
-use super::config::{Converged, Schedule};
+use super::config::{Converged, Schedule, Until};
 
 impl Schedule {
     /// The complexity of the adaptation of a cycle, from 1.
@@ -15,6 +15,12 @@ impl Schedule {
         let reached = most.and_then(|most| (0..4096).find(|&n| self.of_cycle(n * self.every + 1) >= most));
         let fine = reached.map(|n| (n + 1) * self.every);
         [fine, self.cycles].into_iter().flatten().min()
+    }
+
+    /// Why the loop ends where the goal's error is estimated to be so much, if it does.
+    pub fn ends_with(&self, error: Option<f64>) -> Option<String> {
+        let (Until { functional, below }, error) = (self.until.as_ref()?, error?);
+        (error < *below).then(|| format!("the error in {functional} is estimated as {error:.2e}, below {below}"))
     }
 
     /// Why the loop ends after a solve, if it does: so many adaptations are done, and the functional had these values in all solves.
@@ -53,7 +59,15 @@ mod tests {
     use super::*;
 
     fn schedule() -> Schedule {
-        Schedule { complexity: 100.0, factor: 2.0, every: 2, max_complexity: None, cycles: None, converged: None }
+        Schedule {
+            complexity: 100.0,
+            factor: 2.0,
+            every: 2,
+            max_complexity: None,
+            cycles: None,
+            converged: None,
+            until: None,
+        }
     }
 
     #[test]
@@ -73,6 +87,16 @@ mod tests {
         assert_eq!(schedule.last(), Some(6));
         schedule.factor = 1.0;
         assert_eq!(schedule.last(), None);
+    }
+
+    #[test]
+    fn a_small_error_ends_the_loop() {
+        let mut schedule = schedule();
+        assert!(schedule.ends_with(Some(0.0)).is_none());
+        schedule.until = Some("error(lift) < 1e-3".parse().unwrap());
+        assert!(schedule.ends_with(None).is_none() && schedule.ends_with(Some(2e-3)).is_none());
+        let said = schedule.ends_with(Some(9e-4)).unwrap();
+        assert_eq!(said, "the error in lift is estimated as 9.00e-4, below 0.001");
     }
 
     #[test]

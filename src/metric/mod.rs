@@ -12,6 +12,7 @@ pub mod field;
 pub mod frame;
 pub mod from_image;
 pub mod from_points;
+pub mod goal;
 pub mod gradation;
 pub mod held;
 pub mod implied;

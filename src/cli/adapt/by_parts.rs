@@ -75,7 +75,7 @@ fn adapted(arguments: &Arguments, ranks: &dyn Ranks) -> Outcome {
     let start = Instant::now();
     agreed(ranks, arguments.fits_parts())?;
     let targets = || -> Result<_, Error> {
-        Ok(Targets::of(&mut arguments.input.files(), &arguments.output, &arguments.figures, &[])?)
+        Ok(Targets::of(&mut arguments.input.files()?, &arguments.output, &arguments.figures, &[])?)
     };
     let targets = agreed(ranks, if ranks.rank() == 0 { targets().map(Some) } else { Ok(None) })?;
     let threads = arguments.threads.map_or_else(crate::cli::cores, usize::from);

@@ -62,7 +62,7 @@ pub struct InputArguments {
     pub(super) limit_chords: Option<f64>,
     #[command(
         flatten,
-        next_help_heading = "The metric of --field (gradation and bounds of sizes: of --metric and --size too)"
+        next_help_heading = "The metric of --field or --goal (gradation and bounds of sizes: of --metric and --size too)"
     )]
     pub(super) multiscale: MultiscaleArguments,
     #[command(flatten)]
@@ -136,14 +136,20 @@ impl InputArguments {
     }
 
     /// The files that are read.
-    pub fn files(&self) -> Files {
+    ///
+    /// # Errors
+    /// When the file of --goal, which names some, cannot be read.
+    pub fn files(&self) -> Result<Files, Error> {
         let Self { mesh, cad, surface, field, .. } = self;
-        Files::new()
+        let of_goal = field.terms()?.map_or_else(Vec::new, |terms| terms.files());
+        Ok(Files::new()
             .reads_meshes([mesh])
             .reads_models(cad)
             .reads_any(&surface.surface)
             .reads_fields(&field.metric, mesh)
             .reads_fields(&field.field, mesh)
+            .reads(&field.goal)
+            .reads_fields(of_goal, mesh))
     }
 
     /// Reads the mesh and, if it comes from a file, its metric. What the user should know is added to `notices`.

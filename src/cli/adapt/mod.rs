@@ -109,9 +109,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
         return by_parts::run(arguments, &*ranks);
     }
     let start = Instant::now();
-    let targets = Targets::of(&mut arguments.input.files(), &arguments.output, &arguments.figures, &[])?;
-    if arguments.cycles > 1 && !arguments.input.field.field.is_empty() {
-        return Err("--cycles: the field of --field lies on the first mesh alone; give one cycle, or a --metric".into());
+    let targets = Targets::of(&mut arguments.input.files()?, &arguments.output, &arguments.figures, &[])?;
+    if arguments.cycles > 1 && arguments.input.field.is_of_fields() {
+        return Err(
+            "--cycles: the fields of --field and --goal lie on the first mesh alone; give one cycle, or a --metric"
+                .into(),
+        );
     }
     let threads = arguments.threads.map_or_else(super::cores, usize::from);
     let pool = threads_to_simulate().map_or_else(|| Pool::new(threads), |threads| Ok(Pool::simulated(threads)))?;

@@ -6,6 +6,7 @@ use super::source::Chords;
 use crate::adapt::forecast::Forecast;
 use crate::adapt::{Adapted, GrowthEnd, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
+use crate::cli::metric::goal;
 use crate::cli::table::{Table, place};
 use crate::formats::Format;
 #[cfg(feature = "occt")]
@@ -98,6 +99,9 @@ pub struct Report {
     /// How the metric was made, with --field.
     #[serde(skip_serializing_if = "Option::is_none")]
     multiscale: Option<Made>,
+    /// The same with --goal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    goal: Option<goal::Made>,
     /// What was cut along curved walls, with --limit-chords.
     #[serde(skip_serializing_if = "Option::is_none")]
     chords: Option<Chords>,
@@ -169,6 +173,7 @@ impl Report {
             version: env!("CARGO_PKG_VERSION"),
             asked: asked.clone(),
             multiscale: input.how.made.clone(),
+            goal: input.how.goal.clone(),
             chords: input.how.chords,
             vertices_wanted: input.meeting,
             parts: None,
@@ -211,6 +216,9 @@ impl Report {
         let mut table = Table::new();
         table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
         if let Some(made) = &self.multiscale {
+            made.rows(&mut table);
+        }
+        if let Some(made) = &self.goal {
             made.rows(&mut table);
         }
         if let Some(chords) = &self.chords {

@@ -35,6 +35,7 @@ impl InputArguments {
         is_of(&self.mesh, "meshb")
             && metric.is_none_or(|path| is_of(path, "solb") && path.exists())
             && self.field.field.is_empty()
+            && self.field.goal.is_none()
             && !self.is_bounded()
     }
 

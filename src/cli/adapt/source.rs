@@ -4,6 +4,7 @@ use super::local;
 use crate::adapt;
 use crate::cli::files::reading::Carrier;
 use crate::cli::metric::fields::Made;
+use crate::cli::metric::goal;
 use crate::cli::table::{Table, figure};
 use crate::cli::walls::Places;
 use crate::formats::NamedField;
@@ -11,8 +12,9 @@ use crate::geometry::classify::Classification;
 use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
+use crate::metric::goal::NORM;
 use crate::metric::held::GREATEST_RATIO;
-use crate::metric::multiscale::{Bounds, Cut, Measure, SizeBound, bounded, diameter};
+use crate::metric::multiscale::{Bounds, Cut, Measure, Options, SizeBound, bounded, diameter};
 use crate::metric::{self, Background, Interpolation, Limits, Source, Sym3, field, grade, restrict};
 use crate::sizing::{self, chords};
 use crate::tasks::{Team, stage};
@@ -39,8 +41,10 @@ pub struct Raw {
 /// How a metric was made.
 #[derive(Clone, Default)]
 pub struct How {
-    /// From a field.
+    /// From a field,
     pub made: Option<Made>,
+    /// or from the terms of a goal.
+    pub goal: Option<goal::Made>,
     /// What was cut along curved walls, with --limit-chords.
     pub chords: Option<Chords>,
 }
@@ -98,7 +102,7 @@ impl InputArguments {
                 source.cut()
             ));
         }
-        self.scale(team, mesh, &mut source, complexity, how.made.is_some())?;
+        self.scale(team, mesh, &mut source, complexity, how.made.is_some() || how.goal.is_some())?;
         stage("complexity");
         Ok((source, how))
     }
@@ -123,27 +127,53 @@ impl InputArguments {
         let uniform = self.field.size.map(|h| vec![of_size(h); mesh.vertices.len()]);
         let by_others = self.limit_chords.map(|share| chords::Chords::new(on.place, on.model, share));
         let by_others = by_others.as_ref().map(|chords| chords as &dyn SizeBound);
-        let (logs, cut, made) = match raw.logs.or(uniform) {
-            Some(logs) if !self.is_bounded() => (logs, None, None),
+        let mut how = How::default();
+        let (logs, cut) = match raw.logs.or(uniform) {
+            Some(logs) if !self.is_bounded() => (logs, None),
             Some(logs) => {
-                let bounded = self.bounded(team, mesh, on, (logs, by_others), (complexity, notices));
-                let (logs, cut) = bounded.map_err(named)?;
-                (logs, cut, None)
+                self.bounded(team, mesh, on, (logs, by_others), (complexity, notices)).map_err(named)?
             }
             None => {
-                let complexity = complexity.ok_or("--field needs a --complexity or --vertices")?;
+                let complexity = complexity.ok_or("--field and --goal need a --complexity or --vertices")?;
                 let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
                 let wanted = (complexity, Measure::Between(Interpolation::default()));
                 let vertices = &mesh.vertices[..mesh.vertices.len() - raw.copies.len()];
                 let carrier = Carrier { path: &self.mesh, vertices, fields: &raw.fields };
-                let (mesh, asked) = ((&**mesh, &raw.copies[..]), (&self.field.field[..], carrier));
-                let (logs, made) =
-                    self.multiscale.make(team, mesh, asked, wanted, (fixed.as_deref(), by_others), notices)?;
-                (logs, made.cut(), Some(made))
+                let (mesh, fixed) = ((&**mesh, &raw.copies[..]), (fixed.as_deref(), by_others));
+                if let Some(terms) = self.field.terms()? {
+                    let (logs, made) = self.of_goal(team, mesh, (&terms, carrier), wanted, fixed, notices)?;
+                    let cut = made.cut();
+                    how.goal = Some(made);
+                    (logs, cut)
+                } else {
+                    let asked = (&self.field.field[..], carrier);
+                    let (logs, made) = self.multiscale.make(team, mesh, asked, wanted, fixed, notices)?;
+                    let cut = made.cut();
+                    how.made = Some(made);
+                    (logs, cut)
+                }
             }
         };
-        let chords = self.limit_chords.zip(cut).map(|(share, cut)| Chords { share, cut });
-        Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), How { made, chords }))
+        how.chords = self.limit_chords.zip(cut).map(|(share, cut)| Chords { share, cut });
+        Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), how))
+    }
+
+    /// ln M of a goal, as [`goal::make`] has it; the rest as [`fields::MultiscaleArguments::make`].
+    ///
+    /// [`fields::MultiscaleArguments::make`]: crate::cli::metric::fields::MultiscaleArguments::make
+    fn of_goal(
+        &self,
+        team: Team<'_>,
+        mesh: (&TetMesh, &[u32]),
+        asked: (&goal::Asked, Carrier<'_>),
+        (complexity, measure): (f64, Measure),
+        (fixed, by_others): (Option<&[Sym3]>, Option<&dyn SizeBound>),
+        notices: &mut Vec<String>,
+    ) -> Result<(Vec<Sym3>, goal::Made), Error> {
+        let ((norm, recovery), gradation) = (self.multiscale.how(), self.multiscale.growth());
+        let bounds = Bounds { complexity, measure, gradation, limits: self.multiscale.limits()?, fixed, by_others };
+        let options = Options { recovery, norm: norm.unwrap_or(NORM), bounds };
+        goal::make(team, mesh, asked, (&options, None), notices)
     }
 
     /// Whether sizes that are given are to be changed by more than a scale.

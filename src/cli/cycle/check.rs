@@ -1,6 +1,6 @@
 //! Options of a configuration that go to other commands: refused before the loop if those would refuse them.
 use crate::cli::Command;
-use crate::cycle::Loaded;
+use crate::cycle::{Loaded, made_of};
 use clap::Parser;
 
 /// Refuses options that `adapt` and `bootstrap` do not take.
@@ -9,7 +9,8 @@ pub fn words(loaded: &Loaded) -> Result<(), String> {
     let fixed = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect::<Vec<String>>();
     let mesh = &config.mesh;
     let has_model = mesh.cad.is_some() || mesh.surface.is_some() || mesh.bootstrap.is_some();
-    let mut adapt = fixed(&["adapt", "mesh.meshb", "-o", "next.meshb", "--field", "field.solb"]);
+    let (option, file) = made_of(config);
+    let mut adapt = fixed(&["adapt", "mesh.meshb", "-o", "next.meshb", option, file]);
     if has_model {
         adapt.push("--cad=model.step".into());
     }

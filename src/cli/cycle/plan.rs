@@ -34,9 +34,10 @@ pub fn text(loaded: &Loaded, options: &Options) -> Result<String, Error> {
             table.line(&format!("{:>10} {:>12} {vertices:>16}", at + 1, figure(complexity)));
         }
     }
-    let earlier = loaded.config.schedule.converged.as_ref();
-    let earlier =
-        earlier.map_or_else(String::new, |converged| format!(", or when {} changes no more", converged.functional));
+    let schedule = &loaded.config.schedule;
+    let converged = schedule.converged.as_ref().map(|of| format!(", or when {} changes no more", of.functional));
+    let until = schedule.until.as_ref().map(|until| format!(", or when {until}"));
+    let earlier: String = [converged, until].into_iter().flatten().collect();
     if let Some(last) = last {
         table.row("ends", format_args!("after {last} adaptations and {} solves{earlier}", last + 1));
     }

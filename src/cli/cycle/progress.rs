@@ -179,6 +179,7 @@ mod tests {
             max_complexity: Some(800.0),
             cycles: None,
             converged: None,
+            until: None,
         };
         assert_eq!(schedule.last(), Some(4));
         assert_eq!(remaining(&schedule, 1, 4), None);

@@ -30,9 +30,9 @@ pub enum Combine {
 /// The options of the multiscale metric.
 #[derive(clap::Args)]
 pub struct MultiscaleArguments {
-    /// The p of the L^p norm of the interpolation error: 1, 2, 4, any number from 1 on, or inf
-    #[arg(long, value_name = "P", default_value_t = Norm::default(), allow_negative_numbers = true)]
-    norm: Norm,
+    /// The p of the L^p norm of the interpolation error: 1, 2, 4, any number from 1 on, or inf [default: 2; of a goal 1]
+    #[arg(long, value_name = "P", allow_negative_numbers = true)]
+    norm: Option<Norm>,
     /// How second derivatives are recovered
     #[arg(long, value_enum, default_value_t = Recovery::default())]
     hessian: Recovery,
@@ -48,8 +48,10 @@ pub struct MultiscaleArguments {
     limits: LimitArguments,
 }
 
-/// The options that say how the metric is made, as [`MultiscaleArguments`] has them.
-pub const OPTIONS: [&str; 4] = ["norm", "hessian", "component", "combine"];
+/// The options that say how a metric is made, as [`MultiscaleArguments`] has them,
+pub const OF_MADE: [&str; 2] = ["norm", "hessian"];
+/// and those that say which fields it is made of.
+pub const OF_FIELD: [&str; 2] = ["component", "combine"];
 
 /// The options that bound sizes.
 pub const BOUNDS: [&str; 4] = ["gradation", "hmin", "hmax", "aspect_ratio"];
@@ -82,6 +84,11 @@ impl MultiscaleArguments {
         self.gradation.ratio()
     }
 
+    /// The norm that was given, if one was, and how Hessians are recovered.
+    pub fn how(&self) -> (Option<Norm>, Recovery) {
+        (self.norm, self.hessian)
+    }
+
     /// Whether a bound or a growth was given.
     pub fn bounds_are_given(&self) -> bool {
         self.gradation.is_given() || self.limits.limits() != Ok(Limits::default())
@@ -109,7 +116,7 @@ impl MultiscaleArguments {
         }
         let views: Vec<Vec<&[f64]>> = files.iter().map(|scalars| scalars.iter().map(Vec::as_slice).collect()).collect();
         let (sensors, names) = self.sensors(paths, &views)?;
-        let (norm, recovery, gradation) = (self.norm, self.hessian, self.gradation.ratio());
+        let (norm, recovery, gradation) = (self.norm.unwrap_or_default(), self.hessian, self.gradation.ratio());
         let bounds = Bounds { complexity, measure, gradation, limits, fixed, by_others };
         let options = Options { recovery, norm, bounds };
         let (logs, summary) =
@@ -133,7 +140,7 @@ impl MultiscaleArguments {
                 format!("--hessian {name} needs all of the mesh in memory: leave --memory out, or --hessian").into()
             );
         }
-        let (norm, gradation, limits) = (self.norm, self.gradation.ratio(), self.limits.limits()?);
+        let (norm, gradation, limits) = (self.norm.unwrap_or_default(), self.gradation.ratio(), self.limits.limits()?);
         let vertices = mesh.counts().vertices;
         let files = paths.iter().map(|path| SolutionReader::open(path)).collect::<Result<Vec<_>, _>>()?;
         let mut steps = Vec::new();
@@ -162,7 +169,7 @@ impl MultiscaleArguments {
             combine: self.combine,
             component: self.component,
             hessian: self.hessian,
-            norm: self.norm,
+            norm: self.norm.unwrap_or_default(),
             gradation: self.gradation.ratio(),
             complexity_wanted,
             summary,

@@ -4,6 +4,7 @@ pub(super) mod fields;
 mod from_image;
 mod from_points;
 pub(super) mod geometry;
+pub(super) mod goal;
 mod grade;
 mod implied;
 mod interpolate;
@@ -33,6 +34,8 @@ enum Command {
     FromPoints(from_points::Arguments),
     /// Make the metric that the geometry asks for: curvature, thin parts, gaps
     Geometry(geometry::Arguments),
+    /// Make the metric that lets a functional be computed best for its complexity: fields weighted by an adjoint
+    Goal(goal::Arguments),
     /// Let sizes grow no faster than a ratio from an edge to the next
     Grade(grade::Arguments),
     /// The metric of a mesh itself: the one in which its edges have length one, as far as they can
@@ -61,6 +64,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Command::FromImage(arguments) => from_image::run(arguments),
         Command::FromPoints(arguments) => from_points::run(arguments),
         Command::Geometry(arguments) => geometry::run(arguments),
+        Command::Goal(arguments) => goal::run(arguments),
         Command::Grade(arguments) => grade::run(arguments),
         Command::Implied(arguments) => implied::run(arguments),
         Command::Interpolate(arguments) => interpolate::run(arguments),

@@ -2,6 +2,7 @@
 mod cycle;
 
 use super::files::{Files, Outputs, Target};
+use super::metric::goal::Asked;
 use super::waiting::Waiting;
 use super::workplace::Workplace;
 use super::{Outcome, interrupt, note, print, tell};
@@ -147,7 +148,7 @@ impl Sent {
         let name = self.free(base);
         self.read.insert(name.clone(), path.to_owned());
         let beside = [names::beside(path), names::beside_model(path)];
-        for other in formats::read_files(path).into_iter().chain(beside) {
+        for other in formats::read_files(path).into_iter().chain(beside).chain(of_terms(path)?) {
             let own = other.file_name().and_then(|name| name.to_str());
             let is_new = !self.read.values().any(|known| *known == other);
             if let Some(own) = own.filter(|_| is_new && other.is_file()) {
@@ -180,6 +181,20 @@ impl Sent {
         let own = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         path.with_file_name(renamed(result, name, own))
     }
+}
+
+/// The files that a file of terms names (`metric goal --terms`). There they are called as it says.
+fn of_terms(path: &Path) -> Result<Vec<PathBuf>, String> {
+    if path.extension().is_none_or(|ending| ending != "toml") {
+        return Ok(Vec::new());
+    }
+    let beside = |name: &Path| match name.components().count() {
+        1 => Ok(path.with_file_name(name)),
+        _ => {
+            Err(format!("{}: {}: for a service the files of terms must lie beside it", path.display(), name.display()))
+        }
+    };
+    Asked::read(path)?.names().map(beside).collect()
 }
 
 /// What comes before the first dot of a name.

@@ -1,5 +1,5 @@
 //! Refuses configurations whose keys are each allowed, but not together, before the loop begins.
-use super::{FIRST, Growth, Loaded, NormWord};
+use super::{Config, FIRST, Growth, Loaded, NormWord};
 use crate::cycle::field_value::{Value, values_of};
 use crate::metric::multiscale::Norm;
 use crate::sizing::layer::Walls;
@@ -12,6 +12,7 @@ impl Loaded {
         self.check_mesh()?;
         self.check_metric()?;
         self.check_schedule()?;
+        self.check_goal()?;
         self.check_names()?;
         let adapt = &self.config.adapt;
         if adapt.processes == Some(0) || adapt.threads == Some(0) {
@@ -120,12 +121,38 @@ impl Loaded {
         Ok(())
     }
 
+    fn check_goal(&self) -> Result<(), String> {
+        let Config { goal, metric, schedule, .. } = &self.config;
+        let Some(goal) = goal else {
+            return match schedule.until {
+                Some(_) => Err("[schedule] until asks for the error in a goal: give a [goal] with an estimate".into()),
+                None => Ok(()),
+            };
+        };
+        if !metric.fields.is_empty() {
+            return Err("[metric] fields: the metric is that of the [goal]: leave fields out, or the goal".into());
+        }
+        goal.check()?;
+        match &schedule.until {
+            Some(until) if until.functional != goal.functional => Err(format!(
+                "[schedule] until: the goal is {}, not {}: give \"error({}) < {}\"",
+                goal.functional, until.functional, goal.functional, until.below
+            )),
+            Some(_) if goal.estimate.is_none() => {
+                Err("[schedule] until: the solver estimates no error: give [goal] estimate, what it calls its estimate"
+                    .into())
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Refuses names that the solver does not have, as far as it is known what it has before it runs.
     fn check_names(&self) -> Result<(), String> {
         let config = &self.config;
         let solver = config.solver.solver();
         if let Some(fields) = solver.fields() {
             values_of(&config.metric.fields, &fields)?;
+            config.goal.as_ref().map_or(Ok(()), |goal| goal.terms(Path::new(""), &fields).map(drop))?;
             for (name, probe) in &config.probes {
                 Value::find(&probe.field, &fields).map_err(|error| format!("[probes] {name}: {error}"))?;
             }

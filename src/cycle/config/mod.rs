@@ -3,10 +3,12 @@
 //! All relative paths in it begin at the folder of the file.
 mod check;
 mod confined;
+mod goal;
 mod parts;
 mod words;
 
 pub use confined::Solvers;
+pub use goal::{Goal, Until};
 pub use parts::{
     Adapt, Converged, FIRST, Growth, Mesh, Metric, NormWord, Output, Probe, Schedule, Transfer, TransferMethod,
 };
@@ -30,6 +32,8 @@ pub struct Config {
     /// Values of the solution at points, as further functionals, by their names.
     #[serde(default)]
     pub probes: BTreeMap<String, Probe>,
+    /// The functional that the mesh is made for.
+    pub goal: Option<Goal>,
     /// What sizes are made from.
     pub metric: Metric,
     /// How fine, and until when.
@@ -125,6 +129,7 @@ pub fn differences(old: &Config, new: &Config) -> Vec<Difference> {
         config.schedule.cycles = None;
         config.schedule.max_complexity = None;
         config.schedule.converged = None;
+        config.schedule.until = None;
         serde_json::to_value(config).unwrap_or_default()
     };
     let mut found = Vec::new();

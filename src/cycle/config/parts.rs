@@ -1,4 +1,5 @@
 //! The tables of a configuration.
+use super::goal::Until;
 use crate::metric::recovery::Recovery;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -152,6 +153,8 @@ pub struct Schedule {
     pub cycles: Option<u32>,
     /// Ends when a functional does not change any more.
     pub converged: Option<Converged>,
+    /// Ends when the estimate of the goal's error is small: "error(drag) < 1e-4".
+    pub until: Option<Until>,
 }
 
 fn twice() -> f64 {

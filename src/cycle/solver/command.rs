@@ -26,6 +26,14 @@ pub struct Config {
     /// What its fields are called, where the format has no names.
     #[serde(default)]
     pub fields: Vec<String>,
+    /// A command for the adjoint, started after `run`, with {adjoint_out} besides; a program that gives both at once needs none.
+    pub adjoint: Option<String>,
+    /// The name of the file that it writes, whose fields are added to the solution's; its ending is its format.
+    #[serde(default = "adjoint_out")]
+    pub adjoint_out: PathBuf,
+    /// What its fields are called, where the format has no names.
+    #[serde(default)]
+    pub adjoint_fields: Vec<String>,
     /// A JSON file that the program writes, an object of numbers: {"drag": 0.02}.
     pub functionals: Option<PathBuf>,
     /// Functionals found in what the program prints: the last match of a regular expression, the number in its first parentheses.
@@ -45,12 +53,22 @@ fn solution_out() -> PathBuf {
     "solution.solb".into()
 }
 
+fn adjoint_out() -> PathBuf {
+    "adjoint.solb".into()
+}
+
 /// What may stand in braces.
-const PLACES: [&str; 8] = ["mesh", "solution_in", "solution_out", "fields", "folder", "config", "cycle", "threads"];
+const PLACES: [&str; 9] =
+    ["mesh", "solution_in", "solution_out", "fields", "folder", "config", "cycle", "threads", "adjoint_out"];
 
 impl Config {
-    /// The command with its places filled.
-    fn filled(&self, job: &Job<'_>) -> Result<String, String> {
+    /// The commands, each with its key.
+    fn commands(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        [("run", self.run.as_str())].into_iter().chain(self.adjoint.as_deref().map(|adjoint| ("adjoint", adjoint)))
+    }
+
+    /// A command with its places filled.
+    fn filled(&self, command: (&str, &str), job: &Job<'_>) -> Result<String, String> {
         let before = job.before.as_ref().map_or_else(|| "none".into(), |_| text(&job.folder.join(&self.solution_in)));
         let values = [
             text(&job.folder.join(&self.mesh)),
@@ -61,32 +79,9 @@ impl Config {
             text(job.base),
             job.cycle.to_string(),
             job.threads.to_string(),
+            text(&job.folder.join(&self.adjoint_out)),
         ];
-        self.replace(|name| PLACES.iter().position(|place| *place == name).map(|at| quoted(&values[at])))
-    }
-
-    /// The command with each {name} replaced; {{ is a brace, and so is }}. What comes in for a name stays as it is.
-    fn replace(&self, value: impl Fn(&str) -> Option<String>) -> Result<String, String> {
-        let (mut filled, mut rest) = (String::new(), self.run.as_str());
-        let plain = |text: &str| text.replace("}}", "}");
-        while let Some(at) = rest.find('{') {
-            filled += &plain(&rest[..at]);
-            rest = &rest[at + 1..];
-            if let Some(after) = rest.strip_prefix('{') {
-                filled.push('{');
-                rest = after;
-                continue;
-            }
-            let Some((name, after)) = rest.split_once('}') else {
-                return Err("[solver.command] run: a { without its }; write {{ for a brace of the shell".into());
-            };
-            filled += &value(name).ok_or_else(|| {
-                let known = PLACES.map(|place| format!("{{{place}}}")).join(" ");
-                format!("[solver.command] run: {{{name}}} is not known; there are {known}, and {{{{ for a brace of the shell")
-            })?;
-            rest = after;
-        }
-        Ok(filled + &plain(rest))
+        replace(command, |name| PLACES.iter().position(|place| *place == name).map(|at| quoted(&values[at])))
     }
 
     fn patterns(&self) -> Result<Vec<(&String, Regex)>, String> {
@@ -101,15 +96,45 @@ impl Config {
     }
 }
 
+/// A command, given with its key, with each {name} replaced; {{ is a brace, and so is }}. What comes in for a name stays as it is.
+fn replace((key, command): (&str, &str), value: impl Fn(&str) -> Option<String>) -> Result<String, String> {
+    let (mut filled, mut rest) = (String::new(), command);
+    let plain = |text: &str| text.replace("}}", "}");
+    while let Some(at) = rest.find('{') {
+        filled += &plain(&rest[..at]);
+        rest = &rest[at + 1..];
+        if let Some(after) = rest.strip_prefix('{') {
+            filled.push('{');
+            rest = after;
+            continue;
+        }
+        let Some((name, after)) = rest.split_once('}') else {
+            return Err(format!("[solver.command] {key}: a {{ without its }}; write {{{{ for a brace of the shell"));
+        };
+        filled += &value(name).ok_or_else(|| {
+            let known = PLACES.map(|place| format!("{{{place}}}")).join(" ");
+            format!(
+                "[solver.command] {key}: {{{name}}} is not known; there are {known}, and {{{{ for a brace of the shell"
+            )
+        })?;
+        rest = after;
+    }
+    Ok(filled + &plain(rest))
+}
+
 impl Solver for Config {
     fn check(&self, _: &Path) -> Result<(), String> {
-        self.replace(|name| PLACES.contains(&name).then(String::new))?;
+        for command in self.commands() {
+            replace(command, |name| PLACES.contains(&name).then(String::new))?;
+        }
         self.patterns()?;
         handover::check_mesh_format(&self.mesh).map_err(|error| format!("[solver.command] mesh: {error}"))?;
         handover::check_field_format(&self.solution_in)
             .map_err(|error| format!("[solver.command] solution_in: {error}"))?;
         handover::check_solution_format(&self.solution_out)
             .map_err(|error| format!("[solver.command] solution_out: {error}"))?;
+        handover::check_solution_format(&self.adjoint_out)
+            .map_err(|error| format!("[solver.command] adjoint_out: {error}"))?;
         Ok(())
     }
 
@@ -140,19 +165,28 @@ impl Solver for Config {
         if job.before.is_some() {
             handover::write_fields(&job.folder.join(&self.solution_in), &data)?;
         }
-        let words = vec!["sh".into(), "-c".into(), self.filled(job)?];
-        Ok(vec![Call { words, env: Vec::new(), folder: job.folder.to_path_buf() }])
+        let call = |command| {
+            let words = vec!["sh".into(), "-c".into(), self.filled(command, job)?];
+            Ok(Call { words, env: Vec::new(), folder: job.folder.to_path_buf() })
+        };
+        self.commands().map(call).collect()
     }
 
     fn collect(&self, job: &Job<'_>) -> Result<Solved, String> {
-        let path = job.folder.join(&self.solution_out);
-        if !path.is_file() {
-            return Err(format!(
-                "{}: the command ended well but did not write this; let it write to {{solution_out}}",
-                path.display()
-            ));
+        let written = |name: &Path, place: &str, names: &[String]| {
+            let path = job.folder.join(name);
+            if !path.is_file() {
+                return Err(format!(
+                    "{}: the command ended well but did not write this; let it write to {{{place}}}",
+                    path.display()
+                ));
+            }
+            handover::read_fields(&path, job, names)
+        };
+        let mut fields = written(&self.solution_out, "solution_out", &self.fields)?;
+        if self.adjoint.is_some() {
+            fields.extend(written(&self.adjoint_out, "adjoint_out", &self.adjoint_fields)?);
         }
-        let fields = handover::read_fields(&path, job, &self.fields)?;
         let mut functionals = BTreeMap::new();
         if let Some(file) = &self.functionals {
             let path = job.folder.join(file);
@@ -206,17 +240,20 @@ mod tests {
         }
     }
 
+    fn filled(run: &str, job: &Job<'_>) -> String {
+        config(run).filled(("run", run), job).unwrap()
+    }
+
     #[test]
     fn places_are_filled_and_quoted() {
-        let filled =
-            config("python {config}/s.py {mesh} {solution_in} -n {threads} ${{HOME}} {cycle}").filled(&job()).unwrap();
+        let filled = filled("python {config}/s.py {mesh} {solution_in} -n {threads} ${{HOME}} {cycle}", &job());
         assert_eq!(filled, "python /case/s.py '/out/a b/mesh.meshb' none -n 2 ${HOME} 3");
     }
 
     #[test]
     fn braces_in_the_name_of_a_folder_stay() {
         let job = Job { folder: Path::new("/out/{{a}}"), base: Path::new("/ca}}se"), ..job() };
-        let filled = config("cd {folder}; {config}/s ${{HOME}} {cycle}}}").filled(&job).unwrap();
+        let filled = filled("cd {folder}; {config}/s ${{HOME}} {cycle}}}", &job);
         assert_eq!(filled, "cd '/out/{{a}}'; '/ca}}se'/s ${HOME} 3}");
     }
 
@@ -225,6 +262,9 @@ mod tests {
         let refused = |run: &str| config(run).check(Path::new("/")).unwrap_err();
         assert!(refused("s {msh}").contains("{msh} is not known; there are {mesh}"));
         assert!(refused("s {mesh").contains("without its }"));
+        let mut adjoint = config("s");
+        adjoint.adjoint = Some("a {adjoint}".into());
+        assert!(adjoint.check(Path::new("/")).unwrap_err().contains("adjoint: {adjoint} is not known"));
         let mut pattern = config("s");
         pattern.printed.insert("drag".into(), "CD = [0-9.]+".into());
         assert!(pattern.check(Path::new("/")).unwrap_err().contains("parentheses"));

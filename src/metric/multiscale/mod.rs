@@ -176,6 +176,23 @@ pub fn multiscale_of_hessians(
     bounded(team, mesh, &raw, &Bounds { limits, ..options.bounds })
 }
 
+/// The metric of one |H| at the vertices, as that of a sensor is made. `rings` are those of the mesh.
+pub(super) fn of_absolute(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    rings: Rings,
+    found: &sensor::Absolute,
+    options: &Options<'_>,
+) -> Result<(Vec<Sym3>, Summary), Error> {
+    let diameter = diameter(team, mesh);
+    let limits = within(options.bounds.limits, diameter);
+    let hmax = limits.hmax.unwrap_or(diameter);
+    let raw = optimal_logs(team, mesh, (&found.hessians, found.floor), options, hmax)?;
+    let medium = InMemory { team, mesh, around: Some(rings.into_neighbours()), raw: &raw };
+    let (logs, summary) = meet(&medium, &Bounds { limits, ..options.bounds })?;
+    Ok((logs, Summary { unfitted: found.unfitted, ..summary }))
+}
+
 /// The limits, where no size is above the diameter.
 pub(super) fn within(limits: Limits, diameter: f64) -> Limits {
     Limits { hmax: Some(limits.hmax.unwrap_or(diameter).min(diameter)), ..limits }

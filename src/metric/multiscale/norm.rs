@@ -8,6 +8,8 @@ use std::str::FromStr;
 pub struct Norm(f64);
 
 impl Norm {
+    /// L¹.
+    pub const ONE: Self = Self(1.0);
     /// The greatest error.
     pub const MOST: Self = Self(f64::INFINITY);
 

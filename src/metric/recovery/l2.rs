@@ -27,6 +27,17 @@ pub fn hessians(team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -
     })
 }
 
+/// The gradients of N fields at `count` vertices, with a value of each at a vertex.
+pub fn gradients_of<const N: usize>(
+    team: Team<'_>,
+    mesh: &TetMesh,
+    rings: &Rings,
+    count: usize,
+    value: impl Fn(u32) -> [f64; N] + Sync,
+) -> Vec<[Vec3; N]> {
+    team.map(VERTICES, count, |v| gradient(mesh, rings, v as u32, &value))
+}
+
 /// Mean gradient of N fields over the tetrahedra at a vertex, weighted by volume; zero where they have none.
 #[inline(always)]
 fn gradient<const N: usize>(mesh: &TetMesh, rings: &Rings, vertex: u32, value: impl Fn(u32) -> [f64; N]) -> [Vec3; N] {

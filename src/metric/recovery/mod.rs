@@ -9,10 +9,12 @@ mod rings;
 #[cfg(test)]
 mod tests;
 
+pub(super) use l2::gradients_of;
 pub use rings::Rings;
 
 use super::Sym3;
 use crate::mesh::TetMesh;
+use crate::mesh::vector::Vec3;
 use crate::tasks::Team;
 use serde::Serialize;
 
@@ -56,4 +58,13 @@ impl Recovery {
             Self::L2 => (l2::hessians(team, mesh, rings, values), 0),
         }
     }
+}
+
+/// The gradient at the vertices of a mesh, shape (n,), of a field with these values there, shape (n,), in the field's units over length: those of the
+/// elements, averaged by volume (Clément 1975). `rings` are those of the mesh.
+pub fn gradients(team: Team<'_>, mesh: &TetMesh, rings: &Rings, values: &[f64]) -> Vec<Vec3> {
+    gradients_of(team, mesh, rings, values.len(), |v| [values[v as usize]])
+        .into_iter()
+        .map(|[gradient]| gradient)
+        .collect()
 }

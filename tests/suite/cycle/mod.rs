@@ -1,5 +1,6 @@
 //! `geo-adapt cycle`: loops with solvers.
 mod browser;
+mod goal;
 mod loops;
 mod openfoam;
 mod openfoam_viscous;
