@@ -8,16 +8,19 @@ pub fn rows(path: &Path) -> u64 {
     text.lines().filter(|line| !line.trim().is_empty()).skip(1).count() as u64
 }
 
-/// Refuses a table that ends in what is no number.
+/// Refuses a table whose residuals end in what is no number. Other columns may: SU2 divides by what is 0.
 ///
 /// # Errors
 /// What is wrong, or that it is not there.
 pub fn is_finite(path: &Path) -> Result<(), String> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let text = std::fs::read_to_string(path).map_err(|error| named(&error))?;
-    let last = text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default();
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let (head, last) = (lines.next().unwrap_or_default(), lines.next_back().unwrap_or_default());
+    let is_residual = |name: &str| name.trim().trim_matches('"').starts_with("rms");
     let is_finite = |word: &str| word.trim().parse::<f64>().is_ok_and(f64::is_finite);
-    match last.split(',').find(|word| !is_finite(word)) {
+    let residuals = head.split(',').zip(last.split(',')).filter(|(name, _)| is_residual(name));
+    match residuals.map(|(_, word)| word).find(|word| !is_finite(word)) {
         None => Ok(()),
         Some(word) => Err(named(&format!("{} in the last row is no number: SU2 has diverged", word.trim()))),
     }
@@ -67,5 +70,8 @@ mod tests {
         );
         std::fs::write(&path, text.replace("0.288", "-nan")).unwrap();
         assert!(last(&path, &["CL".into()]).unwrap_err().contains("diverge"));
+        assert_eq!((is_finite(&path), rows(&path)), (Ok(()), 2));
+        std::fs::write(&path, text.replace("-3.1", "nan")).unwrap();
+        assert!(is_finite(&path).unwrap_err().contains("nan in the last row is no number"));
     }
 }
