@@ -48,7 +48,7 @@ pub use interpolation::Interpolation;
 pub use intersection::intersect_all;
 pub use limit::Limits;
 pub use ratios::mean_ratios;
-pub use restriction::restrict;
+pub use restriction::{restrict, restrict_linear};
 pub use scalar::Scalar;
 pub use source::Source;
 pub use statistics::{Distribution, Figures, Lengths, Statistics};

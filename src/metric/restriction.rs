@@ -42,10 +42,74 @@ struct Said {
 /// (n,). Returns how many vertices were changed: none on a mesh that resolves the metric.
 pub fn restrict(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3], ratio: f64) -> usize {
     let steep = steep(team, mesh, logs, ratio.ln());
+    enlarge(&steep, logs)
+}
+
+/// As [`restrict`], of a metric whose sizes are nearly linear between the vertices of any mesh already, as those of layers that grow with the distance
+/// from a wall: then the complexity that a tetrahedron ought to have follows from its corners by a formula.
+pub fn restrict_linear(team: Team<'_>, mesh: &TetMesh, logs: &mut [Sym3]) -> usize {
+    let sizes = team.map(GRAIN, logs.len(), |v| -0.5 * logs[v].eigen().values[2]);
+    let steep = team.collect(GRAIN, mesh.tets.len(), |range, steep| {
+        for &nodes in &mesh.tets.nodes[range] {
+            let densities = nodes.map(|v| density(&logs[v as usize]));
+            let (least, most) = ends(densities);
+            if most - least <= ALIKE.ln() {
+                continue;
+            }
+            let (thin, thick) = ends(nodes.map(|v| sizes[v as usize]));
+            let mean = most.exp() * mean_of_linear(densities.map(|x| most - x), power(most - least, thick - thin));
+            let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
+            let volume = volume6(a, b, c, d) / 6.0;
+            if mean_exponential(densities) > MORE * mean {
+                steep.push(Steep { nodes, volume, wanted: volume * mean });
+            }
+        }
+    });
+    enlarge(&steep, logs)
+}
+
+/// The least and the greatest.
+fn ends(values: [f64; 4]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)))
+}
+
+/// The power k by which √det M falls as the least size grows, from the differences of their logarithms: 1 where only the least size does, 3 where all
+/// do. Where the least size does not change, another one does, by itself.
+fn power(densities: f64, sizes: f64) -> f64 {
+    let power = densities / sizes;
+    if power < 3.5 { power.clamp(1.0, 3.0) } else { 1.0 }
+}
+
+/// The mean of q^(−k) over a tetrahedron in which q is linear, of q = e^(x/k) at the corners, x ≥ 0: f''' = q^(−k) has the mean 3! f[q_0, q_1, q_2, q_3]
+/// (Hermite and Genocchi).
+fn mean_of_linear(exponents: [f64; 4], power: f64) -> f64 {
+    // The formula has no value at whole k.
+    let power = if (power - power.round()).abs() < OFF_WHOLE { power.round() + OFF_WHOLE } else { power };
+    let mut q = exponents.map(|x| (x / power).exp());
+    q.sort_by(f64::total_cmp);
+    for i in 1..4 {
+        q[i] = q[i].max(q[i - 1] * (1.0 + APART));
+    }
+    let rising = (1.0 - power) * (2.0 - power) * (3.0 - power);
+    let mut differences = q.map(|q| q.powf(3.0 - power) / rising);
+    for order in 1..4 {
+        for i in 0..4 - order {
+            differences[i] = (differences[i + 1] - differences[i]) / (q[i + order] - q[i]);
+        }
+    }
+    (6.0 * differences[0]).clamp(q[3].powf(-power), q[0].powf(-power))
+}
+
+/// How far k is from a whole number, and by what share two q differ at least.
+const OFF_WHOLE: f64 = 1e-3;
+const APART: f64 = 1e-2;
+
+/// Enlarges sizes at the finest vertices of these tetrahedra. Returns at how many.
+fn enlarge(steep: &[Steep], logs: &mut [Sym3]) -> usize {
     let mut changed = vec![false; if steep.is_empty() { 0 } else { logs.len() }];
     for _ in 0..ROUNDS {
         let mut said: BTreeMap<u32, Said> = BTreeMap::new();
-        for tet in &steep {
+        for tet in steep {
             let densities = tet.nodes.map(|v| density(&logs[v as usize]));
             let found = tet.volume * mean_exponential(densities);
             if found <= MORE * tet.wanted {
@@ -86,8 +150,7 @@ fn steep(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3], growth: f64) -> Vec<Stee
     team.collect(GRAIN, mesh.tets.len(), |range, steep| {
         for &nodes in &mesh.tets.nodes[range] {
             let densities = nodes.map(|v| density(&logs[v as usize]));
-            let (least, most) =
-                densities.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
+            let (least, most) = ends(densities);
             if most - least <= ALIKE.ln() {
                 continue;
             }
@@ -158,6 +221,50 @@ mod tests {
     use super::*;
     use crate::mesh::samples::cube;
     use crate::mesh::vector::norm;
+
+    /// Against the sum over many layers of the tetrahedron.
+    #[test]
+    fn the_mean_of_a_power_of_what_is_linear() {
+        for k in [1.0, 1.3, 1.5, 2.0, 2.7, 3.0] {
+            for exponents in
+                [[0.0, 0.0, 0.0, 9.0], [0.0, 9.0, 9.1, 9.2], [0.0, 2.0, 5.0, 14.0], [0.0, 0.0, 7.0, 7.0], [0.0; 4]]
+            {
+                let q = exponents.map(|x: f64| (x / k).exp());
+                let parts = 48;
+                let mut sum = 0.0;
+                for (i, j, l) in
+                    (0..parts).flat_map(|i| (0..parts).flat_map(move |j| (0..parts).map(move |l| (i, j, l))))
+                {
+                    // A cube's points to a tetrahedron's, finer about the first corner, the edge and the side to the next ones.
+                    let at = |i: i32| (f64::from(i) + 0.5) / f64::from(parts);
+                    let (a, b, c) = (at(i).powi(6), at(j).powi(6), at(l).powi(6));
+                    let slope = (6.0 * at(i).powi(5)) * (6.0 * at(j).powi(5)) * (6.0 * at(l).powi(5));
+                    let weights = [(1.0 - a), a * (1.0 - b), a * b * (1.0 - c), a * b * c];
+                    let value: f64 = weights.iter().zip(q).map(|(w, q)| w * q).sum();
+                    sum += 6.0 * a * a * b * slope * value.powf(-k) / f64::from(parts).powi(3);
+                }
+                let found = mean_of_linear(exponents, k);
+                assert!((found / sum - 1.0).abs() < 0.05, "{k} {exponents:?}: {found} {sum}");
+            }
+        }
+    }
+
+    /// Layers of 1e-5 and cells of a third: as if sizes were linear between, and no change on a mesh that resolves them.
+    #[test]
+    fn layers_on_a_coarse_mesh_have_the_complexity_of_linear_sizes() {
+        let log = |z: f64| Sym3::diagonal(2.0, 2.0, -2.0 * (1e-5 + 0.2 * z).ln());
+        let mut mesh = cube(3);
+        let mut logs: Vec<Sym3> = mesh.vertices.iter().map(|p| log(p[2])).collect();
+        let asked = logs.clone();
+        assert!(restrict_linear(Team::alone(), &mesh, &mut logs) > 8);
+        let exact = std::f64::consts::E.powi(2) * (0.20001f64 / 1e-5).ln() / 0.2;
+        assert!(complexity_between(Team::alone(), &mesh, &asked) > 20.0 * exact);
+        let found = complexity_between(Team::alone(), &mesh, &logs);
+        assert!(found > 0.7 * exact && found < 2.0 * exact, "{found} {exact}");
+        mesh.vertices.iter_mut().for_each(|p| p[2] *= 3e-4);
+        let mut logs: Vec<Sym3> = mesh.vertices.iter().map(|p| log(p[2])).collect();
+        assert_eq!(restrict_linear(Team::alone(), &mesh, &mut logs), 0);
+    }
 
     #[test]
     fn a_coarse_mesh_has_the_complexity_of_sizes_that_grow_in_proportion() {

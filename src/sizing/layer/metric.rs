@@ -9,7 +9,7 @@ use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
 use crate::metric::field::complexity_between;
 use crate::metric::multiscale::{self, Bounds, Measure, Norm, Unreachable, bounded, multiscale_of_hessians, reach};
-use crate::metric::{Interpolation, Limits, Sym3, intersect_all, restrict};
+use crate::metric::{Interpolation, Limits, Sym3, intersect_all, restrict_linear};
 use crate::tasks::{GRAIN, Team, stage};
 use serde::Serialize;
 
@@ -82,7 +82,7 @@ impl From<Unreachable> for Error {
 /// derivatives u⁺″ n nᵀ + u⁺′ ∇²d, from which the multiscale metric of the complexity follows.
 ///
 /// Who uses a metric interpolates ln M between the vertices, and sizes of 1e-6 and of 0.1 at the ends of an edge ask so for a hundred times the
-/// cells that the layers between need. So, unless `exact`, sizes at the finest vertices of such tetrahedra are enlarged ([`restrict`]): a mesh that is adapted to
+/// cells that the layers between need. So, unless `exact`, sizes at the finest vertices of such tetrahedra are enlarged ([`restrict_linear`]): a mesh that is adapted to
 /// these is finer there, and can be given more of them. A mesh that resolves the layers keeps all sizes.
 ///
 /// # Errors
@@ -111,9 +111,8 @@ pub fn wall_metric(
     let mut enlarged = 0;
     let mut layered = |along: f64| {
         let mut logs = layers(team, &prescribed, mesh.vertices.len(), outside, along);
-        let least = prescribed.iter().map(|(_, growth)| growth.growth).fold(f64::INFINITY, f64::min);
-        if !options.exact && least.is_finite() {
-            enlarged = restrict(team, mesh, &mut logs, (least - 1.0).exp());
+        if !options.exact {
+            enlarged = restrict_linear(team, mesh, &mut logs);
         }
         logs
     };
