@@ -37,7 +37,7 @@ BOUNDS = {
         Bound("error / J", "≤", 1e-3), Bound("vertices", "≤", 20_000, 20_000),
     ],
 }
-SHORT = {"advection": 4000, "corner": 2000, "sphere": 4000}
+SHORT = {"advection": 2000, "corner": 2000, "sphere": 4000}
 
 
 def told(problem, expression):
