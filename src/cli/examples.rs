@@ -20,6 +20,7 @@ const EXAMPLES: [(&str, &[&str]); 39] = [
             "geo-adapt adapt a.meshb --cad wing.step --metric sizes.solb -o b.meshb --report b.json",
             "geo-adapt adapt flow.vtu --field Mach --vertices 100000 -o b.vtu",
             "geo-adapt adapt a.meshb --metric sizes.solb --freeze inlet,region:2 -o b.meshb",
+            "geo-adapt adapt a.meshb --cad wing.step --goal terms.toml --complexity 50000 -o b.meshb",
         ],
     ),
     (

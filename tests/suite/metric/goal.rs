@@ -64,7 +64,7 @@ fn sizes_are_small_where_the_weight_is() {
     assert_eq!((&told["goal"]["terms"], &told["goal"]["norm"]), (&1.into(), &1.0.into()));
     let table = run(&work, &path, &["--terms", &terms, "--vertices", "4000"]).stdout;
     let table = String::from_utf8(table).unwrap();
-    for word in ["goal", "terms.toml (1 terms)", "boundary inside", "L^1", "complexity reached"] {
+    for word in ["goal", "terms.toml (1 term)", "boundary inside", "L^1", "complexity reached"] {
         assert!(table.contains(word), "{word} is not in\n{table}");
     }
     // The mesh is adapted to the same in one command.

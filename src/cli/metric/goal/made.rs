@@ -56,7 +56,8 @@ impl Made {
     /// Rows of a table that tell what was done.
     pub fn rows(&self, table: &mut Table) {
         let Summary { complexity_before_gradation, complexity, limited, unfitted, rounds, .. } = self.summary;
-        table.row("goal", format_args!("{} ({} terms)", self.goal.display(), self.terms));
+        let plural = if self.terms == 1 { "term" } else { "terms" };
+        table.row("goal", format_args!("{} ({} {plural})", self.goal.display(), self.terms));
         table.row("hessian", format_args!("{}, on the boundary {}", self.hessian.name(), self.boundary.name()));
         if unfitted > 0 {
             table.row("hessian of neighbours", format_args!("{unfitted} vertices: too few points around them"));
