@@ -130,9 +130,7 @@ impl InputArguments {
         let mut how = How::default();
         let (logs, cut) = match raw.logs.or(uniform) {
             Some(logs) if !self.is_bounded() => (logs, None),
-            Some(logs) => {
-                self.bounded(team, mesh, on, (logs, by_others), (complexity, notices)).map_err(named)?
-            }
+            Some(logs) => self.bounded(team, mesh, on, (logs, by_others), (complexity, notices)).map_err(named)?,
             None => {
                 let complexity = complexity.ok_or("--field and --goal need a --complexity or --vertices")?;
                 let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
