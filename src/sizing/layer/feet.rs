@@ -32,9 +32,10 @@ impl Feet {
             growth.reach(feet.iter().map(size).fold(outside.greatest, f64::min))
         };
         let parts = team.chunks(VERTICES, mesh.vertices.len(), |range| {
-            let (mut evaluator, mut feet, mut ends) = (model.evaluator(), Vec::new(), Vec::new());
+            let (mut evaluator, mut feet, mut ends, mut asked) =
+                (model.evaluator(), Vec::new(), Vec::new(), Vec::new());
             for v in range {
-                search.feet(&mut evaluator, v, reach, &mut feet);
+                search.feet(&mut evaluator, v, reach, (&mut feet, &mut asked));
                 ends.push(feet.len());
             }
             (feet, ends)

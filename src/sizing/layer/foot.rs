@@ -40,11 +40,22 @@ impl Foot {
         bent.plus(Sym3::outer(self.normal, second))
     }
 
-    /// At a point of the wall itself, by its face and parameters. None where the face has no normal.
-    pub fn on_wall(evaluator: &mut Evaluator, topology: &Topology, face: u32, uv: [f64; 2]) -> Option<Self> {
+    /// At a point of the wall itself, by its face and parameters.
+    pub fn on_wall(evaluator: &mut Evaluator, topology: &Topology, face: u32, uv: [f64; 2]) -> Self {
         let frame = regular_frame(evaluator, topology, face, uv);
-        is_unit(frame.normal).then(|| Self::inside(&frame, 0.0, scale(frame.normal, -1.0)))
+        if is_unit(frame.normal) { Self::inside(&frame, 0.0, scale(frame.normal, -1.0)) } else { Self::APEX }
     }
+
+    /// At an apex, where a wall has no normal: as thin in all directions.
+    const APEX: Self = Self {
+        distance: 0.0,
+        normal: [0.0, 0.0, 1.0],
+        directions: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        curvatures: [0.0; 2],
+        bends: [f64::INFINITY; 2],
+        radii: [0.0; 2],
+        is_inside: false,
+    };
 
     /// Of a point off the wall, by the closest point of a face. `exact` is how exact that is.
     pub fn off_wall(
@@ -61,6 +72,9 @@ impl Foot {
         let along = if topology.faces[face as usize].kind == SurfaceKind::Discrete { ALONG_TRIANGLES } else { ALONG };
         if is_unit(frame.normal) && aside <= along * distance + exact {
             return Self::inside(&frame, distance, if distance > exact { normal } else { facing(&frame, way) });
+        }
+        if !is_unit(normal) {
+            return Self { distance, ..Self::APEX };
         }
         Self::border(evaluator, topology, (face, on.point), (normal, distance), exact)
     }

@@ -107,48 +107,52 @@ impl<'a> Search<'a> {
     }
 
     /// Adds the feet of a vertex: on the wall one for each of its faces there, else the nearest; and those on the faces beside, which make a
-    /// corner with these, where they are nearer than `reach` tells from the feet so far and the vertex is before them.
+    /// corner with these, where they are nearer than `reach` tells from the feet so far and the vertex is before them. `asked` is room for faces.
     pub fn feet(
         &self,
         evaluator: &mut Evaluator,
         vertex: usize,
         reach: impl Fn(&[Foot]) -> f64,
-        found: &mut Vec<Foot>,
+        (found, asked): (&mut Vec<Foot>, &mut Vec<u32>),
     ) {
         let (point, begin) = (self.place.projected[vertex], found.len());
-        let mut of: Vec<u32> = Vec::new();
+        asked.clear();
         if self.is_on(self.place.entities[vertex]) {
             for (face, uv) in own_faces(self.topology, self.place, evaluator, vertex) {
                 // A vertex may lie on two edges of a face, whose normals there are the same.
-                if self.faces.binary_search(&face).is_ok() && !of.contains(&face) {
-                    found.extend(Foot::on_wall(evaluator, self.topology, face, uv));
-                    of.push(face);
+                if self.faces.binary_search(&face).is_ok() && !asked.contains(&face) {
+                    found.push(Foot::on_wall(evaluator, self.topology, face, uv));
+                    asked.push(face);
                 }
             }
         }
         if found.len() == begin {
             let nearest = self.nearest(evaluator, vertex);
             found.push(Foot::off_wall(evaluator, self.topology, nearest, point, self.exact));
-            of.push(nearest.0);
+            asked.push(nearest.0);
         }
-        let mut asked = of.clone();
-        for other in of.iter().filter_map(|face| self.beside.get(face)).flatten() {
-            if asked.contains(other) {
-                continue;
-            }
-            asked.push(*other);
-            let limit = reach(&found[begin..]);
-            if away(point, &self.topology.faces[*other as usize].bounds) >= limit {
-                continue;
-            }
-            let Some(on) = evaluator.closest_on_face_within(*other, point, limit) else { continue };
-            let foot = Foot::off_wall(evaluator, self.topology, (*other, on), point, self.exact);
-            // Outward is out of the mesh: who looks at the back of a face has the body between.
-            let is_before = dot(foot.normal, evaluator.face_normal(*other, on.uv)) < 0.0;
-            if foot.is_inside && is_before && foot.distance > self.exact {
-                found.push(foot);
+        for k in 0..asked.len() {
+            let beside = self.beside.get(&asked[k]).map_or(&[][..], Vec::as_slice);
+            for &other in beside {
+                if asked.contains(&other) {
+                    continue;
+                }
+                asked.push(other);
+                found.extend(self.foot_before(evaluator, point, other, reach(&found[begin..])));
             }
         }
+    }
+
+    /// The foot of a point on a face that it lies before, nearer than a limit.
+    fn foot_before(&self, evaluator: &mut Evaluator, point: Vec3, face: u32, limit: f64) -> Option<Foot> {
+        if away(point, &self.topology.faces[face as usize].bounds) >= limit {
+            return None;
+        }
+        let on = evaluator.closest_on_face_within(face, point, limit)?;
+        let foot = Foot::off_wall(evaluator, self.topology, (face, on), point, self.exact);
+        // Outward is out of the mesh: who looks at the back of a face has the body between.
+        let is_before = dot(foot.normal, evaluator.face_normal(face, on.uv)) < 0.0;
+        (foot.is_inside && is_before && foot.distance > self.exact).then_some(foot)
     }
 }
 
