@@ -260,7 +260,7 @@ mod tests {
         let exact = std::f64::consts::E.powi(2) * (0.20001f64 / 1e-5).ln() / 0.2;
         assert!(complexity_between(Team::alone(), &mesh, &asked) > 20.0 * exact);
         let found = complexity_between(Team::alone(), &mesh, &logs);
-        assert!(found > 0.7 * exact && found < 2.0 * exact, "{found} {exact}");
+        assert!(found > 0.5 * exact && found < 2.0 * exact, "{found} {exact}");
         mesh.vertices.iter_mut().for_each(|p| p[2] *= 3e-4);
         let mut logs: Vec<Sym3> = mesh.vertices.iter().map(|p| log(p[2])).collect();
         assert_eq!(restrict_linear(Team::alone(), &mesh, &mut logs), 0);

@@ -99,7 +99,7 @@ fn bootstrapped(work: &Workplace, path: &Path) -> (TetMesh, Model, Classificatio
 /// On spline faces, against OpenCASCADE's own search at each vertex on each face; and bit for bit on any number of threads.
 #[test]
 fn distances_from_several_spline_faces_are_those_of_opencascade() {
-    for name in ["nurbs-torus.brep", "vase.brep"] {
+    for name in ["blade.brep", "duct.brep"] {
         let work = Workplace::new();
         let (mesh, model, place) = bootstrapped(&work, &data(name));
         let Model::Occt(occt) = &model else { panic!("a CAD model") };
@@ -117,7 +117,7 @@ fn distances_from_several_spline_faces_are_those_of_opencascade() {
             assert!((found[v] - expected).abs() < 1e-7 * diagonal, "{name} {} {expected} at {p:?}", found[v]);
             looked += 1;
         }
-        assert!(looked > 100, "{name} {looked}");
+        assert!(looked > 50, "{name} {looked}");
         let pool = Pool::new(3).unwrap();
         let again = distances(Team::new(&pool, Plan::default()), &mesh, &place, &model, &faces);
         assert!(again.iter().zip(&found).all(|(a, b)| a.to_bits() == b.to_bits()), "{name}");

@@ -53,7 +53,9 @@ pub fn only_with_field(command: clap::Command) -> clap::Command {
     let options = fields::OF_MADE.into_iter().chain(["segments", "feature_cells", "no_geometry"]);
     let command = options.fold(command, |command, name| command.mut_arg(name, |option| option.requires(MADE)));
     let of_field = fields::OF_FIELD.into_iter();
-    let command = of_field.fold(command, |command, name| command.mut_arg(name, |option| option.requires("field")));
+    // What conflicts with what is given is not asked for: so it does not suffice that they require --field.
+    let only = |option: clap::Arg| option.requires("field").conflicts_with("goal");
+    let command = of_field.fold(command, |command, name| command.mut_arg(name, only));
     let bounds = fields::BOUNDS.into_iter().chain(["local", "walls", "limit_chords"]);
     bounds.fold(command, |command, name| command.mut_arg(name, |option| option.conflicts_with("analytic")))
 }

@@ -3,9 +3,9 @@ use crate::geometry::{Evaluate, Evaluator, OnSurface, SurfaceFrame, SurfaceKind,
 use crate::mesh::vector::{Vec3, add, cross, dot, norm, scale, sub, unit};
 use crate::metric::{Sym3, plane_basis};
 
-/// The way from a face's closest point is along its normal if this share of it at most is across: 3° on a CAD model. Else the closest point is
+/// The way from a face's closest point is along its normal if this share of it at most is across: 0.1° on a CAD model. Else the closest point is
 /// on the face's border, and the distance is that from an edge or a vertex.
-const ALONG: f64 = 0.05;
+const ALONG: f64 = 2e-3;
 /// The same on triangles that stand for a smooth surface, whose normals turn from one to the next: 30°.
 const ALONG_TRIANGLES: f64 = 0.5;
 /// At a pole or an apex the curvatures are those at parameters so far towards the middle of the face.
