@@ -96,7 +96,8 @@ fn bootstrapped(work: &Workplace, path: &Path) -> (TetMesh, Model, Classificatio
     (mesh, model, place)
 }
 
-/// On spline faces, against OpenCASCADE's own search at each vertex on each face; and bit for bit on any number of threads.
+/// On spline faces, against OpenCASCADE's own search at each vertex on each face, which misses some closest points on the blade; and bit for bit on any
+/// number of threads.
 #[test]
 fn distances_from_several_spline_faces_are_those_of_opencascade() {
     for name in ["blade.brep", "duct.brep"] {
@@ -106,7 +107,7 @@ fn distances_from_several_spline_faces_are_those_of_opencascade() {
         let faces: Vec<u32> = (0..model.topology().faces.len() as u32).collect();
         let found = distances(Team::alone(), &mesh, &place, &model, &faces);
         let (evaluator, diagonal) = (occt.evaluator(), model.topology().diagonal());
-        let mut looked = 0;
+        let (mut looked, mut missed) = (0, 0);
         for (v, &p) in mesh.vertices.iter().enumerate() {
             if place.entities[v] != Entity::Interior {
                 assert_eq!(found[v], 0.0);
@@ -114,10 +115,11 @@ fn distances_from_several_spline_faces_are_those_of_opencascade() {
             }
             let each = faces.iter().filter_map(|&face| evaluator.reference_distance(true, face, p));
             let expected = each.fold(f64::INFINITY, f64::min);
-            assert!((found[v] - expected).abs() < 1e-7 * diagonal, "{name} {} {expected} at {p:?}", found[v]);
+            assert!(found[v] < expected + 1e-7 * diagonal, "{name} {} {expected} at {p:?}", found[v]);
+            missed += usize::from(found[v] < expected - 1e-7 * diagonal);
             looked += 1;
         }
-        assert!(looked > 50, "{name} {looked}");
+        assert!(looked > 50 && 10 * missed < looked, "{name} {looked} {missed}");
         let pool = Pool::new(3).unwrap();
         let again = distances(Team::new(&pool, Plan::default()), &mesh, &place, &model, &faces);
         assert!(again.iter().zip(&found).all(|(a, b)| a.to_bits() == b.to_bits()), "{name}");
