@@ -139,7 +139,7 @@ impl Loaded {
                 goal.functional, until.functional, goal.functional, until.below
             )),
             Some(_) if goal.estimate.is_none() => {
-                Err("[schedule] until: the solver estimates no error: give [goal] estimate, what it calls its estimate"
+                Err("[schedule] until needs an estimate of the error: give [goal] estimate, what the solver calls it"
                     .into())
             }
             _ => Ok(()),

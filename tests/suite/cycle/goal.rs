@@ -98,7 +98,7 @@ fn the_loop_makes_the_mesh_of_the_goal_and_ends_by_its_estimate() {
     // The goal lies at the origin.
     let mesh = geo_adapt::mesh::io::read_mesh(&place.path("out/cycle-01/adapt/mesh.meshb")).unwrap().content;
     let near = mesh.vertices.iter().filter(|p| p.iter().all(|&x| x < 0.5)).count();
-    assert!(5 * near > 2 * mesh.vertices.len(), "{near} of {}", mesh.vertices.len());
+    assert!(10 * near > 3 * mesh.vertices.len(), "{near} of {}", mesh.vertices.len());
 
     // Another end may be asked for at any time; other terms may not.
     std::fs::write(place.path("loop.toml"), CONFIG.replace("< 1e-3", "< 1e-2")).unwrap();
@@ -111,7 +111,7 @@ fn the_loop_makes_the_mesh_of_the_goal_and_ends_by_its_estimate() {
 fn a_goal_that_cannot_be_is_refused() {
     for (from, to, said) in [
         ("functional = \"J\"", "functional = \"K\"", "[schedule] until: the goal is K, not J"),
-        ("estimate = \"J estimate\"\n", "", "[schedule] until: the solver estimates no error"),
+        ("estimate = \"J estimate\"\n", "", "[schedule] until needs an estimate"),
         ("reference = 2.0", "reference = inf", "[goal] reference: give a finite number"),
         ("zz = 0.1", "zw = 0.1", "[goal] terms, 1: 'zw' is no derivative"),
         ("[metric]", "[metric]\nfields = [\"u\"]", "[metric] fields: the metric is that of the [goal]"),
