@@ -34,6 +34,9 @@ const TOKEN: &str = "GEO_ADAPT_TOKEN";
 /// Arguments that are for the terminal here.
 const OURS: [&str; 2] = ["server", "verbose"];
 
+/// Arguments that name a file of the terms of a goal.
+const TERMS: [&str; 2] = ["terms", "goal"];
+
 /// What the service gives of its own.
 const LOG: &str = "log.txt";
 const PRINTED: &str = "printed.txt";
@@ -108,6 +111,9 @@ impl Sent {
         }
         let places = leaf.indices_of(id).into_iter().flatten();
         for (value, at) in leaf.get_raw(id).into_iter().flatten().zip(places) {
+            if TERMS.contains(&id) {
+                self.terms(Path::new(value))?;
+            }
             let value = if is_path {
                 self.name(Path::new(value), WRITTEN.contains(&id))?
             } else {
@@ -148,7 +154,7 @@ impl Sent {
         let name = self.free(base);
         self.read.insert(name.clone(), path.to_owned());
         let beside = [names::beside(path), names::beside_model(path)];
-        for other in formats::read_files(path).into_iter().chain(beside).chain(of_terms(path)?) {
+        for other in formats::read_files(path).into_iter().chain(beside) {
             let own = other.file_name().and_then(|name| name.to_str());
             let is_new = !self.read.values().any(|known| *known == other);
             if let Some(own) = own.filter(|_| is_new && other.is_file()) {
@@ -157,6 +163,21 @@ impl Sent {
             }
         }
         Ok(name)
+    }
+
+    /// The files that a file of terms names. There they are called as it says.
+    fn terms(&mut self, path: &Path) -> Result<(), String> {
+        for name in Asked::read(path)?.names() {
+            if name.components().count() != 1 {
+                let (path, name) = (path.display(), name.display());
+                return Err(format!("{path}: {name}: for a service the files of terms must lie beside it"));
+            }
+            let file = path.with_file_name(name);
+            if file.is_file() {
+                self.read.insert(name.to_string_lossy().into_owned(), file);
+            }
+        }
+        Ok(())
     }
 
     /// A name that is not taken yet.
@@ -181,20 +202,6 @@ impl Sent {
         let own = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         path.with_file_name(renamed(result, name, own))
     }
-}
-
-/// The files that a file of terms names (`metric goal --terms`). There they are called as it says.
-fn of_terms(path: &Path) -> Result<Vec<PathBuf>, String> {
-    if path.extension().is_none_or(|ending| ending != "toml") {
-        return Ok(Vec::new());
-    }
-    let beside = |name: &Path| match name.components().count() {
-        1 => Ok(path.with_file_name(name)),
-        _ => {
-            Err(format!("{}: {}: for a service the files of terms must lie beside it", path.display(), name.display()))
-        }
-    };
-    Asked::read(path)?.names().map(beside).collect()
 }
 
 /// What comes before the first dot of a name.
