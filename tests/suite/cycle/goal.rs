@@ -125,6 +125,8 @@ fn a_goal_that_cannot_be_is_refused() {
     // What only a solve tells.
     let refused = Place::new(&CONFIG.replace("\"J estimate\"", "\"guess\"")).refusal();
     assert!(refused.contains("[goal] estimate: the solver tells no 'guess'; it tells J, J estimate"), "{refused}");
-    let refused = Place::new(&CONFIG.replace("adjoint = \"lambda\"", "adjoint = \"mu\"")).refusal();
+    let run = Place::new(&CONFIG.replace("adjoint = \"lambda\"", "adjoint = \"mu\"")).run(&["--quiet"]);
+    let refused = stderr(&run);
+    assert_eq!(run.status.code(), Some(2), "{refused}");
     assert!(refused.contains("[goal] terms, 1: the solver has no field 'mu'; there are u, lambda"), "{refused}");
 }
