@@ -186,7 +186,7 @@ fn sizes_are_those_of_the_law_at_each_vertex() {
     // Between the vertices of so coarse a mesh sizes of 1e-4 cannot be interpolated, and are enlarged.
     let told = made(&arguments);
     assert!(told.contains("made larger"), "{told}");
-    let least = tensors(&out).iter().zip(&mesh.vertices).map(|(metric, &p)| length(metric, axes(p)[0]));
+    let least = tensors(&out).into_iter().zip(&mesh.vertices).map(|(metric, &p)| length(&metric, axes(p)[0]));
     let least = least.fold(f64::INFINITY, f64::min);
     assert!(least > 3e-4 && least < 0.02, "{least}");
 }
