@@ -8,7 +8,7 @@ use geo_adapt::geometry::{Entity, Evaluate, Geometry, Model};
 use geo_adapt::mesh::vector::{Vec3, add, dot, scale, unit};
 use geo_adapt::mesh::{TetMesh, io};
 use geo_adapt::metric::Sym3;
-use geo_adapt::sizing::layer::{Foot, distances};
+use geo_adapt::sizing::layer::{Foot, distances, from_triangles};
 use geo_adapt::tasks::{Plan, Pool, Team};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -96,8 +96,8 @@ fn bootstrapped(work: &Workplace, path: &Path) -> (TetMesh, Model, Classificatio
     (mesh, model, place)
 }
 
-/// On spline faces, against OpenCASCADE's own search at each vertex on each face, which misses some closest points on the blade; and bit for bit on any
-/// number of threads.
+/// On spline faces, against OpenCASCADE's own search at each vertex on each face, which misses some closest points on the blade, and against the mesh's
+/// triangles, whose chords are the difference; and bit for bit on any number of threads.
 #[test]
 fn distances_from_several_spline_faces_are_those_of_opencascade() {
     for name in ["blade.brep", "duct.brep"] {
@@ -106,6 +106,7 @@ fn distances_from_several_spline_faces_are_those_of_opencascade() {
         let Model::Occt(occt) = &model else { panic!("a CAD model") };
         let faces: Vec<u32> = (0..model.topology().faces.len() as u32).collect();
         let found = distances(Team::alone(), &mesh, &place, &model, &faces);
+        let by_triangles = from_triangles(Team::alone(), &mesh, &mesh.triangles.refs);
         let (evaluator, diagonal) = (occt.evaluator(), model.topology().diagonal());
         let (mut looked, mut missed) = (0, 0);
         for (v, &p) in mesh.vertices.iter().enumerate() {
@@ -116,10 +117,11 @@ fn distances_from_several_spline_faces_are_those_of_opencascade() {
             let each = faces.iter().filter_map(|&face| evaluator.reference_distance(true, face, p));
             let expected = each.fold(f64::INFINITY, f64::min);
             assert!(found[v] < expected + 1e-7 * diagonal, "{name} {} {expected} at {p:?}", found[v]);
+            assert!((found[v] - by_triangles[v]).abs() < 5e-3 * diagonal, "{name} {} {}", found[v], by_triangles[v]);
             missed += usize::from(found[v] < expected - 1e-7 * diagonal);
             looked += 1;
         }
-        assert!(looked > 50 && 10 * missed < looked, "{name} {looked} {missed}");
+        assert!(looked > 50 && 4 * missed < looked, "{name} {looked} {missed}");
         let pool = Pool::new(3).unwrap();
         let again = distances(Team::new(&pool, Plan::default()), &mesh, &place, &model, &faces);
         assert!(again.iter().zip(&found).all(|(a, b)| a.to_bits() == b.to_bits()), "{name}");
