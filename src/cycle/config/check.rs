@@ -139,7 +139,7 @@ impl Loaded {
                 goal.functional, until.functional, goal.functional, until.below
             )),
             Some(_) if goal.estimate.is_none() => {
-                Err("[schedule] until needs an estimate of the error: give [goal] estimate, what the solver calls it"
+                Err("[schedule] until needs an estimate of the goal: give [goal] estimate, what the solver calls it"
                     .into())
             }
             _ => Ok(()),
