@@ -52,6 +52,12 @@ fn a_loop_makes_what_the_program_makes() {
     let output =
         command.current_dir(there.path()).args(["cycle", "loop.toml", "--server", &service.url()]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    // Results are called by their places here, not by those of the service.
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.contains(" loop.cycle/result/mesh.meshb") && !said.contains(folder.path().to_str().unwrap()),
+        "{said}"
+    );
     for name in ["mesh.meshb", "solution.solb", "functionals.csv"] {
         let of = |folder: &Path| fs::read(folder.join("loop.cycle/result").join(name)).unwrap();
         assert!(of(there.path()) == of(own.path()), "{name}");

@@ -9,7 +9,7 @@ use super::terminal::is_quiet;
 use super::{Outcome, interrupt, print};
 use crate::cycle::{self, Error, Loaded, Options, Solvers, example};
 use progress::Progress;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Arguments of `geo-adapt cycle`.
@@ -71,8 +71,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
                     ended.reason,
                     figure(seconds + ended.history.start_seconds)
                 ))?;
+                // Who sent the configuration has its folder elsewhere.
+                let base = arguments.confined.as_ref().map(|_| loaded.base.as_path());
+                let shown = |path: &Path| {
+                    let inside = base.and_then(|base| path.strip_prefix(base).ok());
+                    inside.unwrap_or(path).display().to_string()
+                };
                 let rows: Vec<String> =
-                    ended.files.iter().map(|(what, path)| format!("{what:<14} {}\n", path.display())).collect();
+                    ended.files.iter().map(|(what, path)| format!("{what:<14} {}\n", shown(path))).collect();
                 print(&rows.concat())?;
             }
             Ok(ExitCode::SUCCESS)
