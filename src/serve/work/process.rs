@@ -66,9 +66,14 @@ impl Process {
                         else {
                             continue;
                         };
-                        if let Some(run) = known.lock().unwrap_or_else(PoisonError::into_inner).get(number) {
-                            drop(run.send(answer));
-                        }
+                        let mut runs = known.lock().unwrap_or_else(PoisonError::into_inner);
+                        // Nothing more is heard of what has ended.
+                        let run = match &answer {
+                            Answer::Started { .. } => runs.get(number).cloned(),
+                            _ => runs.remove(number),
+                        };
+                        drop(runs);
+                        drop(run.map(|run| run.send(answer)));
                     }
                 }
             }
