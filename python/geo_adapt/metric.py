@@ -100,15 +100,14 @@ def multiscale(
     >>> bool(abs(geo_adapt.metric.complexity(mesh, m, order="medit") / 500 - 1) < 0.02)
     True
     """
-    if (complexity is None) == (vertices is None):
-        raise InputError("give a complexity or a number of vertices")
+    wanted = _wanted(complexity, vertices)
     given: list[Any] = list(field) if isinstance(field, (list, tuple)) and np.ndim(field[0]) else [field]
     values = [_scalars(one, "field") for one in given]
     if combine not in ("average", "intersect"):
         raise InputError(f'combine {combine!r}: "average" or "intersect"')
     sensors = [values] if combine == "average" else [[one] for one in values]
     how = {
-        "complexity": float(complexity if complexity is not None else vertices / 2.0),  # type: ignore[operator]
+        "complexity": wanted,
         "norm": norm,
         "hessian": hessian,
         "gradation": gradation,
@@ -119,6 +118,15 @@ def multiscale(
     }
     other = None if fixed is None else packed(fixed, order)
     return _kernel.multiscale(mesh, sensors, how, other, threads or 0)
+
+
+def _wanted(complexity: float | None, vertices: float | None) -> float:
+    """The complexity, of which one of the two is given."""
+    if complexity is not None and vertices is None:
+        return float(complexity)
+    if vertices is not None and complexity is None:
+        return vertices / 2.0
+    raise InputError("give a complexity or a number of vertices")
 
 
 def goal(
@@ -184,8 +192,7 @@ def goal(
     >>> bool(abs(geo_adapt.metric.complexity(mesh, m, order="medit") / 500 - 1) < 0.02)
     True
     """
-    if (complexity is None) == (vertices is None):
-        raise InputError("give a complexity or a number of vertices")
+    wanted = _wanted(complexity, vertices)
     given = []
     for term in terms:
         if len(term) not in (2, 3):
@@ -195,7 +202,7 @@ def goal(
             raise InputError('terms: an adjoint has no derivatives: give some, as {"x": 1}')
         given.append({"field": _scalars(term[0], "field"), "weight": _scalars(term[1], "weight"), "derivatives": derivatives})
     how = {
-        "complexity": float(complexity if complexity is not None else vertices / 2.0),  # type: ignore[operator]
+        "complexity": wanted,
         "norm": norm,
         "hessian": hessian,
         "boundary": boundary,

@@ -15,6 +15,7 @@ mod classify;
 mod completions;
 mod convert;
 mod cycle;
+mod driven;
 mod events;
 mod examples;
 mod field;

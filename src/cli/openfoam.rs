@@ -1,10 +1,9 @@
 //! `geo-adapt openfoam`: runs a case that `geo-adapt cycle` has prepared.
-use super::interrupt::{self, Interrupted};
+use super::driven::driven;
 use super::{Outcome, print};
 use crate::cycle::solver::openfoam::drive;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::atomic::Ordering::SeqCst;
 
 /// Arguments of `geo-adapt openfoam`.
 #[derive(clap::Args)]
@@ -15,16 +14,7 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let (stop, mut printed) = (interrupt::end_at_once(), Ok(()));
-    let outcome = drive::drive(&arguments.case, stop, &mut |line| {
-        // The solver goes on: what it has done counts more than what can be said of it.
-        let done = print(&format!("{line}\n"));
-        printed = std::mem::replace(&mut printed, Ok(())).and(done);
-    });
-    let outcome = outcome.map_err(|error| -> Box<dyn std::error::Error> {
-        if stop.load(SeqCst) { Interrupted(error).into() } else { error.into() }
-    })?;
-    printed?;
+    let outcome = driven(|stop, tell| drive::drive(&arguments.case, stop, tell))?;
     let ended = if outcome.still { "stands still" } else { "has used up its steps" };
     let drive::Outcome { steps, repeated, first_order, averaged, .. } = outcome;
     let rough = if first_order > 0 { format!(", {first_order} cells of first order") } else { String::new() };

@@ -8,7 +8,6 @@ use super::super::table::{Table, figure};
 use super::super::walls::{Places, names_on, surfaces};
 use super::super::{Outcome, load, positive};
 use crate::geometry::classify;
-use crate::geometry::discrete::complete_boundary;
 use crate::mesh::io::{FieldKind, Solution, SolutionField};
 use crate::sizing::layer::{distances, from_triangles, spalding};
 use crate::tasks::{GRAIN, Plan, Team};
@@ -84,11 +83,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let mut data = common::mesh(&arguments.run, team, name)?;
-    let added = complete_boundary(team, &mut data.mesh);
-    if added > 0 {
-        let notice = format!("{added} triangles were missing on the boundary or between regions, and were added");
-        arguments.run.note(&[notice]);
-    }
+    common::close(&arguments.run, team, &mut data);
     let mesh = &data.mesh;
     let named = |error: String| format!("{}: {error}", name.display());
     let (found, seconds) = match &arguments.cad {

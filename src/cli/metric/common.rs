@@ -7,6 +7,7 @@ use crate::cli::files::reading::{self, Carrier, Fields};
 use crate::cli::files::{Files, On, Outputs, Target, room};
 use crate::cli::terminal::PrintError;
 use crate::formats::Dataset;
+use crate::geometry::discrete::complete_boundary;
 use crate::mesh::TetMesh;
 use crate::mesh::io::Read;
 use crate::mesh::ranges::Scratch;
@@ -214,6 +215,14 @@ pub fn mesh(run: &RunArguments, team: Team<'_>, path: &Path) -> Result<Dataset, 
         return Err(format!("{}: no tetrahedra: a volume mesh is needed", path.display()).into());
     }
     Ok(read.content)
+}
+
+/// Adds the triangles that a mesh lacks on its boundary and between regions, and says so.
+pub fn close(run: &RunArguments, team: Team<'_>, data: &mut Dataset) {
+    let added = complete_boundary(team, &mut data.mesh);
+    if added > 0 {
+        run.note(&[format!("{added} triangles were missing on the boundary or between regions, and were added")]);
+    }
 }
 
 /// Reads the fields at the vertices of a mesh that an argument names, one at least, and shows the notices.

@@ -5,8 +5,8 @@ use crate::cli::files::{Files, JSON, Outputs, reading};
 use crate::cli::surface::SurfaceArguments;
 use crate::cli::table::{Table, figure, place};
 use crate::cli::{Outcome, positive};
-use crate::geometry::discrete::complete_boundary;
 use crate::geometry::{Geometry, Model};
+use crate::mesh::io::Read;
 use crate::metric::Limits;
 use crate::metric::summary::Summary as Figures;
 use crate::sizing::{self, Options, Summary};
@@ -102,14 +102,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let limits = arguments.limits.limits()?;
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
-    let mut read = reading::mesh(team, &arguments.mesh)?;
-    let mesh = &mut read.content.mesh;
-    let added = complete_boundary(team, mesh);
-    if added > 0 {
-        read.notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
-    }
-    arguments.run.note(&read.notices);
-    let (data, mesh) = (&read.content, &read.content.mesh);
+    let Read { content: mut data, notices } = reading::mesh(team, &arguments.mesh)?;
+    arguments.run.note(&notices);
+    super::common::close(&arguments.run, team, &mut data);
+    let mesh = &data.mesh;
     let (cad, tolerance) = (arguments.cad.as_deref(), arguments.tolerance);
     let (model, lies) = arguments.surface.lies(team, (&arguments.mesh, mesh), cad, tolerance)?;
     let read_and_classify = start.elapsed().as_secs_f64();
@@ -117,7 +113,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let (logs, summary) = sizing::geometry_metric(team, mesh, &lies, &model, &options);
     let metric = start.elapsed().as_secs_f64() - read_and_classify;
     let mut outputs = Outputs::new();
-    arguments.run.note(&outputs.logs(team, &target, &logs, super::common::on(data))?);
+    arguments.run.note(&outputs.logs(team, &target, &logs, super::common::on(&data))?);
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         input: &arguments.mesh,

@@ -7,7 +7,6 @@ use crate::cli::table::{Table, figure};
 use crate::cli::walls::{Places, names_on};
 use crate::cli::{Outcome, positive};
 use crate::geometry::Geometry;
-use crate::geometry::discrete::complete_boundary;
 use crate::metric::multiscale::Norm;
 use crate::metric::summary::Summary as Figures;
 use crate::sizing::layer::{self, OfWall, Options, Outside, Summary, Walls, wall_metric};
@@ -98,11 +97,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let pool = arguments.run.pool()?;
     let team = Team::new(&pool, Plan::default());
     let mut data = super::common::mesh(&arguments.run, team, &arguments.mesh)?;
-    let added = complete_boundary(team, &mut data.mesh);
-    if added > 0 {
-        let notice = format!("{added} triangles were missing on the boundary or between regions, and were added");
-        arguments.run.note(&[notice]);
-    }
+    super::common::close(&arguments.run, team, &mut data);
     let (name, mesh) = (&arguments.mesh, &data.mesh);
     let (model, place) = arguments.surface.lies(team, (name, mesh), arguments.cad.as_deref(), arguments.tolerance)?;
     let names = names_on(&data.names, mesh, &place, &model);

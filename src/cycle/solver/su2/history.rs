@@ -2,10 +2,31 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// The table, as far as it is looked at.
+struct Table {
+    /// Names of the columns.
+    head: Vec<String>,
+    /// The last row; empty where there is none.
+    last: Vec<String>,
+    /// Rows, without the head.
+    rows: u64,
+}
+
+impl Table {
+    fn read(path: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let clean = |word: &str| word.trim().trim_matches('"').trim().to_owned();
+        let words = |line: &str| line.split(',').map(clean).collect();
+        let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+        let head = lines.next().map_or_else(Vec::new, words);
+        let (rows, last) = lines.fold((0, None), |(rows, _), line| (rows + 1, Some(line)));
+        Ok(Self { head, last: last.map_or_else(Vec::new, words), rows })
+    }
+}
+
 /// Rows of the table, without its head.
 pub fn rows(path: &Path) -> u64 {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
-    text.lines().filter(|line| !line.trim().is_empty()).skip(1).count() as u64
+    Table::read(path).map_or(0, |table| table.rows)
 }
 
 /// Refuses a table whose residuals end in what is no number. Other columns may: SU2 divides by what is 0.
@@ -13,17 +34,12 @@ pub fn rows(path: &Path) -> u64 {
 /// # Errors
 /// What is wrong, or that it is not there.
 pub fn is_finite(path: &Path) -> Result<(), String> {
-    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let text = std::fs::read_to_string(path).map_err(|error| named(&error))?;
-    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
-    let (head, last) = (lines.next().unwrap_or_default(), lines.next_back().unwrap_or_default());
-    let is_residual = |name: &str| name.trim().trim_matches('"').starts_with("rms");
-    let is_finite = |word: &str| word.trim().parse::<f64>().is_ok_and(f64::is_finite);
-    let residuals = head.split(',').zip(last.split(',')).filter(|(name, _)| is_residual(name));
-    match residuals.map(|(_, word)| word).find(|word| !is_finite(word)) {
-        None => Ok(()),
-        Some(word) => Err(named(&format!("{} in the last row is no number: SU2 has diverged", word.trim()))),
-    }
+    let Table { head, last, .. } = Table::read(path)?;
+    let residuals = head.iter().zip(&last).filter(|(name, _)| name.starts_with("rms"));
+    let wrong = residuals.map(|(_, word)| word).find(|word| !word.parse::<f64>().is_ok_and(f64::is_finite));
+    wrong.map_or(Ok(()), |word| {
+        Err(format!("{}: {word} in the last row is no number: SU2 has diverged", path.display()))
+    })
 }
 
 /// The values of some columns in the last row.
@@ -32,12 +48,10 @@ pub fn is_finite(path: &Path) -> Result<(), String> {
 /// When the file or a column is not there, or a value is no number.
 pub fn last(path: &Path, wanted: &[String]) -> Result<BTreeMap<String, f64>, String> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let text = std::fs::read_to_string(path).map_err(|error| named(&error))?;
-    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
-    let clean = |word: &str| word.trim().trim_matches('"').trim().to_owned();
-    let head: Vec<String> = lines.next().unwrap_or_default().split(',').map(clean).collect();
-    let row: Vec<String> =
-        lines.next_back().ok_or_else(|| named(&"no row: SU2 made no iteration"))?.split(',').map(clean).collect();
+    let Table { head, last, rows } = Table::read(path)?;
+    if rows == 0 {
+        return Err(named(&"no row: SU2 made no iteration"));
+    }
     let find = |name: &String| {
         let at = head.iter().position(|column| column == name).ok_or_else(|| {
             named(&format!(
@@ -45,7 +59,7 @@ pub fn last(path: &Path, wanted: &[String]) -> Result<BTreeMap<String, f64>, Str
                 head.join(", ")
             ))
         })?;
-        let value = row.get(at).and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
+        let value = last.get(at).and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
         let value = value
             .ok_or_else(|| named(&format!("{name} is no number in the last row: did SU2 diverge? Its log tells")))?;
         Ok((name.clone(), value))
