@@ -90,6 +90,7 @@ const EXAMPLES: [(&str, &[&str]); 39] = [
             "geo-adapt metric goal a.meshb --terms terms.toml --complexity 50000 -o m.solb",
             "geo-adapt metric goal a.meshb --euler flow.solb --adjoint adjoint.solb --complexity 50000 -o m.solb",
             "geo-adapt metric goal a.meshb --navier-stokes flow.solb --adjoint adjoint.solb --reynolds 4000 --complexity 50000 -o m.solb",
+            "geo-adapt metric goal a.meshb --incompressible flow.solb --adjoint adjoint.solb --reynolds 4000 --complexity 50000 -o m.solb",
         ],
     ),
     ("metric grade", &["geo-adapt metric grade a.meshb m.solb --ratio 1.5 -o graded.solb"]),

@@ -65,6 +65,24 @@ impl Value {
     }
 }
 
+/// All values of the named fields, one after the other; a word may name a component, as [`Value::find`] has it.
+///
+/// # Errors
+/// When there is no such field.
+pub fn all_values(words: &[String], fields: &[FieldName]) -> Result<Vec<Value>, String> {
+    let mut found = Vec::new();
+    for word in words {
+        match fields.iter().position(|field| field.name == *word) {
+            Some(at) => {
+                let first = 1 + fields[..at].iter().map(|field| field.values).sum::<usize>();
+                found.extend((first..first + fields[at].values).map(Value::One));
+            }
+            None => found.push(Value::find(word, fields)?),
+        }
+    }
+    Ok(found)
+}
+
 fn known(fields: &[FieldName]) -> String {
     fields.iter().map(|field| field.name.as_str()).collect::<Vec<_>>().join(", ")
 }
@@ -109,6 +127,9 @@ mod tests {
         assert!(take(&["U:4"]).unwrap_err().contains("U:3"));
         assert_eq!(Value::find("U:norm", &fields).unwrap().of(&[9.0, 1.0, 2.0, 2.0, 7.0]), 3.0);
         assert_eq!(Value::find("T", &fields).unwrap().of(&[9.0, 1.0, 2.0, 2.0, 7.0]), 7.0);
+        let all = |names: &[&str]| all_values(&words(names), &fields).map(|values| as_words(&values));
+        assert_eq!(all(&["T", "U", "U:y", "p"]).unwrap(), "5,2,3,4,3,1");
+        assert!(all(&["q"]).unwrap_err().contains("'q'; there are p, U, T"));
         assert!(values_of(&[], &fields[1..2]).unwrap_err().contains("no field is a scalar"));
     }
 }

@@ -1,7 +1,7 @@
 //! The goal of a loop: what the solver tells of its functional, and the terms of the metric.
-use super::config::Goal;
+use super::config::{Goal, GoalFlow};
 use super::data::{FieldName, Solved};
-use super::field_value::Value;
+use super::field_value::{Value, all_values};
 use crate::metric::goal::terms::{Component, Term, Terms, Values};
 use std::path::Path;
 
@@ -61,6 +61,31 @@ impl Goal {
         });
         Ok(Terms { boundary: self.boundary, terms: terms.collect::<Result<_, String>>()?, flow: None })
     }
+
+    /// The flow whose fluxes are terms: that of the configuration, or without terms that of the solver, where it gives its adjoint.
+    ///
+    /// # Errors
+    /// When there is nothing of which a metric could be made.
+    pub fn flow<'f>(&'f self, of_solver: Option<&'f GoalFlow>) -> Result<Option<&'f GoalFlow>, String> {
+        match &self.flow {
+            Some(flow) => Ok(Some(flow)),
+            None if !self.terms.is_empty() => Ok(None),
+            None => of_solver.map(Some).ok_or_else(|| {
+                "[goal] has neither terms nor flow: give one pair of a field and its weight at least, or let the solver give its adjoint \
+                 (adjoint = \"CD\" in [solver.openfoam])"
+                    .into()
+            }),
+        }
+    }
+}
+
+/// The values of state and adjoint of a flow.
+///
+/// # Errors
+/// When the solver has no such field.
+pub fn flow_values(flow: &GoalFlow, fields: &[FieldName]) -> Result<[Vec<Value>; 2], String> {
+    let all = |words: &Vec<String>| all_values(words, fields).map_err(|error| format!("[goal] flow: {error}"));
+    Ok([all(&flow.primal)?, all(&flow.adjoint)?])
 }
 
 #[cfg(test)]

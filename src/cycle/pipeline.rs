@@ -1,15 +1,16 @@
 //! The steps of a cycle, each by the commands that make it.
 use super::adaptation::{self, TERMS, begun};
-use super::config::{Loaded, TransferMethod, option};
+use super::config::{Goal, Loaded, TransferMethod, option};
 use super::data::{Adapted, Begun, FieldName, SolveResult, text};
 use super::done::Done;
 use super::error::Error;
 use super::field_value::{as_words, values_of};
+use super::goal::flow_values;
 use super::layout::Layout;
 use super::observer::Options;
 use super::probe;
 use super::solver::{Before, Choice, Job};
-use super::step::Steps;
+use super::step::{Running, Steps};
 use crate::geometry::{Label, Names, called, names};
 use crate::mesh::io::{Solution, SolutionField, read_mesh, write_beside, write_mesh, write_solution};
 use crate::mesh::samples::cube;
@@ -108,16 +109,7 @@ impl<'a> Pipeline<'a> {
             let (mesh, field) = (layout.mesh(cycle), running.file("field.solb"));
             let sensors = self.sensors(fields)?;
             let first = sensors.split(',').next().unwrap_or_default().to_owned();
-            let solution = text(&layout.solution(cycle));
-            running.geo_adapt(vec![
-                "field".into(),
-                "pick".into(),
-                solution,
-                "--take".into(),
-                first,
-                "-o".into(),
-                text(&field),
-            ])?;
+            pick(running, &layout.solution(cycle), first, &field)?;
             // What the legend calls it.
             let asked = self.loaded.config.metric.fields.first();
             let name = asked.or_else(|| fields.iter().find(|field| field.values == 1).map(|field| &field.name));
@@ -154,26 +146,11 @@ impl<'a> Pipeline<'a> {
     }
 
     /// What the metric is made from: the fields of the configuration, of the solution; or the terms of the goal.
-    pub fn metric(&self, cycle: u32, fields: &[FieldName]) -> Result<(), Error> {
-        let layout = self.layout();
-        self.steps.step(layout.step(cycle, "metric"), |running| {
-            if let Some(goal) = &self.loaded.config.goal {
-                let terms = goal.terms(&layout.solution(cycle), fields)?;
-                let text = toml::to_string(&terms).map_err(|error| error.to_string())?;
-                return Ok(write_beside(&running.file(TERMS), |file| file.write_all(text.as_bytes()))?);
-            }
-            let sensors = self.sensors(fields)?;
-            let solution = text(&layout.solution(cycle));
-            let target = text(&running.file("sensors.solb"));
-            running.geo_adapt(vec![
-                "field".into(),
-                "pick".into(),
-                solution,
-                "--take".into(),
-                sensors,
-                "-o".into(),
-                target,
-            ])
+    pub fn metric(&self, cycle: u32, solver: &Choice, fields: &[FieldName]) -> Result<(), Error> {
+        let solution = self.layout().solution(cycle);
+        self.steps.step(self.layout().step(cycle, "metric"), |running| match &self.loaded.config.goal {
+            Some(goal) => write_terms(running, goal, solver, &solution, fields),
+            None => pick(running, &solution, self.sensors(fields)?, &running.file("sensors.solb")),
         })?;
         Ok(())
     }
@@ -201,6 +178,34 @@ impl<'a> Pipeline<'a> {
         })?;
         Ok(())
     }
+}
+
+/// The terms of a goal, with the files of its flow.
+fn write_terms(
+    running: &mut Running<'_>,
+    goal: &Goal,
+    solver: &Choice,
+    solution: &Path,
+    fields: &[FieldName],
+) -> Result<(), Error> {
+    let mut terms = goal.terms(solution, fields)?;
+    let of_solver = solver.solver().flow();
+    if let Some(flow) = goal.flow(of_solver.as_ref())? {
+        let files = ["primal.solb", "adjoint.solb"].map(|name| running.file(name));
+        for (values, file) in flow_values(flow, fields)?.iter().zip(&files) {
+            pick(running, solution, as_words(values), file)?;
+        }
+        let [primal, adjoint] = files;
+        terms.flow = Some(flow.at(primal, adjoint));
+    }
+    let text = toml::to_string(&terms).map_err(|error| error.to_string())?;
+    Ok(write_beside(&running.file(TERMS), |file| file.write_all(text.as_bytes()))?)
+}
+
+/// Writes some values of a solution to a file of their own.
+fn pick(running: &mut Running<'_>, solution: &Path, values: String, target: &Path) -> Result<(), Error> {
+    let words = ["field".into(), "pick".into(), text(solution), "--take".into(), values, "-o".into(), text(target)];
+    running.geo_adapt(words.into())
 }
 
 fn copy(from: &Path, to: &Path) -> Result<(), Error> {

@@ -223,7 +223,7 @@ fn go(pipeline: &Pipeline<'_>, observer: &dyn Observer, stop: &Stop) -> Result<E
             let files = result::write(layout, pipeline.loaded, &history, cycle, &solved)?;
             break (reason, history, files);
         }
-        pipeline.metric(cycle, &solved.fields)?;
+        pipeline.metric(cycle, &solver, &solved.fields)?;
         pipeline.adapt(cycle, &begun)?;
         if transfers {
             pipeline.transfer(cycle)?;

@@ -1,6 +1,7 @@
 //! Refuses configurations whose keys are each allowed, but not together, before the loop begins.
 use super::{Config, FIRST, Growth, Loaded, NormWord};
 use crate::cycle::field_value::{Value, values_of};
+use crate::cycle::goal::flow_values;
 use crate::metric::multiscale::Norm;
 use crate::sizing::layer::Walls;
 use crate::view::cut::Plane;
@@ -133,6 +134,8 @@ impl Loaded {
             return Err("[metric] fields: the metric is that of the [goal]: leave fields out, or the goal".into());
         }
         goal.check()?;
+        let of_solver = self.config.solver.solver().flow();
+        goal.flow(of_solver.as_ref())?;
         match &schedule.until {
             Some(until) if until.functional != goal.functional => Err(format!(
                 "[schedule] until: the goal is {}, not {}: give \"error({}) < {}\"",
@@ -152,7 +155,11 @@ impl Loaded {
         let solver = config.solver.solver();
         if let Some(fields) = solver.fields() {
             values_of(&config.metric.fields, &fields)?;
-            config.goal.as_ref().map_or(Ok(()), |goal| goal.terms(Path::new(""), &fields).map(drop))?;
+            if let Some(goal) = &config.goal {
+                goal.terms(Path::new(""), &fields)?;
+                let of_solver = solver.flow();
+                goal.flow(of_solver.as_ref())?.map_or(Ok(()), |flow| flow_values(flow, &fields).map(drop))?;
+            }
             for (name, probe) in &config.probes {
                 Value::find(&probe.field, &fields).map_err(|error| format!("[probes] {name}: {error}"))?;
             }

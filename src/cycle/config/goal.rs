@@ -1,13 +1,14 @@
 //! `[goal]`: the functional that the mesh is made for.
 use crate::metric::goal::Boundary;
-use crate::metric::goal::terms::{Term, Values};
+use crate::metric::goal::terms::{Flow, Term, Values};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-/// `[goal]`. The solver gives its adjoint as a field beside its own, and the value of the functional and its estimate among its functionals.
+/// `[goal]`. The solver gives its adjoint as a field beside its own, and the value of the functional and its estimate among its functionals. Without terms
+/// and `flow` the flow is the solver's, where it knows its adjoint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Goal {
@@ -20,8 +21,14 @@ pub struct Goal {
     /// What vertices on the boundary get.
     pub boundary: Option<Boundary>,
     /// Pairs of a weight and a field.
+    #[serde(default)]
     pub terms: Vec<GoalTerm>,
+    /// A flow, by the names of the solver's fields.
+    pub flow: Option<GoalFlow>,
 }
+
+/// A flow whose state and adjoint are fields of the solver, by their names, as `[flow]` of `metric goal --terms` has them.
+pub type GoalFlow = Flow<Vec<String>>;
 
 /// A pair of a weight and a field, by the names of the solver's fields; of a vector `U` one component `U:x`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,8 +54,8 @@ impl Goal {
         if self.reference.is_some_and(|value| !value.is_finite()) {
             return Err("[goal] reference: give a finite number".into());
         }
-        if self.terms.is_empty() {
-            return Err("[goal] terms: give one pair of a field and its weight at least".into());
+        if let Some(flow) = &self.flow {
+            flow.medium().map_err(|error| format!("[goal.flow] {error}"))?;
         }
         for (number, term) in self.terms.iter().enumerate() {
             let values = |name: &String| Values::Only(Path::new(name).into());

@@ -9,6 +9,7 @@ pub mod su2;
 
 pub use super::data::{Call, FieldName, Solved};
 
+use crate::cycle::config::GoalFlow;
 use crate::formats::{Dataset, NamedField};
 use crate::geometry::{Names, names};
 use crate::mesh::TetMesh;
@@ -95,6 +96,11 @@ pub trait Solver {
 
     /// The fields that it gives, where that is known before it runs.
     fn fields(&self) -> Option<Vec<FieldName>> {
+        None
+    }
+
+    /// The flow whose adjoint it gives beside its fields, as a goal has it without terms of its own.
+    fn flow(&self) -> Option<GoalFlow> {
         None
     }
 

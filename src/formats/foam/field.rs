@@ -86,12 +86,18 @@ fn find_entry(scanner: &mut Scanner, name: &[u8]) -> Result<(), Error> {
     Ok(())
 }
 
+/// The exponents of a velocity.
+pub const VELOCITY: [i32; 4] = [0, 1, -1, 0];
+
+/// The exponents of a pressure over a density.
+pub const KINEMATIC_PRESSURE: [i32; 4] = [0, 2, -2, 0];
+
 /// Exponents of mass, length, time and temperature, as OpenFOAM wants them of the fields that its solvers read; else none.
-fn dimensions(name: &str) -> [i32; 4] {
-    match name {
+fn dimensions(path: &Path) -> [i32; 4] {
+    match path.file_name().unwrap_or_default().to_string_lossy().as_ref() {
         "p" => [1, -1, -2, 0],
         "T" => [0, 0, 0, 1],
-        "U" => [0, 1, -1, 0],
+        "U" => VELOCITY,
         "rho" => [1, -3, 0, 0],
         _ => [0; 4],
     }
@@ -108,8 +114,23 @@ pub fn write_cell_field(
     patches: &[(String, String)],
     text: bool,
 ) -> Result<(), Error> {
+    write_cell_field_of(path, field, cells, patches, text, dimensions(path))
+}
+
+/// The same with other dimensions than usually belong to the name: exponents of mass, length, time and temperature.
+///
+/// # Errors
+/// As [`write_cell_field`].
+pub fn write_cell_field_of(
+    path: &Path,
+    field: &CellField,
+    cells: usize,
+    patches: &[(String, String)],
+    text: bool,
+    dimensions: [i32; 4],
+) -> Result<(), Error> {
     let mut batch = Batch::new();
-    add_cell_field(&mut batch, path, field, cells, patches, text)?;
+    add_dimensioned(&mut batch, path, field, cells, patches, text, dimensions)?;
     batch.commit()
 }
 
@@ -121,6 +142,18 @@ pub(super) fn add_cell_field(
     cells: usize,
     patches: &[(String, String)],
     text: bool,
+) -> Result<(), Error> {
+    add_dimensioned(batch, path, field, cells, patches, text, dimensions(path))
+}
+
+fn add_dimensioned(
+    batch: &mut Batch,
+    path: &Path,
+    field: &CellField,
+    cells: usize,
+    patches: &[(String, String)],
+    text: bool,
+    dimensions: [i32; 4],
 ) -> Result<(), Error> {
     let wrong = |message: String| Error::Content { path: path.to_owned(), place: "values".to_owned(), message };
     let width = field.kind.values();
@@ -134,7 +167,7 @@ pub(super) fn add_cell_field(
     let (class, _) = words_of(field.kind);
     let mut values = field.values.clone();
     reorder(field.kind, &mut values);
-    let content = Content { class, kind: field.kind, values: &values, uniform, patches };
+    let content = Content { class, kind: field.kind, values: &values, uniform, patches, dimensions };
     batch.add(path, |w| content.write(w, path, text))
 }
 
@@ -143,7 +176,14 @@ pub(super) fn add_cell_field(
 /// # Errors
 /// [`Error::System`] when the file cannot be written.
 pub fn write_face_field(path: &Path, values: &[f64], patches: &[(String, String)], text: bool) -> Result<(), Error> {
-    let content = Content { class: "surfaceScalarField", kind: FieldKind::Scalar, values, uniform: false, patches };
+    let content = Content {
+        class: "surfaceScalarField",
+        kind: FieldKind::Scalar,
+        values,
+        uniform: false,
+        patches,
+        dimensions: dimensions(path),
+    };
     write_beside(path, |w| content.write(w, path, text))
 }
 
@@ -155,15 +195,16 @@ struct Content<'a> {
     /// One value stands for all.
     uniform: bool,
     patches: &'a [(String, String)],
+    dimensions: [i32; 4],
 }
 
 impl Content<'_> {
     fn write(&self, w: &mut dyn Write, path: &Path, text: bool) -> std::io::Result<()> {
-        let Self { class, kind, values, uniform, patches } = *self;
+        let Self { class, kind, values, uniform, patches, dimensions } = *self;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let location = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
         let (_, word) = words_of(kind);
-        let [mass, length, time, temperature] = dimensions(&name);
+        let [mass, length, time, temperature] = dimensions;
         write!(w, "{}", head_text(class, &location, &name, text))?;
         write!(w, "\ndimensions      [{mass} {length} {time} {temperature} 0 0 0];\n\ninternalField   ")?;
         if uniform {

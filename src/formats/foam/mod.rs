@@ -11,7 +11,9 @@ mod scan;
 mod write;
 
 pub use boundary::Patch;
-pub use field::{CellField, read_cell_field, write_cell_field, write_face_field};
+pub use field::{
+    CellField, KINEMATIC_PRESSURE, VELOCITY, read_cell_field, write_cell_field, write_cell_field_of, write_face_field,
+};
 pub use write::write_poly_mesh;
 
 use super::{Dataset, NamedField, cells_to_vertices, vertices_to_cells};

@@ -7,6 +7,7 @@
 mod boundary;
 mod error;
 mod flow;
+mod incompressible;
 mod sum;
 pub mod terms;
 #[cfg(test)]
@@ -16,5 +17,6 @@ mod weights;
 pub use boundary::Boundary;
 pub use error::Error;
 pub use flow::{Gas, Variables, Viscosity};
+pub use incompressible::Fluid;
 pub use sum::{Goal, NORM};
 pub use weights::{Derivative, Weight};

@@ -1,5 +1,5 @@
 //! The terms of a goal as a file says them, TOML: `geo-adapt metric goal --terms`. Relative paths begin at its folder.
-use super::{Boundary, Derivative, Gas, Variables, Viscosity};
+use super::{Boundary, Derivative, Fluid, Gas, Variables, Viscosity};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ pub struct Terms {
     /// Pairs of a weight and a field.
     #[serde(default)]
     pub terms: Vec<Term>,
-    /// A flow of gas, whose fluxes are terms.
+    /// A flow, whose fluxes are terms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow: Option<Flow>,
 }
@@ -61,29 +61,50 @@ pub struct Component {
     pub component: usize,
 }
 
-/// A flow of gas: see [`super::Goal::add_flow`].
+/// Which equations a flow obeys.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Equations {
+    /// Those of Euler, or of Navier and Stokes, for a gas.
+    #[default]
+    Compressible,
+    /// Of constant density.
+    Incompressible,
+}
+
+/// A flow: see [`super::Goal::add_flow`] and [`super::Goal::add_incompressible`]. Its values stand in files, or where `V` says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Flow {
-    /// Its state, five values a vertex.
-    pub primal: PathBuf,
-    /// The adjoints of mass, momentum and energy, five values a vertex.
-    pub adjoint: PathBuf,
-    /// How the state is written.
+pub struct Flow<V = PathBuf> {
+    /// Its state, five values a vertex; of an incompressible flow velocity (3) and pressure.
+    pub primal: V,
+    /// The adjoints of mass, momentum and energy, five values a vertex; of an incompressible flow those of momentum (3) and mass.
+    pub adjoint: V,
+    /// Which equations.
+    #[serde(default)]
+    pub equations: Equations,
+    /// Density of an incompressible flow, by which its pressure is divided.
+    #[serde(default = "one")]
+    pub density: f64,
+    /// How the state of a gas is written.
     #[serde(default)]
     pub variables: Variables,
     /// Ratio of the specific heats.
     #[serde(default = "gamma")]
     pub gamma: f64,
-    /// Dynamic viscosity; Euler's equations without it and `reynolds`.
+    /// Dynamic viscosity; no friction without it and `reynolds`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mu: Option<f64>,
-    /// Reynolds' number of ρ∞, |u∞| and the unit of length, which the state is divided by: μ = 1/Re.
+    /// Reynolds' number of ρ∞, |u∞| and the unit of length, which the state is divided by: μ = 1/Re, of an incompressible flow ν = 1/Re.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reynolds: Option<f64>,
     /// Prandtl's number.
     #[serde(default = "prandtl")]
     pub prandtl: f64,
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 fn gamma() -> f64 {
@@ -111,12 +132,34 @@ impl Values {
     }
 }
 
-impl Flow {
-    /// The gas.
+/// What flows.
+#[derive(Clone, Copy, Debug)]
+pub enum Medium {
+    /// A gas.
+    Gas(Gas),
+    /// A fluid of constant density.
+    Fluid(Fluid),
+}
+
+impl<V> Flow<V> {
+    /// An incompressible flow of density 1 without friction.
+    pub fn incompressible(primal: V, adjoint: V) -> Self {
+        let (equations, variables) = (Equations::Incompressible, Variables::default());
+        let (density, gamma, prandtl) = (1.0, GAMMA, PRANDTL);
+        Self { primal, adjoint, equations, density, variables, gamma, mu: None, reynolds: None, prandtl }
+    }
+
+    /// The same with its values elsewhere.
+    pub fn at<W>(&self, primal: W, adjoint: W) -> Flow<W> {
+        let &Self { equations, density, variables, gamma, mu, reynolds, prandtl, .. } = self;
+        Flow { primal, adjoint, equations, density, variables, gamma, mu, reynolds, prandtl }
+    }
+
+    /// What flows.
     ///
     /// # Errors
     /// What cannot be.
-    pub fn gas(&self) -> Result<Gas, String> {
+    pub fn medium(&self) -> Result<Medium, String> {
         let positive = |name: &str, value: f64| match value > 0.0 && value.is_finite() {
             true => Ok(value),
             false => Err(format!("{name} is {value}: give a positive number")),
@@ -124,14 +167,18 @@ impl Flow {
         if !(self.gamma > 1.0 && self.gamma.is_finite()) {
             return Err(format!("gamma is {}: give a number above 1, 1.4 for air", self.gamma));
         }
+        let density = positive("density", self.density)?;
         let mu = match (self.mu, self.reynolds) {
             (Some(_), Some(_)) => return Err("mu and reynolds say the same: give one of them".into()),
             (Some(mu), None) => Some(positive("mu", mu)?),
-            (None, Some(reynolds)) => Some(1.0 / positive("reynolds", reynolds)?),
+            (None, Some(reynolds)) => Some(density / positive("reynolds", reynolds)?),
             (None, None) => None,
         };
+        if self.equations == Equations::Incompressible {
+            return Ok(Medium::Fluid(Fluid { density, viscosity: mu.unwrap_or(0.0) / density }));
+        }
         let prandtl = positive("prandtl", self.prandtl)?;
-        Ok(Gas { gamma: self.gamma, viscosity: mu.map(|mu| Viscosity { mu, prandtl }) })
+        Ok(Medium::Gas(Gas { gamma: self.gamma, viscosity: mu.map(|mu| Viscosity { mu, prandtl }) }))
     }
 }
 

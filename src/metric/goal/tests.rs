@@ -1,5 +1,5 @@
 //! What the metric of a goal promises: Q term by term, its scale, and what is refused.
-use super::{Boundary, Derivative, Error, Gas, Goal, NORM, Variables, Viscosity, Weight};
+use super::{Boundary, Derivative, Error, Fluid, Gas, Goal, NORM, Variables, Viscosity, Weight};
 use crate::mesh::TetMesh;
 use crate::mesh::samples::cube;
 use crate::mesh::vector::Vec3;
@@ -168,6 +168,63 @@ fn the_fluxes_of_euler_are_those_of_finite_differences() {
         // |H| is not smooth where an eigenvalue is zero.
         assert!(close(q, &wanted, 0.03), "{p:?}: {q:?} for {wanted:?}");
     }
+}
+
+#[test]
+fn the_fluxes_of_constant_density_are_those_of_finite_differences() {
+    let mesh = cube(16);
+    let slopes: [Vec3; 4] = [[0.2, 0.7, -1.0], [-0.4, 1.5, 0.6], [0.9, 0.1, -0.8], [1.0, -0.5, 0.3]];
+    let adjoint = on(&mesh, |p| slopes.map(|slope| slope[0] * p[0] + slope[1] * p[1] + slope[2] * p[2]));
+    let density = 2.5;
+    // Velocity and pressure of the state above.
+    let flow = |p: Vec3| -> [f64; 4] { std::array::from_fn(|k| state(p)[k + 1]) };
+    let mut sum = goal(&mesh, Boundary::Own);
+    sum.add_incompressible(Fluid { density, viscosity: 0.0 }, &on(&mesh, flow), &adjoint).unwrap();
+    let flux = |d: usize, k: usize, p: Vec3| {
+        let u = flow(p);
+        let push = if k == d { u[3] / density } else { 0.0 };
+        if k == 3 { u[d] } else { u[d] * u[k] + push }
+    };
+    let deep = |p: &Vec3| p.iter().all(|x| (0.2..0.8).contains(x));
+    for (&p, q) in mesh.vertices.iter().zip(sum.sum()).filter(|(p, _)| deep(p)) {
+        let mut wanted = Sym3::ZERO;
+        for (k, slope) in slopes.iter().enumerate() {
+            for (d, slope) in slope.iter().enumerate() {
+                wanted = wanted.plus(bends(|p| flux(d, k, p), p).magnitude().times(slope.abs()));
+            }
+        }
+        // |H| is not smooth where an eigenvalue is zero.
+        assert!(close(q, &wanted, 0.03), "{p:?}: {q:?} for {wanted:?}");
+    }
+}
+
+#[test]
+fn friction_at_constant_density_counts_by_the_second_derivatives_of_the_adjoint() {
+    let mesh = cube(5);
+    // The velocity is quadratic, and at its size the fluxes are next to nothing beside it.
+    let of = [Sym3::diagonal(1.0, 0.5, -1.0), Sym3::diagonal(0.0, 2.0, 0.0), Sym3([0.0, 1.0, 0.0, 0.0, 0.0, -3.0])];
+    let size = 1e-6;
+    let primal = on(&mesh, |p| {
+        let [u, v, w] = of.map(|h| size * 0.5 * h.quadratic(p));
+        [u, v, w, 0.0]
+    });
+    let bent = [Sym3::diagonal(1.0, -2.0, 0.5), Sym3([0.5, 9.0, -1.5, 9.0, 9.0, 0.0]), Sym3::diagonal(0.0, 0.25, 1.0)];
+    let adjoint = on(&mesh, |p| {
+        let [a, b, c] = bent.map(|h| 0.5 * h.quadratic(p));
+        [a, b, c, 0.0]
+    });
+    let viscosity = 10.0;
+    let mut sum = goal(&mesh, Boundary::Own);
+    sum.add_incompressible(Fluid { density: 1.0, viscosity }, &primal, &adjoint).unwrap();
+    let wanted = of
+        .iter()
+        .zip([3.5, 2.0, 1.25])
+        .fold(Sym3::ZERO, |sum, (h, weight)| sum.plus(h.magnitude().times(size * viscosity * weight)));
+    assert!(sum.sum().iter().all(|q| close(q, &wanted, 1e-3)), "{:?} for {wanted:?}", sum.sum()[0]);
+    let mut broken = adjoint.clone();
+    broken[7][3] = f64::NAN;
+    let refused = goal(&mesh, Boundary::Own).add_incompressible(Fluid { density: 1.0, viscosity }, &primal, &broken);
+    assert_eq!(refused, Err(Error::NotFinite { vertex: 7 }));
 }
 
 #[test]

@@ -3,6 +3,7 @@ mod browser;
 mod goal;
 mod loops;
 mod openfoam;
+mod openfoam_adjoint;
 mod openfoam_viscous;
 mod place;
 mod su2;

@@ -135,6 +135,33 @@ fn a_flow_is_its_fluxes() {
 }
 
 #[test]
+fn a_flow_of_constant_density_has_four_equations() {
+    let (work, mesh, path) = prepared();
+    let bump = |[x, y, z]: Vec3| 0.2 * (-20.0 * ((x - 0.5).powi(2) + (y - 0.5).powi(2) + (z - 0.5).powi(2))).exp();
+    let flow = write(&work, "flow.solb", &mesh, |p| [0.5 - bump(p), 0.1, 0.0, 2.0 + bump(p)]);
+    let adjoint = write(&work, "adjoint.solb", &mesh, |[x, y, z]| [y, z * z, x * y, x - y * y]);
+    let words = ["--incompressible", &flow, "--adjoint", &adjoint, "--complexity", "1000"];
+    let of = |more: &[&str]| made(&work, &path, &[&words[..], more].concat()).metrics;
+    let near = |a: &[geo_adapt::metric::Sym3], b: &[geo_adapt::metric::Sym3]| {
+        a.iter().zip(b).all(|(a, b)| (0..6).all(|i| (a.0[i] - b.0[i]).abs() < 1e-9 * a.trace()))
+    };
+    let inviscid = of(&[]);
+    assert!(near(&of(&["--reynolds", "1e14"]), &inviscid) && !near(&of(&["--reynolds", "5"]), &inviscid));
+    // Dynamic viscosity over density is what counts, and pressure over density.
+    let dense = of(&["--density", "2", "--mu", "0.4"]);
+    assert!(near(&of(&["--density", "2", "--reynolds", "5"]), &dense) && !near(&of(&["--reynolds", "5"]), &dense));
+    let lines =
+        "[flow]\nequations = 'incompressible'\nprimal = 'flow.solb'\nadjoint = 'adjoint.solb'\ndensity = 2\nmu = 0.4\n";
+    assert_eq!(made(&work, &path, &["--terms", &terms(&work, lines), "--complexity", "1000"]).metrics, dense);
+    let five = write(&work, "five.solb", &mesh, |p| [1.0, 0.5, p[0], 1.0, 0.0]);
+    let refused = run(&work, &path, &["--incompressible", &five, "--adjoint", &adjoint, "--complexity", "9"]);
+    let said = complaint(&refused);
+    assert!(said.contains("five.solb: 5 values a vertex, but an incompressible flow has four"), "{said}");
+    let gas = run(&work, &path, &[&words[..], &["--gamma", "1.4"]].concat());
+    assert_eq!(gas.status.code(), Some(2));
+}
+
+#[test]
 fn terms_that_cannot_be_are_refused_by_name() {
     let (work, mesh, path) = prepared();
     let refused = |lines: &str| {

@@ -4,14 +4,11 @@ use crate::cli::metric::common::Failure;
 use crate::cli::transfer::rows;
 use crate::mesh::io::Solution;
 use crate::mesh::split_nonmanifold::copy_values;
-use crate::metric::goal::terms::{Flow, Terms, Values};
+use crate::metric::goal::terms::{Flow, Medium, Terms, Values};
 use crate::metric::goal::{Boundary, Goal, Weight};
 use crate::tasks::Team;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// The equations of a gas.
-const EQUATIONS: usize = 5;
 
 /// Terms, and where their relative paths begin.
 pub struct Asked {
@@ -95,9 +92,21 @@ impl Asked {
         }
         if let Some(flow) = &self.terms.flow {
             let named = |error: String| format!("{}: {error}", flow.primal.display());
-            let gas = flow.gas().map_err(|error| format!("{}: {error}", self.path.display()))?;
-            let (primal, adjoint) = (reader.states(&flow.primal)?, reader.states(&flow.adjoint)?);
-            goal.add_flow(&gas, flow.variables, &primal, &adjoint).map_err(|error| named(error.to_string()))?;
+            let medium = flow.medium().map_err(|error| format!("{}: {error}", self.path.display()))?;
+            let added = match medium {
+                Medium::Gas(gas) => {
+                    let what = "a gas has five equations: give density, three of momentum or velocity, and energy or pressure, or their adjoints";
+                    let [primal, adjoint] = reader.both(flow, what)?;
+                    goal.add_flow(&gas, flow.variables, &primal, &adjoint)
+                }
+                Medium::Fluid(fluid) => {
+                    let what =
+                        "an incompressible flow has four: give three of velocity, and pressure, or their adjoints";
+                    let [primal, adjoint] = reader.both(flow, what)?;
+                    goal.add_incompressible(fluid, &primal, &adjoint)
+                }
+            };
+            added.map_err(|error| named(error.to_string()))?;
         }
         Ok(())
     }
@@ -162,20 +171,24 @@ impl Reader<'_> {
         Ok(found)
     }
 
-    /// Five values a vertex.
-    fn states(&mut self, file: &Path) -> Result<Vec<[f64; EQUATIONS]>, Failure> {
+    /// State and adjoint of a flow, a row a vertex; an error says `what` it has.
+    fn both<const N: usize>(&mut self, flow: &Flow, what: &str) -> Result<[Vec<[f64; N]>; 2], Failure> {
+        Ok([self.states(&flow.primal, what)?, self.states(&flow.adjoint, what)?])
+    }
+
+    /// The values of a file, so many a vertex.
+    fn states<const N: usize>(&mut self, file: &Path, what: &str) -> Result<Vec<[f64; N]>, Failure> {
         let (copies, team) = (self.copies, self.team);
         let solution = self.solution(file)?;
         let count: usize = solution.fields.iter().map(|field| field.kind.values()).sum();
-        if count != EQUATIONS {
+        if count != N {
             let name = file.display();
             return Err(format!(
-                "{name}: {count} values a vertex, but a gas has five equations: give density, three of momentum or velocity, and energy or \
-                 pressure, or their adjoints; `geo-adapt field pick` takes them out of others"
+                "{name}: {count} values a vertex, but {what}; `geo-adapt field pick` takes them out of others"
             )
             .into());
         }
-        let mut found = rows(team, solution, count).as_chunks::<EQUATIONS>().0.to_vec();
+        let mut found = rows(team, solution, count).as_chunks::<N>().0.to_vec();
         copy_values(&mut found, copies);
         Ok(found)
     }

@@ -11,7 +11,7 @@ use crate::cli::files::reading::Carrier;
 use crate::cli::files::{Files, JSON, Outputs};
 use crate::cli::table::Table;
 use crate::cli::{Outcome, positive};
-use crate::metric::goal::terms::{Flow, GAMMA, PRANDTL};
+use crate::metric::goal::terms::{Equations, Flow, GAMMA, PRANDTL};
 use crate::metric::goal::{Boundary, NORM, Variables};
 use crate::metric::multiscale::{Bounds, Measure, Norm, Options};
 use crate::metric::recovery::Recovery;
@@ -31,9 +31,10 @@ const FILE: &str = "A file of --terms. Paths begin at its folder, and may be nam
   field = { file = \"flow.solb\", component = 2 }  # one of several values a vertex
   adjoint = \"adjoint.solb\"                       # the weight is 0.5 |d/dx of this| + 0.01 |d2/dy2 of this|
   derivatives = { x = 0.5, yy = 0.01 }
-  [flow]                                         # as --euler and --navier-stokes
+  [flow]                                         # as --euler, --navier-stokes and --incompressible
   primal = \"flow.solb\"
   adjoint = \"adjoint.solb\"
+  equations = \"compressible\"                     # or incompressible
   mu = 0.001";
 
 /// Arguments of `geo-adapt metric goal`.
@@ -69,7 +70,7 @@ pub struct Arguments {
     run: RunArguments,
 }
 
-/// What the terms are: exactly one of the three.
+/// What the terms are: exactly one of these.
 #[derive(clap::Args)]
 #[group(id = "goal", required = true, multiple = false)]
 struct OfArguments {
@@ -82,19 +83,26 @@ struct OfArguments {
     /// The same with the terms of viscosity and heat, for --mu or --reynolds
     #[arg(long, value_name = "PRIMAL", requires = "adjoint", requires = "viscosity")]
     navier_stokes: Option<PathBuf>,
+    /// A flow of constant density: velocity (3) and pressure at the vertices; without --mu and --reynolds it has no friction
+    #[arg(long, value_name = "PRIMAL", requires = "adjoint")]
+    incompressible: Option<PathBuf>,
 }
 
-/// A gas and its adjoint.
+/// What flows, and its adjoint.
 #[derive(clap::Args)]
 struct GasArguments {
-    /// The adjoint at the vertices: multipliers of the equations of mass, momentum (3) and total energy in conservative form
+    /// The adjoint at the vertices: multipliers of the equations of mass, momentum (3) and total energy in conservative form; with --incompressible
+    /// those of momentum (3) and mass, such as OpenFOAM's Ua and pa
     #[arg(long, value_name = "ADJOINT", conflicts_with = "terms")]
     adjoint: Option<PathBuf>,
+    /// Density of an incompressible flow, by which the pressure is divided
+    #[arg(long, value_name = "RHO", default_value_t = 1.0, value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["terms", "euler", "navier_stokes"])]
+    density: f64,
     /// What the five values of --euler or --navier-stokes are, in any one system of units
-    #[arg(long, value_enum, default_value_t = Variables::default(), conflicts_with = "terms")]
+    #[arg(long, value_enum, default_value_t = Variables::default(), conflicts_with_all = ["terms", "incompressible"])]
     variables: Variables,
     /// Ratio of the specific heats
-    #[arg(long, value_name = "GAMMA", default_value_t = GAMMA, value_parser = positive, allow_negative_numbers = true, conflicts_with = "terms")]
+    #[arg(long, value_name = "GAMMA", default_value_t = GAMMA, value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["terms", "incompressible"])]
     gamma: f64,
     /// Dynamic viscosity, in the units of density, velocity and the mesh's length
     #[arg(long, value_name = "MU", value_parser = positive, allow_negative_numbers = true, group = "viscosity", conflicts_with_all = ["terms", "euler"])]
@@ -104,7 +112,7 @@ struct GasArguments {
     #[arg(long, value_name = "RE", value_parser = positive, allow_negative_numbers = true, group = "viscosity", conflicts_with_all = ["terms", "euler"])]
     reynolds: Option<f64>,
     /// Prandtl's number
-    #[arg(long, value_name = "PR", default_value_t = PRANDTL, value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["terms", "euler"])]
+    #[arg(long, value_name = "PR", default_value_t = PRANDTL, value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["terms", "euler", "incompressible"])]
     prandtl: f64,
 }
 
@@ -123,17 +131,20 @@ struct Report<'a> {
 impl Arguments {
     /// The terms.
     fn asked(&self) -> Result<Asked, String> {
-        let OfArguments { terms, euler, navier_stokes } = &self.of;
-        let GasArguments { adjoint, variables, gamma, mu, reynolds, prandtl } = &self.gas;
+        let OfArguments { terms, euler, navier_stokes, incompressible } = &self.of;
+        let GasArguments { adjoint, density, variables, gamma, mu, reynolds, prandtl } = &self.gas;
         if let Some(terms) = terms {
             return Asked::read(terms);
         }
-        let (Some(primal), Some(adjoint)) = (euler.as_ref().or(navier_stokes.as_ref()), adjoint) else {
-            return Err("give --terms, or --euler or --navier-stokes with an --adjoint".into());
+        let primal = euler.as_ref().or(navier_stokes.as_ref()).or(incompressible.as_ref());
+        let (Some(primal), Some(adjoint)) = (primal, adjoint) else {
+            return Err("give --terms, or --euler, --navier-stokes or --incompressible with an --adjoint".into());
         };
+        let equations = if incompressible.is_some() { Equations::Incompressible } else { Equations::Compressible };
         let (primal, adjoint) = (primal.clone(), adjoint.clone());
-        let (variables, gamma, prandtl) = (*variables, *gamma, *prandtl);
-        Ok(Asked::flow(Flow { primal, adjoint, variables, gamma, mu: *mu, reynolds: *reynolds, prandtl }))
+        let (density, variables, gamma, prandtl) = (*density, *variables, *gamma, *prandtl);
+        let (mu, reynolds) = (*mu, *reynolds);
+        Ok(Asked::flow(Flow { primal, adjoint, equations, density, variables, gamma, mu, reynolds, prandtl }))
     }
 }
 

@@ -1,4 +1,5 @@
 //! The dictionaries of a case (OpenFOAM v1912): what both programs read here, of each its own in `central` and `simple`.
+pub mod adjoint;
 pub mod central;
 mod simple;
 

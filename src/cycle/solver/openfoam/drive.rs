@@ -1,12 +1,13 @@
 //! Runs a prepared case, some steps at a time, until it stands still or its steps are used up. What blows up is repeated, to see where, then with
 //! first order there, and if that does not help with smaller steps.
+use super::adjoint;
 use super::dictionaries::{Steps, write_stage};
 use super::first_order::FirstOrderCells;
 use super::flow::Flow;
 use super::forces::{Coefficients, Walls};
 use super::mean::Mean;
 use super::method::{Method, Scheme, Stage};
-use super::programs::{Failure, solve};
+use super::programs::{Failure, Program, solve};
 use super::state::{State, field};
 use super::step_control::StepControl;
 use crate::formats::foam;
@@ -32,9 +33,7 @@ const TRIALS: usize = 3;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// The program, that of the stage's method.
-    pub program: String,
-    /// Processes of it; above 1 by mpirun.
-    pub processes: u32,
+    pub program: Program,
     /// The flow.
     pub flow: Flow,
     /// References of the walls.
@@ -51,6 +50,8 @@ pub struct Plan {
     pub block: usize,
     /// It stands still when pressure and coefficients change by less than this over a block, relatively, twice in a row.
     pub still: f64,
+    /// The adjoint that is wanted too.
+    pub adjoint: Option<adjoint::Plan>,
 }
 
 /// What came of it.
@@ -70,6 +71,8 @@ pub struct Outcome {
     pub first_order: usize,
     /// Of how many looks at a flow that swings about the mean was taken, and is what counts; 0: what counts is the last step.
     pub averaged: usize,
+    /// Iterations of the adjoint and its flow of constant density.
+    pub adjoint: Option<usize>,
 }
 
 impl Outcome {
@@ -109,7 +112,7 @@ pub fn drive(case: &Path, stop: &AtomicBool, tell: &mut dyn FnMut(&str)) -> Resu
         run.coefficients = run.walls.coefficients(&plan.flow, &mean.pressure, &mean.velocity);
         averaged = looks;
     }
-    let outcome = Outcome {
+    let mut outcome = Outcome {
         coefficients: run.coefficients,
         steps: run.at,
         change: run.change,
@@ -117,7 +120,12 @@ pub fn drive(case: &Path, stop: &AtomicBool, tell: &mut dyn FnMut(&str)) -> Resu
         repeated: run.repeated,
         first_order: run.marks.count,
         averaged,
+        adjoint: None,
     };
+    if let Some(wanted) = &plan.adjoint {
+        let of = (&*outcome.fields(case)?, mesh.tets.len());
+        outcome.adjoint = Some(adjoint::run(case, (&plan.flow, wanted), of, stop, tell)?);
+    }
     let text = serde_json::to_string_pretty(&outcome).map_err(|error| error.to_string())?;
     std::fs::write(case.join(RESULT), text).map_err(|error| format!("{}: {error}", case.join(RESULT).display()))?;
     Ok(outcome)
@@ -243,7 +251,7 @@ impl<'a> Run<'a> {
     /// Makes the steps up to `end`: the fields there.
     fn start(&self, end: usize) -> Result<State, Failure> {
         let log = self.case.join(format!("log.{end}"));
-        solve(self.case, self.plan, &log, self.stop)?;
+        solve(self.case, &self.plan.program, &log, self.stop)?;
         let _ = std::fs::remove_file(&log); // of no use any more
         State::read(&self.case.join(end.to_string()), self.volumes.len()).map_err(Failure::BlewUp)
     }

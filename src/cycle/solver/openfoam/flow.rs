@@ -67,7 +67,7 @@ fn prandtl() -> f64 {
 }
 
 /// What holds at a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     /// No flow through it, and with viscosity none along it.
     Wall,
@@ -152,9 +152,14 @@ impl Flow {
         0.5 * self.gamma * self.pressure * self.mach * self.mach
     }
 
+    /// Density of the free stream.
+    pub fn density(&self) -> f64 {
+        self.pressure / (self.r() * self.temperature)
+    }
+
     /// Dynamic viscosity, 0 without a Reynolds number.
     pub fn viscosity(&self) -> f64 {
-        let density = self.pressure / (self.r() * self.temperature);
+        let density = self.density();
         self.reynolds.map_or(0.0, |reynolds| density * self.mach * self.sound() * self.length.unwrap_or(1.0) / reynolds)
     }
 

@@ -3,7 +3,8 @@
 //! `flow` says what holds where, `method` which program solves it (rhoCentralFoam with local time steps, or rhoSimpleFoam where the flow is
 //! slow and viscous), `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
 //! `programs`, as fast as `step_control` lets it, to first order in the cells of `first_order`, until it stands still or else to its `mean`, and `forces` sums up what
-//! acts on the walls. OpenFOAM v1912 (Debian's package `openfoam`).
+//! acts on the walls. `adjoint` solves the adjoint of lift or drag then, where it is wanted. OpenFOAM v1912 (Debian's package `openfoam`).
+pub mod adjoint;
 mod dictionaries;
 pub mod drive;
 mod first_order;
@@ -20,6 +21,7 @@ pub use forces::{Coefficients, Walls};
 pub use method::{Method, Scheme, Stage};
 
 use super::{FieldName, Job, Solver};
+use crate::cycle::config::GoalFlow;
 use crate::cycle::data::{Call, Solved};
 use crate::cycle::launch::{self, find_program};
 use crate::formats::foam::{self, CellField};
@@ -28,6 +30,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::io::FieldKind;
 use crate::tasks::Team;
 use drive::{Outcome, PLAN, Plan, RESULT};
+use programs::Program;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -66,6 +69,8 @@ pub struct Config {
     /// Relaxation of velocity and energy, of `simple`; it is halved where a solve blows up.
     #[serde(default = "relaxation")]
     pub relaxation: f64,
+    /// A force whose adjoint is solved too, of a viscous flow up to Mach 0.3.
+    pub adjoint: Option<adjoint::Force>,
 }
 
 fn single() -> u32 {
@@ -93,6 +98,9 @@ const FIELDS: [(&str, usize); 5] = [("p", 1), ("T", 1), ("U", 3), ("rho", 1), ("
 
 /// What a solve tells besides.
 const FUNCTIONALS: [&str; 4] = ["CL", "CD", "steps", "change"];
+
+/// What it tells besides of an adjoint.
+const ADJOINT_STEPS: &str = "adjoint steps";
 
 /// The folder of the case in that of a step.
 const CASE: &str = "case";
@@ -170,21 +178,36 @@ impl Config {
         Ok(kinds.filter(|(_, kind)| *kind == Kind::Wall).map(|(reference, _)| reference).collect())
     }
 
-    fn plan(&self, walls: Vec<i32>, symmetry: Vec<String>, begins: bool) -> Plan {
+    /// A program, where it is found from the folder of the configuration.
+    fn found(&self, program: &str, base: &Path) -> Program {
+        let path = find_program(program, base).unwrap_or_else(|| program.into());
+        Program { path: path.to_string_lossy().into_owned(), processes: self.processes }
+    }
+
+    /// The plan of the adjoint, on these patches.
+    fn plan_of_adjoint(&self, patches: Vec<(String, Kind)>, base: &Path) -> Option<adjoint::Plan> {
+        let force = self.adjoint?;
+        let program = self.found(adjoint::PROGRAM, base);
+        let scheme = self.scheme.unwrap_or(Scheme::LinearUpwind);
+        Some(adjoint::Plan { force, program, patches, iterations: self.steps, scheme, relaxation: self.relaxation })
+    }
+
+    fn plan(&self, walls: Vec<i32>, patches: Vec<(String, Kind)>, begins: bool, base: &Path) -> Plan {
+        let symmetry = patches.iter().filter(|(_, kind)| *kind == Kind::Symmetry).map(|(name, _)| name.clone());
         let method = self.method();
         let &Self { courant, smoothing, relaxation, .. } = self;
         let scheme = self.scheme.unwrap_or(method.scheme());
         Plan {
-            program: self.program().to_owned(),
-            processes: self.processes,
+            program: self.found(self.program(), base),
             flow: self.flow.clone(),
             walls,
-            symmetry,
+            symmetry: symmetry.collect(),
             stage: Stage { method, scheme, courant, smoothing, relaxation },
             start_steps: if begins { self.start_steps.unwrap_or(method.start_steps()) } else { 0 },
             steps: self.steps,
             block: self.block.unwrap_or(method.block()),
             still: self.still,
+            adjoint: self.plan_of_adjoint(patches, base),
         }
     }
 }
@@ -211,21 +234,39 @@ impl Solver for Config {
                     .into(),
             );
         }
-        if find_program(self.program(), base).is_none() {
+        let missing = |program: &&str| find_program(program, base).is_none();
+        let wanted = [Some(self.program()), self.adjoint.map(|_| adjoint::PROGRAM)];
+        if let Some(program) = wanted.into_iter().flatten().find(missing) {
             return Err(format!(
-                "[solver.openfoam] {} is not there: install OpenFOAM (sudo apt install openfoam), or give program with its folder",
-                self.program()
+                "[solver.openfoam] {program} is not there: install OpenFOAM (sudo apt install openfoam), or give program with its folder"
             ));
         }
-        Ok(())
+        self.adjoint.map_or(Ok(()), |_| adjoint::check(&self.flow))
     }
 
     fn fields(&self) -> Option<Vec<FieldName>> {
-        Some(FIELDS.map(|(name, values)| FieldName { name: name.into(), values }).into())
+        let of_adjoint = adjoint::FIELDS.map(|(name, kind)| (name, kind.values()));
+        let of_adjoint = of_adjoint.into_iter().filter(|_| self.adjoint.is_some());
+        Some(
+            FIELDS
+                .into_iter()
+                .chain(of_adjoint)
+                .map(|(name, values)| FieldName { name: name.into(), values })
+                .collect(),
+        )
+    }
+
+    fn flow(&self) -> Option<GoalFlow> {
+        self.adjoint?;
+        let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+        let of_adjoint = adjoint::FIELDS.map(|(name, _)| name);
+        let (density, mu) = (self.flow.density(), Some(self.flow.viscosity()));
+        Some(GoalFlow { density, mu, ..GoalFlow::incompressible(names(&["U", "p"]), names(&of_adjoint)) })
     }
 
     fn functionals(&self) -> Option<Vec<String>> {
-        Some(FUNCTIONALS.map(String::from).into())
+        let of_adjoint = self.adjoint.map(|_| ADJOINT_STEPS);
+        Some(FUNCTIONALS.into_iter().chain(of_adjoint).map(String::from).collect())
     }
 
     fn result(&self, data: &Dataset, folder: &Path) -> Result<Vec<PathBuf>, String> {
@@ -251,16 +292,18 @@ impl Solver for Config {
             foam::write_cell_field(&time.join(name), field, data.mesh.tets.len(), &entries, false)
                 .map_err(|error| error.to_string())?;
         }
-        let symmetry = patches
-            .iter()
-            .filter(|patch| kinds[&patch.reference] == Kind::Symmetry)
-            .map(|patch| patch.name.clone())
-            .collect();
-        dictionaries::write_constant(&case, &self.flow, self.method())?;
-        let mut plan = self.plan(self.walls(&data)?, symmetry, data.fields.is_empty());
-        if let Some(program) = find_program(self.program(), job.base) {
-            plan.program = program.to_string_lossy().into_owned();
+        let patches: Vec<_> = patches.iter().map(|patch| (patch.name.clone(), kinds[&patch.reference])).collect();
+        if self.adjoint.is_some() {
+            for (name, kind) in adjoint::FIELDS {
+                let before = data.fields.iter().find(|field| field.name == name && field.kind == kind);
+                let cells = |field: &NamedField| {
+                    formats::vertices_to_cells(Team::alone(), &data.mesh, &field.values, kind.values())
+                };
+                adjoint::begin(&case, data.mesh.tets.len(), &patches, (name, kind), before.map(cells))?;
+            }
         }
+        dictionaries::write_constant(&case, &self.flow, self.method())?;
+        let plan = self.plan(self.walls(&data)?, patches, data.fields.is_empty(), job.base);
         let text = serde_json::to_string_pretty(&plan).map_err(|error| error.to_string())?;
         std::fs::write(case.join(PLAN), text).map_err(|error| format!("{}: {error}", case.join(PLAN).display()))?;
         let own = std::env::current_exe().map_err(|error| format!("this program's own file: {error}"))?;
@@ -276,23 +319,34 @@ impl Solver for Config {
         let outcome: Outcome = serde_json::from_str(&text).map_err(|error| named(&error))?;
         let data = job.dataset()?;
         let still = if self.flow.reynolds.is_some() { self.walls(&data)? } else { Vec::new() };
-        let fields = fields(&self.flow, &data.mesh, &still, &outcome.fields(&case)?)?;
+        let mut fields = fields(&self.flow, &data.mesh, &still, &outcome.fields(&case)?)?;
+        if self.adjoint.is_some() {
+            let time = adjoint::fields(&case)?;
+            for (name, _) in adjoint::FIELDS {
+                fields.push(at_vertices(&data.mesh, &time, name)?);
+            }
+        }
         let Coefficients { lift, drag } = outcome.coefficients;
         let steps = outcome.steps as f64;
-        let functionals = FUNCTIONALS.map(String::from).into_iter().zip([lift, drag, steps, outcome.change]);
-        Ok(Solved { fields, functionals: functionals.collect() })
+        let functionals = FUNCTIONALS.into_iter().zip([lift, drag, steps, outcome.change]);
+        let of_adjoint = outcome.adjoint.map(|made| (ADJOINT_STEPS, made as f64));
+        let functionals = functionals.chain(of_adjoint).map(|(name, value)| (name.to_owned(), value)).collect();
+        Ok(Solved { fields, functionals })
     }
+}
+
+/// A field of the cells, at the vertices.
+fn at_vertices(mesh: &TetMesh, time: &Path, name: &str) -> Result<NamedField, String> {
+    let path = time.join(name);
+    let read = foam::read_cell_field(&path, mesh.tets.len()).map_err(|error| error.to_string())?;
+    let CellField { kind, values } = read.map_err(|class| format!("{}: a {class}", path.display()))?;
+    let values = formats::cells_to_vertices(Team::alone(), mesh, &values, kind.values());
+    Ok(NamedField { name: name.to_owned(), kind, values })
 }
 
 /// Pressure, temperature, velocity, density and Mach number at the vertices; on surfaces of the references `still` nothing moves.
 fn fields(flow: &Flow, mesh: &TetMesh, still: &[i32], time: &Path) -> Result<Vec<NamedField>, String> {
-    let read = |name: &str| -> Result<NamedField, String> {
-        let path = time.join(name);
-        let read = foam::read_cell_field(&path, mesh.tets.len()).map_err(|error| error.to_string())?;
-        let CellField { kind, values } = read.map_err(|class| format!("{}: a {class}", path.display()))?;
-        let values = formats::cells_to_vertices(Team::alone(), mesh, &values, kind.values());
-        Ok(NamedField { name: name.to_owned(), kind, values })
-    };
+    let read = |name: &str| at_vertices(mesh, time, name);
     let (p, t, mut u) = (read("p")?, read("T")?, read("U")?);
     for (nodes, _) in mesh.triangles.iter().filter(|(_, reference)| still.contains(reference)) {
         nodes.into_iter().for_each(|v| u.values[3 * v as usize..][..3].fill(0.0));

@@ -1,7 +1,7 @@
 //! Starts OpenFOAM's programs, the solver alone or in several processes.
-use super::drive::Plan;
 use crate::cycle::launch::ENVIRONMENT;
 use crate::process::{Log, Outcome, Runner, Tie, last_lines};
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
@@ -10,6 +10,15 @@ use std::sync::atomic::AtomicBool;
 fn installation() -> Option<PathBuf> {
     let debian = || Some(PathBuf::from("/usr/share/openfoam")).filter(|folder| folder.is_dir());
     std::env::var_os("WM_PROJECT_DIR").map(PathBuf::from).or_else(debian)
+}
+
+/// A program that solves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Program {
+    /// Its name on the PATH, or its file.
+    pub path: String,
+    /// Processes of it; above 1 by mpirun.
+    pub processes: u32,
 }
 
 /// Why a solve came to no good end.
@@ -24,14 +33,15 @@ pub enum Failure {
 ///
 /// # Errors
 /// With the last lines of the log, where one of them fails.
-pub fn solve(case: &Path, plan: &Plan, log: &Path, stop: &AtomicBool) -> Result<(), Failure> {
+pub fn solve(case: &Path, program: &Program, log: &Path, stop: &AtomicBool) -> Result<(), Failure> {
+    let Program { path: solver, processes } = program;
     let named = |path: &Path, error: std::io::Error| Failure::Stopped(format!("{}: {error}", path.display()));
     Log::create(log).map_err(|error| named(log, error))?;
     let run = |words: &[&str]| run(case, log, stop, words);
-    if plan.processes < 2 {
-        return run(&[&plan.program]);
+    if *processes < 2 {
+        return run(&[solver]);
     }
-    let count = plan.processes.to_string();
+    let count = processes.to_string();
     let dictionary = format!(
         "FoamFile {{ version 2.0; format ascii; class dictionary; object decomposeParDict; }}\n\
          numberOfSubdomains {count};\nmethod simple;\ncoeffs {{ n ({count} 1 1); delta 0.001; }}\n"
@@ -39,12 +49,12 @@ pub fn solve(case: &Path, plan: &Plan, log: &Path, stop: &AtomicBool) -> Result<
     let path = case.join("system/decomposeParDict");
     std::fs::write(&path, dictionary).map_err(|error| named(&path, error))?;
     // The other programs lie beside the solver.
-    let beside = |name: &str| Path::new(&plan.program).with_file_name(name).to_string_lossy().into_owned();
+    let beside = |name: &str| Path::new(solver).with_file_name(name).to_string_lossy().into_owned();
     run(&[&beside("decomposePar"), "-force", "-latestTime"])?;
-    let solved = run(&["mpirun", "-np", &count, &plan.program, "-parallel"]);
+    let solved = run(&["mpirun", "-np", &count, solver, "-parallel"]);
     // Of a solve that failed too, where it can be: it shows where.
     let joined = solved.and(run(&[&beside("reconstructPar"), "-latestTime"]));
-    for process in 0..plan.processes {
+    for process in 0..*processes {
         let _ = std::fs::remove_dir_all(case.join(format!("processor{process}"))); // made anew each time
     }
     joined
