@@ -125,7 +125,7 @@ impl Observer for Progress {
         }
         self.expect(cycle.cycle);
         if !self.headed.swap(true, Relaxed) {
-            let names: Vec<String> = cycle.functionals.keys().map(|name| format!("{name:>12}")).collect();
+            let names: Vec<String> = cycle.functionals.keys().map(|name| format!("{name:>0$}", width(name))).collect();
             self.tell(&format!(
                 "{:>5} {:>11} {:>9} {:>10} {:>7}{}",
                 "cycle",
@@ -139,7 +139,8 @@ impl Observer for Progress {
         let complexity = cycle.complexity.map_or_else(|| "-".into(), figure);
         let unit = cycle.statistics.as_ref().and_then(|all| all["metric"]["unit_edges"].as_f64());
         let unit = unit.map_or_else(|| "-".into(), |share| format!("{:.1} %", 100.0 * share));
-        let values: Vec<String> = cycle.functionals.values().map(|&value| format!("{:>12}", figure(value))).collect();
+        let value = |(name, &value): (&String, &f64)| format!("{:>1$}", figure(value), width(name));
+        let values: Vec<String> = cycle.functionals.iter().map(value).collect();
         self.tell(&format!(
             "{:>5} {complexity:>11} {:>9} {:>10} {unit:>7}{}",
             cycle.cycle,
@@ -148,6 +149,11 @@ impl Observer for Progress {
             values.concat()
         ));
     }
+}
+
+/// The width of the column of a functional.
+fn width(name: &str) -> usize {
+    (name.chars().count() + 2).max(12)
 }
 
 /// The time of the cycles to come, up to the adaptation `last`, in that of the one that ended with the solve of `cycle`. None of the first solve, on

@@ -12,6 +12,9 @@ fn installation() -> Option<PathBuf> {
     std::env::var_os("WM_PROJECT_DIR").map(PathBuf::from).or_else(debian)
 }
 
+/// So many lines of a fatal error are shown.
+const FATAL_LINES: usize = 4;
+
 /// A program that solves.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Program {
@@ -60,6 +63,13 @@ pub fn solve(case: &Path, program: &Program, log: &Path, stop: &AtomicBool) -> R
     joined
 }
 
+/// What OpenFOAM says of a fatal error, above the trace of its calls; else the end of the log.
+fn why(log: &Path) -> String {
+    let text = std::fs::read(log).map(|text| String::from_utf8_lossy(&text).into_owned()).unwrap_or_default();
+    let lines = |at: usize| text[at..].lines().map(str::trim).filter(|line| !line.is_empty()).take(FATAL_LINES);
+    text.find("FOAM FATAL").map_or_else(|| last_lines(log), |at| lines(at).collect::<Vec<_>>().join(" | "))
+}
+
 fn run(case: &Path, log: &Path, stop: &AtomicBool, words: &[&str]) -> Result<(), Failure> {
     let said = Log::open(log).map_err(|error| Failure::Stopped(format!("{}: {error}", log.display())))?;
     let mut command = Command::new(words[0]);
@@ -73,10 +83,29 @@ fn run(case: &Path, log: &Path, stop: &AtomicBool, words: &[&str]) -> Result<(),
     let outcome = Runner { tie: Tie::Shared, limit: None, stop, log: Some(&said) }.run(&mut command, |_| ());
     let outcome = outcome
         .map_err(|error| Failure::Stopped(format!("{} could not be started ({error}): is it installed?", words[0])))?;
-    let told = || format!("{} {outcome}; the end of {}:\n{}", words.join(" "), log.display(), last_lines(log));
+    let told = || format!("{} {outcome}; the end of {}:\n{}", words.join(" "), log.display(), why(log));
     match outcome {
         Outcome::Done => Ok(()),
         Outcome::Code(_) | Outcome::Crashed(_) => Err(Failure::BlewUp(told())),
         _ => Err(Failure::Stopped(told())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fatal_error_is_told_without_its_trace() {
+        let folder = tempfile::tempdir().unwrap();
+        let log = folder.path().join("log");
+        std::fs::write(
+            &log,
+            "Time = 1\n\n--> FOAM FATAL ERROR: \n\n    [U[0 1 -2]] == [p]\n    From b\n    in c\n#0 d\n#1 e\n",
+        )
+        .unwrap();
+        assert_eq!(why(&log), "FOAM FATAL ERROR: | [U[0 1 -2]] == [p] | From b | in c");
+        std::fs::write(&log, "Time = 1\nsigFpe\n").unwrap();
+        assert!(why(&log).contains("sigFpe"));
     }
 }
