@@ -3,6 +3,7 @@
 //! Imports go one way: `run → { passes → operations → { surface, schedule }, coarsen, extract } → core`.
 #[cfg(any(test, feature = "internals"))]
 pub mod bench_support;
+pub mod beside;
 mod coarsen;
 mod core;
 mod extract;

@@ -10,6 +10,7 @@ mod error;
 mod exponential;
 pub mod field;
 pub mod frame;
+pub mod frozen;
 pub mod from_image;
 pub mod from_points;
 pub mod goal;

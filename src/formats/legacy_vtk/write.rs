@@ -117,10 +117,11 @@ fn names(out: &mut Out, data: &Dataset) -> io::Result<()> {
 }
 
 /// The references of all cells, and of each kind of them.
-fn references(out: &mut Out, mesh: &TetMesh, cells: usize) -> io::Result<()> {
+fn references(out: &mut Out, data: &Dataset, cells: usize) -> io::Result<()> {
+    let mesh = &data.mesh;
     let all = [&mesh.tets.refs, &mesh.triangles.refs, &mesh.edges.refs].into_iter().flatten().copied().collect();
     out.text.put(format_args!("FIELD FieldData {}\n", 1 + BY_KIND.len()));
-    for (name, values) in [(REFERENCES[0], all)].into_iter().chain(BY_KIND.into_iter().zip(by_kind(mesh))) {
+    for (name, values) in [(REFERENCES[0], all)].into_iter().chain(BY_KIND.into_iter().zip(by_kind(data))) {
         out.text.put(format_args!("{name} 1 {cells} int\n"));
         out.ints(values)?;
     }
