@@ -39,6 +39,7 @@ pub use dataset::{Dataset, NamedField};
 pub use format::Format;
 pub use msh::read_msh;
 pub use placement::Placement;
+pub use stacks::check_stack;
 pub use surfaces::{Shape, read_surface};
 
 use crate::geometry::names;
@@ -213,7 +214,7 @@ pub fn add(
 ) -> Result<Vec<String>, Error> {
     let format = Format::of(path)?;
     check::check(team, path, data)?;
-    stacks::check_writable(path, format, data)?;
+    check_stack(path, &data.stack)?;
     // A case of OpenFOAM has values at the pieces of the cells too.
     let has_cells = format.holds_stacks() && format != Format::Foam;
     let written = if has_cells { data.as_written() } else { Cow::Borrowed(data) };

@@ -1,6 +1,6 @@
 //! Prisms, pyramids and hexahedra, and which formats have them.
 use super::format::vtk::{HEXAHEDRON, PRISM, PYRAMID};
-use super::{Dataset, Format, error};
+use super::{Format, error};
 use crate::mesh::TetMesh;
 use crate::mesh::io::Error;
 use crate::mesh::stack::{Kind, Stack};
@@ -26,15 +26,19 @@ pub(super) fn join(path: &Path, mesh: &mut TetMesh, stack: &mut Stack, notices: 
     Ok(())
 }
 
-/// Refuses to write cells to a format that has no place for them.
-pub(super) fn check_writable(path: &Path, format: Format, data: &Dataset) -> Result<(), Error> {
-    if data.stack.is_empty() || format.holds_stacks() || format.is_fields() || matches!(format, Format::Surface(_)) {
+/// Refuses to write prisms, pyramids and hexahedra to a file whose format has no place for them.
+///
+/// # Errors
+/// [`Error::Content`], with the remedy; and when the format is not known.
+pub fn check_stack(path: &Path, stack: &Stack) -> Result<(), Error> {
+    let format = Format::of(path)?;
+    if stack.is_empty() || format.holds_stacks() || format.is_fields() || matches!(format, Format::Surface(_)) {
         return Ok(());
     }
     let message = format!(
         "the mesh has {}, for which this format is not written: give .su2, .ugrid, .msh, .vtu or a case of OpenFOAM, or split them by \
          `geo-adapt convert --split`",
-        data.stack.told()
+        stack.told()
     );
     Err(error::at(path, "extension", message))
 }

@@ -137,7 +137,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], encoding: Encoding) -> Result<Read
     let quads = Elements { nodes: of_quads, refs: source.references(quadrilaterals)? };
     let nodes = source.elements(tets)?;
     mesh.tets = Elements { refs: vec![1; nodes.len()], nodes };
-    let mut stack = Stack { quads, ..Stack::default() };
+    let mut stack = Stack::default();
+    stack.quads = quads;
     let pyramids = source.elements::<5>(pyramids)?.into_iter().map(|nodes| PYRAMID.map(|i| nodes[i]));
     stack.cells.extend(pyramids.map(|nodes| Cell::new(Kind::Pyramid, &nodes, 1)));
     stack.cells.extend(source.elements::<6>(prisms)?.iter().map(|nodes| Cell::new(Kind::Prism, nodes, 1)));

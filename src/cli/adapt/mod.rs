@@ -22,6 +22,7 @@ use super::waiting::Waiting;
 use super::{Outcome, interrupt};
 use crate::adapt::forecast::most_in_memory;
 use crate::adapt::{self, Adapted, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
+use crate::formats::check_stack;
 use crate::geometry::classify::keeps_references;
 use crate::memory;
 use crate::metric::Field;
@@ -127,6 +128,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut notices = Vec::new();
     let mut line = Some(Waiting::for_what("reading the mesh"));
     let mut given = arguments.input.read(team, &mut notices)?;
+    check_stack(&arguments.output, &given.stack)?;
     let (mut cad, mut start) = (None, Some(start));
     for cycle in 1..=arguments.cycles {
         let start = start.take().unwrap_or_else(Instant::now);

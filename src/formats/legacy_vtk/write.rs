@@ -4,7 +4,6 @@ use super::super::text::Text;
 use super::super::vtu::{BY_KIND, REFERENCES, by_kind, by_name, to_vtk};
 use super::super::{Dataset, error};
 use super::values::encoded;
-use crate::mesh::TetMesh;
 use crate::mesh::io::{Batch, Error};
 use std::io::{self, Write};
 use std::path::Path;
@@ -87,7 +86,7 @@ fn emit(mut out: Out, data: &Dataset, total: usize) -> io::Result<()> {
     out.ints(counts.into_iter().flat_map(|(kind, count)| std::iter::repeat_n(kind as i32, count)))?;
     if cells > 0 {
         out.text.put(format_args!("CELL_DATA {cells}\n"));
-        references(&mut out, mesh, cells)?;
+        references(&mut out, data, cells)?;
     }
     at_points(&mut out, data)?;
     out.text.finish()

@@ -99,6 +99,22 @@ impl Cell {
         self.kind.faces().iter().map(|face| face.iter().map(|&i| self.nodes[i]).collect())
     }
 
+    /// The same, normals outwards.
+    pub fn outward_faces(&self, points: &[Vec3]) -> impl Iterator<Item = Vec<u32>> + '_ {
+        let turned = self.volume(points) < 0.0;
+        self.faces().map(move |mut face| {
+            if turned {
+                face.reverse();
+            }
+            face
+        })
+    }
+
+    /// Six times its volume, negative where its base is seen clockwise from the top.
+    pub(super) fn volume(&self, points: &[Vec3]) -> f64 {
+        self.tets(false).into_iter().map(|nodes| volume(points, nodes)).sum()
+    }
+
     /// The tetrahedra that it is cut into, negative where its base is seen clockwise from the top, but for `turned`.
     pub fn tets(&self, turned: bool) -> Vec<[u32; 4]> {
         let lowest = self.nodes().iter().copied().min().unwrap_or_default();

@@ -1,7 +1,7 @@
 //! Whether the cells can be, alone and beside the tetrahedra.
 use super::error::{Error, Of};
 use super::sides::{Side, Sides, against_tets};
-use super::{Stack, cell};
+use super::Stack;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::sorted3;
 use std::collections::HashSet;
@@ -17,7 +17,7 @@ pub(super) fn check(stack: &Stack, mesh: &TetMesh) -> Result<Vec<bool>, Error> {
     }
     let mut turned = Vec::with_capacity(stack.cells.len());
     for (at, cell) in stack.cells.iter().enumerate() {
-        let volume: f64 = cell.tets(false).into_iter().map(|nodes| cell::volume(&mesh.vertices, nodes)).sum();
+        let volume = cell.volume(&mesh.vertices);
         // Neither positive nor negative where a coordinate is no number.
         if !(volume > 0.0 || volume < 0.0) {
             return Err(Error::Flat { of: of_cell(at) });

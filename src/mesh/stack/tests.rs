@@ -1,32 +1,7 @@
 //! Stacks made by hand.
 use super::*;
-use crate::mesh::samples::cube;
+use crate::mesh::samples::{of_all_kinds, on_prisms};
 use crate::mesh::vector::volume6;
-
-/// A cube of n³ cells of six tetrahedra with a layer of prisms of some height under its bottom, where there are triangles of reference 5.
-fn on_prisms(n: u32, height: f64) -> (TetMesh, Stack) {
-    let mut mesh = cube(n);
-    let bottom: Vec<[u32; 3]> = mesh.triangles.iter().filter(|(_, side)| *side == 5).map(|(nodes, _)| nodes).collect();
-    let mut below = std::collections::BTreeMap::new();
-    let mut stack = Stack::default();
-    let mut lower = |mesh: &mut TetMesh, v: u32| {
-        *below.entry(v).or_insert_with(|| {
-            let [x, y, _] = mesh.vertices[v as usize];
-            mesh.vertices.push([x, y, -height]);
-            mesh.vertex_refs.push(0);
-            mesh.vertices.len() as u32 - 1
-        })
-    };
-    let kept: Vec<_> = mesh.triangles.iter().filter(|(_, side)| *side != 5).collect();
-    mesh.triangles = Elements::default();
-    kept.into_iter().for_each(|(nodes, side)| mesh.triangles.push(nodes, side));
-    for [a, b, c] in bottom {
-        let [d, e, f] = [a, b, c].map(|v| lower(&mut mesh, v));
-        stack.cells.push(Cell::new(Kind::Prism, &[a, b, c, d, e, f], 1));
-        mesh.triangles.push([d, e, f], 5);
-    }
-    (mesh, stack)
-}
 
 fn volume_of(mesh: &TetMesh, tets: &[[u32; 4]]) -> f64 {
     let volume = |nodes: &[u32; 4]| {
@@ -85,10 +60,28 @@ fn a_stack_fits_to_itself_and_to_the_tetrahedra() {
     let outside = Outside::of(&stack, &mut mesh);
     assert_eq!((outside.interface.len(), outside.held.len()), (18, 16));
     assert_eq!((outside.mesh.tets.len(), outside.mesh.triangles.len()), (before.tets.len(), 5 * 18));
+    // Faces of the stack alone, halves of quadrilaterals among them, stay with it.
+    assert_eq!(stack.quads.len(), 12);
     // Put together without a change, the stack comes first.
     let whole = outside.rejoin(&stack, &mesh, &outside.mesh, &outside.held);
     // Vertices below the prisms' tops are of no tetrahedron, and no adapted mesh has such.
     assert_eq!(whole.map(|whole| whole.stack.cells[0].nodes().iter().all(|&v| v < 32)), Ok(true));
+}
+
+#[test]
+fn cells_of_all_kinds_fit_together() {
+    let (mut mesh, mut stack) = of_all_kinds();
+    assert_eq!(stack.join(&mut mesh), Ok(None));
+    assert!((volume_of(&mesh, &mesh.tets.nodes) - (1.0 + 0.3 + 0.5 * 0.7 * 0.3)).abs() < 1e-12);
+    assert_eq!((stack.counts(), stack.told().as_str()), ([1; 3], "1 pyramid, 1 prism, 1 hexahedron"));
+    let faces = crate::mesh::adjacency::sorted_faces(&mesh.tets.nodes);
+    let mut open: Vec<_> = faces.chunk_by(|a, b| a.nodes == b.nodes).filter(|group| group.len() == 1).map(|group| group[0].nodes).collect();
+    let mut listed: Vec<_> = mesh.triangles.nodes.iter().map(|&nodes| crate::mesh::adjacency::sorted3(nodes)).collect();
+    open.sort_unstable();
+    listed.sort_unstable();
+    assert_eq!(open, listed);
+    let outside = Outside::of(&stack, &mut mesh);
+    assert_eq!((outside.interface.len(), &outside.held[..]), (4, &[0, 1, 2, 3, 8][..]));
 }
 
 #[test]
