@@ -273,7 +273,9 @@ fn emit(to: &mut dyn Write, (mesh, stack): (&TetMesh, &Stack), encoding: Encodin
     let [pyramids, prisms, hexahedra] = stack.counts();
     let [vertices, triangles, quads, tets] =
         [mesh.vertices.len(), mesh.triangles.len(), stack.quads.len(), mesh.tets.len()];
-    [vertices, triangles, quads, tets, pyramids, prisms, hexahedra].iter().for_each(|&count| int(&mut text, count as i64));
+    [vertices, triangles, quads, tets, pyramids, prisms, hexahedra]
+        .iter()
+        .for_each(|&count| int(&mut text, count as i64));
     end_row(&mut text)?;
     for point in &mesh.vertices {
         point.iter().for_each(|&x| real(&mut text, x));

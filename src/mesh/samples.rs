@@ -1,7 +1,7 @@
 //! Small meshes for tests and benches; no part of the interface.
 use super::adjacency::{FACES, NONE, neighbours, sorted3};
-use super::vector::{Vec3, volume6};
 use super::stack::{Cell, Kind, Stack};
+use super::vector::{Vec3, volume6};
 use super::{Elements, TetMesh};
 use std::collections::BTreeMap;
 
@@ -80,7 +80,9 @@ pub fn of_all_kinds() -> (TetMesh, Stack) {
     vertices.extend([[0.0, 0.0, -0.3], [1.0, 0.0, -0.3], [1.0, 1.0, -0.3], [0.0, 1.0, -0.3]]);
     vertices.extend([[-0.7, 0.0, -0.3], [-0.7, 1.0, -0.3]]);
     let mut mesh = TetMesh { vertex_refs: vec![0; vertices.len()], vertices, ..TetMesh::default() };
-    for ([a, b, c, d], side) in [([0, 1, 5, 4], 3), ([1, 2, 6, 5], 2), ([2, 3, 7, 6], 4), ([3, 0, 4, 7], 1), ([4, 5, 6, 7], 6)] {
+    for ([a, b, c, d], side) in
+        [([0, 1, 5, 4], 3), ([1, 2, 6, 5], 2), ([2, 3, 7, 6], 4), ([3, 0, 4, 7], 1), ([4, 5, 6, 7], 6)]
+    {
         for [a, b, c] in [[a, b, c], [a, c, d]] {
             mesh.tets.push([a, c, b, 8], 1);
             mesh.triangles.push([a, b, c], side);
@@ -92,9 +94,14 @@ pub fn of_all_kinds() -> (TetMesh, Stack) {
     stack.cells.push(Cell::new(Kind::Hexahedron, &[9, 10, 11, 12, 0, 1, 2, 3], 1));
     mesh.triangles.push([0, 13, 9], 3);
     mesh.triangles.push([3, 12, 14], 4);
-    for (quad, side) in
-        [([9, 12, 11, 10], 5), ([9, 13, 14, 12], 5), ([0, 3, 14, 13], 1), ([0, 9, 10, 1], 3), ([1, 10, 11, 2], 2), ([2, 11, 12, 3], 4)]
-    {
+    for (quad, side) in [
+        ([9, 12, 11, 10], 5),
+        ([9, 13, 14, 12], 5),
+        ([0, 3, 14, 13], 1),
+        ([0, 9, 10, 1], 3),
+        ([1, 10, 11, 2], 2),
+        ([2, 11, 12, 3], 4),
+    ] {
         stack.quads.push(quad, side);
     }
     (mesh, stack)

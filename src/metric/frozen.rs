@@ -46,7 +46,10 @@ pub fn fit(team: Team<'_>, mesh: &TetMesh, triangles: &[[u32; 3]], logs: &mut [S
 /// the ratio times the size along it, and no less than what the triangles rise out of the plane: else their edges would be long.
 fn at_vertex(triangles: &[[Vec3; 3]], asked: &Sym3, ratio: f64) -> Sym3 {
     let normals = triangles.iter().map(|&[a, b, c]| area2(a, b, c));
-    let normal = normals.fold(Sym3::ZERO, |sum, n| sum.plus(Sym3::outer(n, 1.0 / norm(n).max(f64::MIN_POSITIVE)))).eigen().vectors[2];
+    let normal = normals
+        .fold(Sym3::ZERO, |sum, n| sum.plus(Sym3::outer(n, 1.0 / norm(n).max(f64::MIN_POSITIVE))))
+        .eigen()
+        .vectors[2];
     let (sum, area) = triangles.iter().fold((Sym3::ZERO, 0.0), |(sum, all), &triangle| {
         let area = norm(area2(triangle[0], triangle[1], triangle[2]));
         (sum.plus(in_plane(triangle).ln().times(area)), all + area)
@@ -112,7 +115,8 @@ fn coarsen(
     // The nearest fitted vertex, along edges.
     let mut from: Vec<u32> = vec![u32::MAX; logs.len()];
     let mut way = vec![f64::INFINITY; logs.len()];
-    let mut heap: BinaryHeap<Reverse<(Length, u32, u32)>> = fitted.keys().map(|&v| Reverse((Length(0.0), v, v))).collect();
+    let mut heap: BinaryHeap<Reverse<(Length, u32, u32)>> =
+        fitted.keys().map(|&v| Reverse((Length(0.0), v, v))).collect();
     fitted.keys().for_each(|&v| way[v as usize] = 0.0);
     let mut coarser = 0;
     while let Some(Reverse((Length(length), v, source))) = heap.pop() {
@@ -166,13 +170,15 @@ mod tests {
         for [i, j] in [[0, 1], [1, 2], [2, 0]] {
             assert!((m.quadratic(sub(triangle[i], triangle[j])) - 1.0).abs() < 1e-12);
         }
-        assert!((m.sqrt_det() - (2.0 / (3f64.sqrt() * 0.6)).powf(-1.5).recip()).abs() < 1e-9, "{}", m.sqrt_det());
+        // Twice its area is 0.6.
+        assert!((m.sqrt_det() - (3f64.sqrt() / 1.2).powf(1.5)).abs() < 1e-9, "{}", m.sqrt_det());
     }
 
     #[test]
     fn sizes_along_are_those_of_the_triangles_and_go_over_into_those_asked_for() {
         let mesh = cube(8);
-        let bottom: Vec<[u32; 3]> = mesh.triangles.iter().filter(|(_, side)| *side == 5).map(|(nodes, _)| nodes).collect();
+        let bottom: Vec<[u32; 3]> =
+            mesh.triangles.iter().filter(|(_, side)| *side == 5).map(|(nodes, _)| nodes).collect();
         for asked in [1.0, 0.01] {
             let size = |h: f64| Sym3::ZERO.plus_identity(-2.0 * f64::ln(h));
             let mut logs = vec![size(asked); mesh.vertices.len()];

@@ -36,7 +36,8 @@ fn all_kinds() -> Dataset {
 fn shape(data: &Dataset) -> (Vec<Vec<Vec<[u64; 3]>>>, Vec<(i32, Vec<[u64; 3]>)>) {
     let bits = |v: &u32| data.mesh.vertices[*v as usize].map(f64::to_bits);
     let stack = &data.stack;
-    let cells = Kind::ALL.map(|kind| stack.cells_of(kind).map(|cell| cell.nodes().iter().map(bits).collect()).collect());
+    let cells =
+        Kind::ALL.map(|kind| stack.cells_of(kind).map(|cell| cell.nodes().iter().map(bits).collect()).collect());
     let quads = stack.quads.iter().map(|(nodes, reference)| (reference, nodes.iter().map(bits).collect()));
     let triangles = data.mesh.triangles.iter().take(if stack.is_empty() { usize::MAX } else { stack.own()[1] });
     let triangles = triangles.map(|(nodes, reference)| (reference, nodes.iter().map(bits).collect()));
@@ -58,7 +59,9 @@ fn every_format_brings_cells_back() {
             let (mut found, mut wanted) = (shape(&found), shape(&data));
             if name == "case/" {
                 // Cells are known by their faces there.
-                let sort = |cells: &mut Vec<Vec<Vec<[u64; 3]>>>| cells.iter_mut().flatten().for_each(|nodes| nodes.sort_unstable());
+                let sort = |cells: &mut Vec<Vec<Vec<[u64; 3]>>>| {
+                    cells.iter_mut().flatten().for_each(|nodes| nodes.sort_unstable())
+                };
                 sort(&mut found.0);
                 sort(&mut wanted.0);
             }
@@ -101,8 +104,12 @@ fn what_cannot_hold_them_says_so_and_what_to_do() {
     for name in ["a.meshb", "a.vtk", "a.xdmf", "a.cgns", "a.inp", "a.bdf"] {
         let path = place.path(name);
         let error = formats::write_on(Team::alone(), &path, &data, Options::default()).unwrap_err().to_string();
-        let (told, remedy) = ("the mesh has 1 pyramid, 1 prism, 1 hexahedron, for which", "`geo-adapt convert --split`");
-        assert!(error.starts_with(&path.display().to_string()) && error.contains(told) && error.contains(remedy), "{error}");
+        let (told, remedy) =
+            ("the mesh has 1 pyramid, 1 prism, 1 hexahedron, for which", "`geo-adapt convert --split`");
+        assert!(
+            error.starts_with(&path.display().to_string()) && error.contains(told) && error.contains(remedy),
+            "{error}"
+        );
         assert!(!path.exists());
         place.write(name, &Dataset { stack: Stack::default(), ..data.clone() }, false);
         assert_eq!(read(&path).mesh.tets.len(), 10 + 2 + 3 + 6, "{name}");

@@ -29,7 +29,10 @@ fn what_is_wrong_is_named_by_its_line() {
     assert_eq!(with("NDIME= 3", "NDIME= 2"), "line 4: NDIME= 2: meshes in 3D are read; give one");
     assert_eq!(with("NDIME= 3", ""), "line 6: NDIME= must come first; write NDIME= 3 above");
     let voxel = with("10 0 1 2 3 0", "11 0 1 2 3 4 5 6 7 0");
-    assert!(voxel.starts_with("line 7: an element of type 11 (voxel): tetrahedra, prisms, pyramids and hexahedra are read"), "{voxel}");
+    assert!(
+        voxel.starts_with("line 7: an element of type 11 (voxel): tetrahedra, prisms, pyramids and hexahedra are read"),
+        "{voxel}"
+    );
     let far = with("10 0 1 2 3 0", "12 0 1 2 3 4 5 6 7 0");
     let wanted = "cell 1 of those that are no tetrahedra, a hexahedron: it has a vertex that is not there: there are 4";
     assert_eq!(far, wanted);

@@ -175,7 +175,8 @@ fn what_is_wrong_is_named() {
         refusal("a.vtu", file.replacen(from, to, 1))
     };
     assert!(
-        with(" 10\n 10\n 5\n", " 11\n 10\n 5\n").starts_with("cell 1 of 5: a cell of type 11 (voxel): tetrahedra, prisms")
+        with(" 10\n 10\n 5\n", " 11\n 10\n 5\n")
+            .starts_with("cell 1 of 5: a cell of type 11 (voxel): tetrahedra, prisms")
     );
     assert!(with(" 10\n 10\n 5\n", " 12\n 10\n 5\n").starts_with("cell 1 of 5: a cell of type 12 with 4 points"));
     assert!(with(" 10\n 10\n 5\n", " 5\n 10\n 5\n").starts_with("cell 1 of 5: a cell of type 5 with 4 points"));

@@ -169,7 +169,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
             return Ok(ExitCode::from(memory::end::EXIT_CODE));
         }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
-        let (mesh, stack, names) = (std::mem::take(&mut report.mesh), std::mem::take(&mut report.stack), report.names.clone());
+        let (mesh, stack, names) =
+            (std::mem::take(&mut report.mesh), std::mem::take(&mut report.stack), report.names.clone());
         given = Given { mesh, stack, logs, names, fields: Vec::new(), is_result: true };
         cad = arguments.input.has_model().then_some(input.on.model);
     }

@@ -2,8 +2,8 @@
 use super::input::OnModel;
 use super::meet::Meeting;
 use super::rounds::Parts;
-use super::stack::Kept;
 use super::source::Chords;
+use super::stack::Kept;
 use crate::adapt::forecast::Forecast;
 use crate::adapt::{Adapted, GrowthEnd, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;

@@ -36,11 +36,16 @@ impl Kept {
     /// What the table says of it.
     pub fn row(&self, table: &mut Table) {
         let Self { told, triangles, .. } = self;
-        table.row("kept as they are", format_args!("{told}, {triangles} triangles towards the tetrahedra; figures are of these"));
+        table.row(
+            "kept as they are",
+            format_args!("{told}, {triangles} triangles towards the tetrahedra; figures are of these"),
+        );
         if let Some(Fitted { vertices, coarser, finer }) = self.metric {
             table.row(
                 "metric fitted to them",
-                format_args!("{vertices} vertices; beside them larger sizes at {coarser} vertices, smaller ones at {finer}"),
+                format_args!(
+                    "{vertices} vertices; beside them larger sizes at {coarser} vertices, smaller ones at {finer}"
+                ),
             );
         }
     }
@@ -74,7 +79,11 @@ impl InputArguments {
         let name = self.mesh.display();
         let (mut mesh, on, beside) = Beside::of(team, (stack, outside), whole, on, model);
         if mesh.tets.is_empty() {
-            return Err(format!("{name}: the mesh has {} alone, and no tetrahedra that could be adapted", beside.stack.told()).into());
+            return Err(format!(
+                "{name}: the mesh has {} alone, and no tetrahedra that could be adapted",
+                beside.stack.told()
+            )
+            .into());
         }
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let copies = split_nonmanifold(team, &mut mesh, &faces).map_err(|error| format!("{name}: {error}"))?;
@@ -92,7 +101,13 @@ impl InputArguments {
     }
 
     /// The metric fitted to the stack.
-    pub(super) fn fitted(&self, team: Team<'_>, mesh: &Arc<TetMesh>, beside: &Beside, source: &Source) -> (Source, Fitted) {
+    pub(super) fn fitted(
+        &self,
+        team: Team<'_>,
+        mesh: &Arc<TetMesh>,
+        beside: &Beside,
+        source: &Source,
+    ) -> (Source, Fitted) {
         beside.fitted(team, mesh, source, self.multiscale.growth().unwrap_or(GROWTH))
     }
 }
@@ -101,7 +116,8 @@ impl Report {
     /// Puts the stack and the mesh of the report together; `held` are the numbers of the vertices between both in this.
     pub fn rejoin(&mut self, team: Team<'_>, on: &OnModel, held: Option<&[u32]>) -> Result<(), Error> {
         let (Some(beside), Some(held)) = (&on.beside, held) else { return Ok(()) };
-        let (rejoined, metrics) = beside.rejoin(team, (&self.mesh, &self.metrics), held).map_err(|error| error.to_string())?;
+        let (rejoined, metrics) =
+            beside.rejoin(team, (&self.mesh, &self.metrics), held).map_err(|error| error.to_string())?;
         self.off_model.iter_mut().for_each(|v| *v = rejoined.number[*v as usize]);
         let [pyramids, prisms, hexahedra] = Kind::ALL.map(|kind| rejoined.stack.cells_of(kind).count());
         let (triangles, told) = (beside.triangles(), rejoined.stack.told());

@@ -97,7 +97,8 @@ fn describe(data: &Dataset, to: Format) -> Table {
     let mesh = &data.mesh;
     if !to.is_fields() {
         table.row("vertices", mesh.vertices.len());
-        let [tets, triangles] = if data.stack.is_empty() { [mesh.tets.len(), mesh.triangles.len()] } else { data.stack.own() };
+        let [tets, triangles] =
+            if data.stack.is_empty() { [mesh.tets.len(), mesh.triangles.len()] } else { data.stack.own() };
         let rows = [
             ("tetrahedra", tets, &data.names.tetrahedra),
             ("triangles", triangles, &data.names.triangles),

@@ -235,7 +235,9 @@ mod tests {
         assert!(read(b"2(3(0 1 2) 5(3 4 5 6 7))", &text).unwrap_err().to_string().contains("face 1 has 5 points"));
         let compact = Head { class: "faceCompactList".into(), ..text };
         assert_eq!(read(b"3(0 3 7)\n7(0 1 2 3 4 5 6)", &compact).unwrap(), [[0, 1, 2, NONE], [3, 4, 5, 6]]);
-        assert!(read(b"3(0 3 8)\n8(0 1 2 3 4 5 6 7)", &compact).unwrap_err().to_string().contains("face 1 has 5 points"));
+        assert!(
+            read(b"3(0 3 8)\n8(0 1 2 3 4 5 6 7)", &compact).unwrap_err().to_string().contains("face 1 has 5 points")
+        );
         assert!(read(b"2(1 4)\n4(0 1 2 3)", &compact).is_err());
     }
 }

@@ -106,7 +106,9 @@ impl Ordered {
             sides.extend(faces.map(|face| (sorted(face), cell, face)));
         }
         for (cell, of) in (mesh.tets.len() as u32..).zip(&stack.cells) {
-            sides.extend(of.outward_faces(&mesh.vertices).map(|face| whole(&face)).map(|face| (sorted(face), cell, face)));
+            sides.extend(
+                of.outward_faces(&mesh.vertices).map(|face| whole(&face)).map(|face| (sorted(face), cell, face)),
+            );
         }
         sides.sort_unstable();
         let triangles = mesh.triangles.iter().map(|(nodes, reference)| (sorted(whole(&nodes)), reference));
@@ -118,14 +120,22 @@ impl Ordered {
             let reference = listed.get(&group[0].0);
             match (group, reference) {
                 ([(_, owner, nodes), (_, neighbour, _)], _) => inner.push((*owner, *neighbour, *nodes, reference)),
-                ([(_, owner, nodes)], Some(&reference)) => boundary.entry(reference).or_default().push((*nodes, *owner)),
+                ([(_, owner, nodes)], Some(&reference)) => {
+                    boundary.entry(reference).or_default().push((*nodes, *owner))
+                }
                 ([(nodes, ..)], None) => {
                     return Err(wrong(format!(
                         "the face of the nodes {:?} (from 0) has one cell and is in no boundary: list it there",
                         nodes.iter().filter(|&&node| node != NONE).collect::<Vec<_>>()
                     )));
                 }
-                _ => return Err(wrong(format!("{} cells share the face of the nodes {:?} (from 0)", group.len(), group[0].0))),
+                _ => {
+                    return Err(wrong(format!(
+                        "{} cells share the face of the nodes {:?} (from 0)",
+                        group.len(),
+                        group[0].0
+                    )));
+                }
             }
         }
         boundary.values_mut().for_each(|faces| faces.sort_by_key(|(_, owner)| *owner));
@@ -184,4 +194,3 @@ fn joined(
     }
     joined
 }
-

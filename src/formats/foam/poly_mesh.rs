@@ -5,8 +5,8 @@ use super::list;
 use super::ordered::Face;
 use crate::formats::{Dataset, stacks};
 use crate::geometry::{Label, Names};
-use crate::mesh::io::Error;
 use crate::mesh::TetMesh;
+use crate::mesh::io::Error;
 use crate::mesh::stack::{Cell, Kind, Stack};
 use std::path::Path;
 
@@ -127,7 +127,9 @@ impl Faces {
         let file = open(folder, "faces")?;
         let (head, mut scanner) = file.parts()?;
         let nodes = list::faces(&mut scanner, &head)?;
-        if let Some(face) = nodes.iter().position(|nodes| nodes.iter().any(|&node| node as usize >= points.len() && node != NONE)) {
+        if let Some(face) =
+            nodes.iter().position(|nodes| nodes.iter().any(|&node| node as usize >= points.len() && node != NONE))
+        {
             return Err(scanner.fail(format!(
                 "face {face} has points {:?}, but there are {} points, counted from 0",
                 nodes[face].iter().filter(|&&node| node != NONE).collect::<Vec<_>>(),

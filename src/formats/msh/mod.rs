@@ -93,7 +93,9 @@ pub fn read_msh(path: &Path) -> Result<TetMesh, Error> {
     if mesh.tets.is_empty() {
         return Err(error::at(path, "Elements", "no tetrahedra in it"));
     }
-    compact((&mut mesh, &mut Stack::default()), |mesh, keep| mesh.tets.nodes.as_flattened().iter().for_each(|&v| keep(v)));
+    compact((&mut mesh, &mut Stack::default()), |mesh, keep| {
+        mesh.tets.nodes.as_flattened().iter().for_each(|&v| keep(v))
+    });
     orientation::unify_all(Team::alone(), &mesh.vertices, &mut mesh.tets.nodes);
     Ok(mesh)
 }

@@ -149,5 +149,7 @@ pub(super) fn refused(source: &Source, kind: i64) -> Error {
         8..=14 => " (of second order)",
         _ => "",
     };
-    source.fail(format!("elements of type {kind}{name}: only cells, faces and lines of the first order are read; split the others"))
+    source.fail(format!(
+        "elements of type {kind}{name}: only cells, faces and lines of the first order are read; split the others"
+    ))
 }

@@ -3,8 +3,8 @@ use super::super::text::Text;
 use super::super::{Dataset, NamedField};
 use super::{CELLS, LINE, QUADRILATERAL, TETRAHEDRON, TRIANGLE};
 use crate::geometry::Label;
-use crate::mesh::io::{Batch, Error, FieldKind};
 use crate::mesh::TetMesh;
+use crate::mesh::io::{Batch, Error, FieldKind};
 use crate::mesh::vector::Vec3;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -142,7 +142,12 @@ pub(in super::super) fn write(
     cells.extend(CELLS.map(|(number, kind)| {
         let of_kind = || data.stack.cells_of(kind);
         let nodes = of_kind().flat_map(|cell| cell.nodes().iter().copied()).collect();
-        Block { kind: number as i32, width: kind.corners(), nodes, refs: of_kind().map(|cell| cell.reference).collect() }
+        Block {
+            kind: number as i32,
+            width: kind.corners(),
+            nodes,
+            refs: of_kind().map(|cell| cell.reference).collect(),
+        }
     }));
     let parts = [
         Part::new(1, lines, &names.edges, grouped, &mut notices),

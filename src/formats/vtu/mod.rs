@@ -272,7 +272,8 @@ impl<'a> Reader<'_, 'a> {
         let mut fields = Vec::new();
         let order = std::mem::take(&mut self.order);
         let with_tets = !self.mesh.tets.is_empty();
-        let cells = if self.stack.is_empty() { self.mesh.tets.len() } else { self.stack.own()[0] + self.stack.cells.len() };
+        let cells =
+            if self.stack.is_empty() { self.mesh.tets.len() } else { self.stack.own()[0] + self.stack.cells.len() };
         for name in order {
             let (mut joined, is_cells) = match self.at_points.remove(&name) {
                 Some(joined) => (joined, false),

@@ -164,7 +164,8 @@ fn topology(Dataset { mesh, stack, .. }: &Dataset) -> Vec<Array<'static>> {
     let kinds = || {
         let of = |(count, width, kind): (usize, i64, i64)| std::iter::repeat_n((width, kind), count);
         let cells = stack.cells.iter().map(|cell| (cell.kind.corners() as i64, number_of(cell.kind)));
-        let behind = [(mesh.triangles.len(), 3, TRIANGLE), (stack.quads.len(), 4, QUADRILATERAL), (mesh.edges.len(), 2, LINE)];
+        let behind =
+            [(mesh.triangles.len(), 3, TRIANGLE), (stack.quads.len(), 4, QUADRILATERAL), (mesh.edges.len(), 2, LINE)];
         of((mesh.tets.len(), 4, TETRAHEDRON)).chain(cells).chain(behind.into_iter().flat_map(of))
     };
     let ends = || {

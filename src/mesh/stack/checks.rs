@@ -1,7 +1,7 @@
 //! Whether the cells can be, alone and beside the tetrahedra.
+use super::Stack;
 use super::error::{Error, Of};
 use super::sides::{Side, Sides, against_tets};
-use super::Stack;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::sorted3;
 use std::collections::HashSet;

@@ -51,7 +51,10 @@ impl Stack {
 
     /// All nodes of the cells and quadrilaterals.
     pub fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
-        self.cells.iter().flat_map(|cell| cell.nodes().iter().copied()).chain(self.quads.nodes.iter().flatten().copied())
+        self.cells
+            .iter()
+            .flat_map(|cell| cell.nodes().iter().copied())
+            .chain(self.quads.nodes.iter().flatten().copied())
     }
 
     /// The same to be changed.

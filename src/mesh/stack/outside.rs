@@ -59,7 +59,8 @@ impl Outside {
         let against = against_tets(stack, whole, &faces.open);
         let mut interface: Vec<[u32; 3]> = against.iter().copied().collect();
         interface.sort_unstable();
-        let is_of_stack = |nodes: [u32; 3]| faces.open.contains(&sorted3(nodes)) || faces.inner.contains(&sorted3(nodes));
+        let is_of_stack =
+            |nodes: [u32; 3]| faces.open.contains(&sorted3(nodes)) || faces.inner.contains(&sorted3(nodes));
         let own = stack.own[1];
         let mut triangles = Elements::default();
         for (nodes, reference) in whole.triangles.iter().take(own).filter(|(nodes, _)| is_of_stack(*nodes)) {
@@ -152,7 +153,8 @@ impl Outside {
 
 /// Keeps some of a mesh's triangles: their old numbers.
 fn keep_triangles(mesh: &mut TetMesh, is_kept: impl Fn([u32; 3]) -> bool) -> Vec<u32> {
-    let kept: Vec<u32> = (0..).zip(&mesh.triangles.nodes).filter(|(_, nodes)| is_kept(**nodes)).map(|(t, _)| t).collect();
+    let kept: Vec<u32> =
+        (0..).zip(&mesh.triangles.nodes).filter(|(_, nodes)| is_kept(**nodes)).map(|(t, _)| t).collect();
     let old = std::mem::take(&mut mesh.triangles);
     kept.iter().for_each(|&t| mesh.triangles.push(old.nodes[t as usize], old.refs[t as usize]));
     renumber(&mut mesh.required_triangles, &kept);

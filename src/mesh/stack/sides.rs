@@ -1,7 +1,7 @@
 //! The faces of the cells, matched.
 use super::Stack;
-use crate::mesh::adjacency::{FACES, sorted3};
 use crate::mesh::TetMesh;
+use crate::mesh::adjacency::{FACES, sorted3};
 use std::collections::HashSet;
 
 /// A face of a cell.
@@ -58,5 +58,8 @@ pub(super) fn against_tets(stack: &Stack, mesh: &TetMesh, triangles: &HashSet<[u
     let is_near = |v: u32| near.get(v as usize).copied().unwrap_or(false);
     let own = &mesh.tets.nodes[..stack.own[0]];
     let faces = own.iter().filter(|nodes| nodes.iter().filter(|&&v| is_near(v)).count() > 2);
-    faces.flat_map(|nodes| FACES.map(|face| sorted3(face.map(|i| nodes[i])))).filter(|face| triangles.contains(face)).collect()
+    faces
+        .flat_map(|nodes| FACES.map(|face| sorted3(face.map(|i| nodes[i]))))
+        .filter(|face| triangles.contains(face))
+        .collect()
 }

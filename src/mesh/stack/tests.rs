@@ -15,8 +15,9 @@ fn volume_of(mesh: &TetMesh, tets: &[[u32; 4]]) -> f64 {
 #[test]
 fn cells_are_cut_into_positive_tetrahedra_whatever_the_lowest_vertex() {
     // The unit cube, the prism below its diagonal and the pyramid on its base.
-    let points: Vec<_> =
-        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]].map(|p| p.map(f64::from)).into();
+    let points: Vec<_> = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+        .map(|p| p.map(f64::from))
+        .into();
     for (kind, nodes, volume) in [
         (Kind::Hexahedron, vec![0, 1, 2, 3, 4, 5, 6, 7], 1.0),
         (Kind::Prism, vec![0, 1, 2, 4, 5, 6], 0.5),
@@ -25,7 +26,15 @@ fn cells_are_cut_into_positive_tetrahedra_whatever_the_lowest_vertex() {
         for lowest in nodes.clone() {
             for turned in [false, true] {
                 // The lowest vertex changes places with the first.
-                let other = |v: u32| if v == 0 { lowest } else if v == lowest { 0 } else { v };
+                let other = |v: u32| {
+                    if v == 0 {
+                        lowest
+                    } else if v == lowest {
+                        0
+                    } else {
+                        v
+                    }
+                };
                 let mut mesh = TetMesh { vertices: points.clone(), vertex_refs: vec![0; 8], ..TetMesh::default() };
                 mesh.vertices.swap(0, lowest as usize);
                 let mut nodes: Vec<u32> = nodes.iter().map(|&v| other(v)).collect();
@@ -75,7 +84,11 @@ fn cells_of_all_kinds_fit_together() {
     assert!((volume_of(&mesh, &mesh.tets.nodes) - (1.0 + 0.3 + 0.5 * 0.7 * 0.3)).abs() < 1e-12);
     assert_eq!((stack.counts(), stack.told().as_str()), ([1; 3], "1 pyramid, 1 prism, 1 hexahedron"));
     let faces = crate::mesh::adjacency::sorted_faces(&mesh.tets.nodes);
-    let mut open: Vec<_> = faces.chunk_by(|a, b| a.nodes == b.nodes).filter(|group| group.len() == 1).map(|group| group[0].nodes).collect();
+    let mut open: Vec<_> = faces
+        .chunk_by(|a, b| a.nodes == b.nodes)
+        .filter(|group| group.len() == 1)
+        .map(|group| group[0].nodes)
+        .collect();
     let mut listed: Vec<_> = mesh.triangles.nodes.iter().map(|&nodes| crate::mesh::adjacency::sorted3(nodes)).collect();
     open.sort_unstable();
     listed.sort_unstable();
@@ -94,15 +107,26 @@ fn what_cannot_be_is_told() {
     };
     let renode = |stack: &mut Stack, at: usize, place: usize, v: u32| stack.cells[at].nodes_mut()[place] = v;
     let first = "cell 1 of those that are no tetrahedra, a prism: ";
-    assert!(told(&|_, stack| renode(stack, 0, 4, 99)).starts_with(&format!("{first}it has a vertex that is not there: there are 12")));
-    assert!(told(&|_, stack| renode(stack, 0, 4, stack.cells[0].nodes()[5])).contains("twice"));
+    assert!(
+        told(&|_, stack| renode(stack, 0, 4, 99))
+            .starts_with(&format!("{first}it has a vertex that is not there: there are 12"))
+    );
+    let twice = |_: &mut TetMesh, stack: &mut Stack| {
+        let last = stack.cells[0].nodes()[5];
+        renode(stack, 0, 4, last);
+    };
+    assert!(told(&twice).contains("twice"));
     assert!(told(&|mesh, _| mesh.vertices.iter_mut().for_each(|p| p[2] = 0.0)).contains("no volume"));
     assert!(told(&|mesh, _| mesh.vertices[9][0] = f64::NAN).contains("no volume"));
     assert!(told(&|_, stack| stack.cells.extend([stack.cells[0]; 2])).contains("two other cells"));
-    assert!(told(&|_, stack| stack.quads.push([0, 1, 2, 3], 4)).starts_with("quadrilateral 1: it is the face of no prism"));
+    assert!(
+        told(&|_, stack| stack.quads.push([0, 1, 2, 3], 4)).starts_with("quadrilateral 5: it is the face of no prism")
+    );
     // A tetrahedron on half of a side.
     let beside = |mesh: &mut TetMesh, stack: &mut Stack| {
-        let quad = stack.cells[0].faces().find(|face| face.len() == 4 && !face.iter().all(|v| stack.cells[1].nodes().contains(v)));
+        let quad = stack.cells[0]
+            .faces()
+            .find(|face| face.len() == 4 && !face.iter().all(|v| stack.cells[1].nodes().contains(v)));
         let quad = quad.unwrap();
         mesh.vertices.push([5.0; 3]);
         mesh.vertex_refs.push(0);

@@ -1,5 +1,5 @@
 //! Prisms stay as they are, and the tetrahedra beside them are adapted.
-use crate::common::adapting::{Workplace, complaint, stderr, text};
+use crate::common::adapting::{Workplace, complaint, stderr};
 use crate::common::program;
 use geo_adapt::formats::{self, Dataset};
 use geo_adapt::mesh::samples::on_prisms;
@@ -14,7 +14,7 @@ fn on_a_layer(work: &Workplace, n: u32, height: f64) -> Dataset {
     stack.join(&mut mesh).unwrap();
     let data = Dataset { mesh, stack, ..Dataset::default() };
     formats::write(&work.path("in.su2"), &data).unwrap();
-    data
+    read(&work.path("in.su2"))
 }
 
 /// Runs `adapt`; the mesh and the report.
@@ -73,7 +73,8 @@ fn prisms_stay_to_the_bit_at_finer_and_at_coarser_sizes() {
         let kept = &report["kept"];
         assert_eq!((kept["prisms"].as_u64(), kept["triangles"].as_u64()), (Some(32), Some(32)));
         let tets = after.stack.own()[0];
-        assert!(if size == "0.08" { tets > 2 * 384 } else { tets < 2 * 384 }, "{size}: {tets}");
+        // There were 384.
+        assert!(if size == "0.6" { tets < 384 } else { tets > 2 * 384 }, "{size}: {tets}");
     }
 }
 
@@ -97,5 +98,4 @@ fn what_does_not_keep_them_says_so() {
     };
     assert!(refused("out.meshb", &[]).contains("for which this format is not written: give .su2"));
     assert!(refused("out.meshb", &["--memory", "1G"]).contains("split them by `geo-adapt convert --split`"));
-    assert!(text(&work.path("in.su2")).ends_with("in.su2"));
 }
