@@ -40,7 +40,7 @@ fn data() -> Dataset {
         of("metric", FieldKind::SymmetricTensor, &|_, k| k as f64),
         of("p", FieldKind::Scalar, &|x, _| x),
     ];
-    Dataset { mesh, names, fields }
+    Dataset { mesh, names, fields, ..Dataset::default() }
 }
 
 /// The faces of tetrahedra in the plane of that x, each once.
