@@ -32,8 +32,11 @@ fn all_kinds() -> Dataset {
     data
 }
 
+/// The coordinates of some nodes, to the bit.
+type Corners = Vec<[u64; 3]>;
+
 /// The cells of each kind with the corners of their nodes, and the boundary by reference; what may be in any order sorted.
-fn shape(data: &Dataset) -> (Vec<Vec<Vec<[u64; 3]>>>, Vec<(i32, Vec<[u64; 3]>)>) {
+fn shape(data: &Dataset) -> (Vec<Vec<Corners>>, Vec<(i32, Corners)>) {
     let bits = |v: &u32| data.mesh.vertices[*v as usize].map(f64::to_bits);
     let stack = &data.stack;
     let cells =
@@ -41,7 +44,7 @@ fn shape(data: &Dataset) -> (Vec<Vec<Vec<[u64; 3]>>>, Vec<(i32, Vec<[u64; 3]>)>)
     let quads = stack.quads.iter().map(|(nodes, reference)| (reference, nodes.iter().map(bits).collect()));
     let triangles = data.mesh.triangles.iter().take(if stack.is_empty() { usize::MAX } else { stack.own()[1] });
     let triangles = triangles.map(|(nodes, reference)| (reference, nodes.iter().map(bits).collect()));
-    let mut faces: Vec<(i32, Vec<[u64; 3]>)> = quads.chain(triangles).collect();
+    let mut faces: Vec<(i32, Corners)> = quads.chain(triangles).collect();
     faces.iter_mut().for_each(|(_, nodes)| nodes.sort_unstable());
     faces.sort();
     (cells.to_vec(), faces)
@@ -59,9 +62,8 @@ fn every_format_brings_cells_back() {
             let (mut found, mut wanted) = (shape(&found), shape(&data));
             if name == "case/" {
                 // Cells are known by their faces there.
-                let sort = |cells: &mut Vec<Vec<Vec<[u64; 3]>>>| {
-                    cells.iter_mut().flatten().for_each(|nodes| nodes.sort_unstable())
-                };
+                let sort =
+                    |cells: &mut Vec<Vec<Corners>>| cells.iter_mut().flatten().for_each(|nodes| nodes.sort_unstable());
                 sort(&mut found.0);
                 sort(&mut wanted.0);
             }

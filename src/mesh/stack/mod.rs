@@ -69,10 +69,10 @@ impl Stack {
     /// # Errors
     /// What is wrong with the cells, alone or beside the tetrahedra.
     pub fn join(&mut self, mesh: &mut TetMesh) -> Result<Option<String>, Error> {
-        self.own = [mesh.tets.len(), mesh.triangles.len()];
         if self.is_empty() {
             return Ok(None);
         }
+        self.own = [mesh.tets.len(), mesh.triangles.len()];
         let turned = checks::check(self, mesh)?;
         let mut warped = 0;
         for (cell, &turned) in self.cells.iter().zip(&turned) {
