@@ -35,10 +35,15 @@ pub fn read_mesh<'py>(
 
 fn read(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, io::Error> {
     if Format::of_file(path)? != Format::Libmeshb {
-        return formats::read(path);
+        let read = formats::read(path)?;
+        if !read.content.stack.is_empty() {
+            let message = format!("there are {}: split them by `geo-adapt convert --split`", read.content.stack.told());
+            return Err(io::Error::Content { path: path.to_owned(), place: "cells".into(), message });
+        }
+        return Ok(read);
     }
     let Read { content: mesh, notices } = io::read_mesh_on(team, path)?;
-    Ok(Read { content: Dataset { mesh, names: names::read(path)?, fields: Vec::new() }, notices })
+    Ok(Read { content: Dataset { mesh, names: names::read(path)?, ..Dataset::default() }, notices })
 }
 
 /// Writes a mesh with its names and fields: what the format cannot carry.
@@ -61,7 +66,7 @@ pub fn write_mesh(
     let view = mesh.view()?;
     py.detach(|| {
         let mesh = view.to_mesh().map_err(errors::of_adapter)?;
-        let data = Dataset { mesh, names, fields: all };
+        let data = Dataset { mesh, names, fields: all, ..Dataset::default() };
         write(arrays::team(&pool), &path, &data).map_err(errors::of_file)
     })
 }

@@ -1,8 +1,9 @@
 //! The kernel: the mesh store, its operations, and the passes that make a unit mesh.
 //!
-//! Imports go one way: `run → { passes → operations → { surface, schedule }, coarsen, extract } → core`.
+//! Imports go one way: `beside → run → { passes → operations → { surface, schedule }, coarsen, extract } → core`.
 #[cfg(any(test, feature = "internals"))]
 pub mod bench_support;
+pub mod beside;
 mod coarsen;
 mod core;
 mod extract;

@@ -85,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     backends.iter().try_for_each(|&backend| pool.prepare(backend))?;
     let team = Team::new(&pool, Plan::default());
     let mut notices = Vec::new();
-    let given = arguments.input.read(team, &mut notices)?;
+    let given = arguments.input.read(team, &mut notices)?.without_stack(&arguments.input.mesh, "tune")?;
     let input = arguments.input.prepare(team, given, None, &mut notices)?;
     notices.iter().for_each(crate::cli::note);
     let bench = Bench { arguments, input: &input, pool: &pool };

@@ -69,7 +69,8 @@ fn dataset(layout: &Layout, cycle: u32, solved: &SolveResult) -> Result<Dataset,
     let fields = solution.fields.into_iter().zip(&solved.fields);
     let fields =
         fields.map(|(field, named)| NamedField { name: named.name.clone(), kind: field.kind, values: field.values });
-    Ok(Dataset { mesh, names: names::read(&layout.mesh(cycle))?, fields: fields.collect() })
+    let (names, fields) = (names::read(&layout.mesh(cycle))?, fields.collect());
+    Ok(Dataset { mesh, names, fields, ..Dataset::default() })
 }
 
 /// A row a cycle, with the functionals. Without times, so that it is the same file however often the loop was ended; the report has them.

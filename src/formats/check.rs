@@ -27,6 +27,9 @@ pub(super) fn check(team: Team<'_>, path: &Path, data: &Dataset) -> Result<(), E
     elements(team, path, "tetrahedron", &mesh.tets, vertices)?;
     elements(team, path, "triangle", &mesh.triangles, vertices)?;
     elements(team, path, "edge", &mesh.edges, vertices)?;
+    if let Some(v) = data.stack.nodes().find(|&v| v as usize >= vertices) {
+        return Err(error::at(path, "stack", format!("it has vertex {}, and there are {vertices}", v + 1)));
+    }
     for field in &data.fields {
         let (place, width) = (format!("field {}", error::short(&field.name)), field.kind.values());
         if field.values.len() != width * vertices {

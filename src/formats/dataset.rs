@@ -2,6 +2,8 @@
 use crate::geometry::Names;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{FieldKind, Solution, SolutionField};
+use crate::mesh::stack::Stack;
+use std::borrow::Cow;
 
 /// A field with its name.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,8 +19,10 @@ pub struct NamedField {
 /// A mesh with the names of its references, and the fields at its vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dataset {
-    /// The mesh.
+    /// The mesh. What was cut out of the stack stands at the end of its tetrahedra and triangles.
     pub mesh: TetMesh,
+    /// Its cells that are no tetrahedra, joined to it.
+    pub stack: Stack,
     /// What its references are called.
     pub names: Names,
     /// Fields, in the order of the file.
@@ -26,6 +30,21 @@ pub struct Dataset {
 }
 
 impl Dataset {
+    /// The same without what was cut out of the stack, as a file has it.
+    pub(super) fn as_written(&self) -> Cow<'_, Self> {
+        if self.stack.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut bare = self.clone();
+        bare.stack.take_off(&mut bare.mesh);
+        Cow::Owned(bare)
+    }
+
+    /// The number of the mesh's tetrahedra that are its own.
+    pub(super) fn own_tets(&self) -> usize {
+        if self.stack.is_empty() { self.mesh.tets.len() } else { self.stack.own()[0] }
+    }
+
     /// The fields without their names, as .sol and .solb carry them.
     pub fn solution(&self) -> Solution {
         let fields = self.fields.iter();

@@ -132,6 +132,11 @@ impl Format {
         matches!(self, Self::Vtu | Self::LegacyVtk | Self::Xdmf { .. } | Self::Cgns | Self::Msh { .. })
     }
 
+    /// Whether prisms, pyramids and hexahedra are read and written.
+    pub fn holds_stacks(self) -> bool {
+        matches!(self, Self::Su2 | Self::Vtu | Self::Ugrid(_) | Self::Msh { .. } | Self::Foam)
+    }
+
     /// Whether files of the format hold fields and no mesh.
     pub fn is_fields(self) -> bool {
         matches!(self, Self::Solution | Self::Table | Self::Restart)
@@ -146,8 +151,16 @@ pub(super) mod vtk {
     pub const LINE: i64 = 3;
     /// A triangle.
     pub const TRIANGLE: i64 = 5;
+    /// A quadrilateral.
+    pub const QUADRILATERAL: i64 = 9;
     /// A tetrahedron.
     pub const TETRAHEDRON: i64 = 10;
+    /// A hexahedron.
+    pub const HEXAHEDRON: i64 = 12;
+    /// A prism.
+    pub const PRISM: i64 = 13;
+    /// A pyramid.
+    pub const PYRAMID: i64 = 14;
 
     /// What VTK (and SU2) call an element of a number, in parentheses.
     pub fn name(number: i64) -> &'static str {

@@ -24,6 +24,7 @@ mod orientation;
 mod placement;
 mod scan;
 mod sets;
+mod stacks;
 mod su2;
 mod surfaces;
 mod tags;
@@ -38,11 +39,13 @@ pub use dataset::{Dataset, NamedField};
 pub use format::Format;
 pub use msh::read_msh;
 pub use placement::Placement;
+pub use stacks::check_stack;
 pub use surfaces::{Shape, read_surface};
 
 use crate::geometry::names;
 use crate::mesh::io::{Batch, Error, Read};
 use crate::tasks::Team;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// How a file is written.
@@ -53,8 +56,8 @@ pub struct Options {
 }
 
 /// Reads a mesh with its names and fields, by the extension, or by the content where there is none that is known. What lies beside
-/// belongs to it: the names and fields of .mesh and .meshb, the names of .ugrid. Elements that cannot stand in a [`crate::mesh::TetMesh`]
-/// (hexahedra, prisms, quadrilaterals, curved ones) are refused.
+/// belongs to it: the names and fields of .mesh and .meshb, the names of .ugrid. Prisms, pyramids and hexahedra are the [`Dataset`]'s stack where
+/// the format [holds](Format::holds_stacks) them; other elements that cannot stand in a [`crate::mesh::TetMesh`] (curved ones) are refused.
 ///
 /// # Errors
 /// [`Error::System`] when a file cannot be read, [`Error::Content`] when what it says cannot be true, or is not for us.
@@ -113,7 +116,7 @@ fn read_bytes_on(team: Team<'_>, format: Format, path: &Path, bytes: &[u8]) -> R
     check::drop_endless(path, &mut read.content.fields, &mut read.notices);
     check::check(team, path, &read.content)?;
     read.notices
-        .extend(orientation::unify(team, &mut read.content.mesh).map(|notice| format!("{}: {notice}", path.display())));
+        .extend(orientation::unify(team, &mut read.content).map(|notice| format!("{}: {notice}", path.display())));
     Ok(read)
 }
 
@@ -211,6 +214,11 @@ pub fn add(
 ) -> Result<Vec<String>, Error> {
     let format = Format::of(path)?;
     check::check(team, path, data)?;
+    check_stack(path, &data.stack)?;
+    // A case of OpenFOAM has values at the pieces of the cells too.
+    let has_cells = format.holds_stacks() && format != Format::Foam;
+    let written = if has_cells { data.as_written() } else { Cow::Borrowed(data) };
+    let data = &*written;
     let mut notices = unsupported::notices(format, data);
     notices.extend(match format {
         Format::Libmeshb => libmeshb::write(batch, team, path, data)?,

@@ -1,12 +1,13 @@
 //! SU2's meshes: a text of elements, points and markers. Source: su2code.github.io, "Mesh File"; elements have VTK's numbers, indices
 //! count from 0.
-use super::format::vtk::{LINE, TETRAHEDRON, TRIANGLE, VERTEX, name};
+use super::format::vtk::{LINE, QUADRILATERAL, TETRAHEDRON, TRIANGLE, VERTEX, name};
 use super::scan::Scan;
 use super::text::Text;
-use super::{Dataset, markers};
+use super::{Dataset, markers, stacks};
 use crate::geometry::Label;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Batch, Error, Read};
+use crate::mesh::stack::{Cell, Stack};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::Path;
@@ -17,6 +18,7 @@ const PARALLEL: &str = "SEND_RECEIVE";
 struct Reader<'a> {
     scan: Scan<'a>,
     mesh: TetMesh,
+    stack: Stack,
     /// Tags of the markers; the references of their elements are indices into it, until all are known.
     tags: Vec<String>,
     /// Place of a tag among them.
@@ -29,9 +31,10 @@ struct Reader<'a> {
 pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     let scan = Scan::new(path, bytes);
     let (mesh, tags, notices) = (TetMesh::default(), Vec::new(), Vec::new());
-    let mut reader = Reader { scan, mesh, tags, place: BTreeMap::new(), noted: BTreeMap::new(), notices };
+    let (stack, place, noted) = (Stack::default(), BTreeMap::new(), BTreeMap::new());
+    let mut reader = Reader { scan, mesh, stack, tags, place, noted, notices };
     reader.read()?;
-    let Reader { mut mesh, tags, noted, notices, .. } = reader;
+    let Reader { mut mesh, mut stack, tags, noted, mut notices, .. } = reader;
     let references = markers::references(&tags, &noted);
     let mut content = Dataset::default();
     for (tag, &reference) in tags.into_iter().zip(&references) {
@@ -39,15 +42,16 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
             content.names.triangles.insert(reference, Label { name: Some(tag), colour: None });
         }
     }
-    for reference in mesh.triangles.refs.iter_mut().chain(&mut mesh.edges.refs) {
+    for reference in mesh.triangles.refs.iter_mut().chain(&mut mesh.edges.refs).chain(&mut stack.quads.refs) {
         *reference = references.get(*reference as usize).copied().unwrap_or(0);
     }
     let lines: BTreeSet<i32> = mesh.edges.refs.iter().copied().collect();
     let of_lines = content.names.triangles.iter().filter(|(reference, _)| lines.contains(reference));
     content.names.edges = of_lines.map(|(&reference, label)| (reference, label.clone())).collect();
-    let faces: BTreeSet<i32> = mesh.triangles.refs.iter().copied().collect();
+    let faces: BTreeSet<i32> = mesh.triangles.refs.iter().chain(&stack.quads.refs).copied().collect();
     content.names.triangles.retain(|reference, _| faces.contains(reference) || !lines.contains(reference));
-    content.mesh = mesh;
+    stacks::join(path, &mut mesh, &mut stack, &mut notices)?;
+    (content.mesh, content.stack) = (mesh, stack);
     Ok(Read { content, notices })
 }
 
@@ -117,7 +121,11 @@ impl Reader<'_> {
                     let nodes = self.scan.vertices(0)?;
                     self.mesh.tets.nodes.push(nodes);
                 }
-                other => return Err(self.refused(other)),
+                other => {
+                    let kind = stacks::kind_of(other).ok_or_else(|| self.refused(other))?;
+                    let nodes = (0..kind.corners()).map(|_| self.scan.vertex(0)).collect::<Result<Vec<u32>, _>>()?;
+                    self.stack.cells.push(Cell::new(kind, &nodes, 1));
+                }
             }
             self.scan.line(); // the element's number
         }
@@ -141,6 +149,10 @@ impl Reader<'_> {
                     let nodes = self.scan.vertices(0)?;
                     self.mesh.triangles.push(nodes, marker);
                 }
+                QUADRILATERAL => {
+                    let nodes = self.scan.vertices(0)?;
+                    self.stack.quads.push(nodes, marker);
+                }
                 LINE => {
                     let nodes = self.scan.vertices(0)?;
                     self.mesh.edges.push(nodes, marker);
@@ -155,21 +167,22 @@ impl Reader<'_> {
 
     fn refused(&self, kind: i64) -> Error {
         self.scan.fail(format!(
-            "an element of type {kind}{}: tetrahedra and triangles are read; split the others",
+            "an element of type {kind}{}: tetrahedra, prisms, pyramids and hexahedra are read, with triangles and quadrilaterals on their \
+             boundary; split the others",
             name(kind)
         ))
     }
 }
 
-/// Writes tetrahedra, points and markers.
+/// Writes cells, the tetrahedra first, points and markers.
 pub(super) fn write(batch: &mut Batch, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
-    let found = data.mesh.triangles.refs.iter().copied().collect();
+    let found = data.mesh.triangles.refs.iter().chain(&data.stack.quads.refs).copied().collect();
     let (tags, notices) = markers::tags(&found, &data.names.triangles);
-    batch.add_main(path, |to| emit(to, &data.mesh, &tags))?;
+    batch.add_main(path, |to| emit(to, (&data.mesh, &data.stack), &tags))?;
     Ok(notices)
 }
 
-fn emit(to: &mut dyn Write, mesh: &TetMesh, tags: &BTreeMap<i32, String>) -> io::Result<()> {
+fn emit(to: &mut dyn Write, (mesh, stack): (&TetMesh, &Stack), tags: &BTreeMap<i32, String>) -> io::Result<()> {
     let mut text = Text::new(to);
     let mut order: Vec<&String> = Vec::new();
     let (mut of, mut places) = (BTreeMap::new(), BTreeMap::new());
@@ -183,10 +196,16 @@ fn emit(to: &mut dyn Write, mesh: &TetMesh, tags: &BTreeMap<i32, String>) -> io:
         }
         of.insert(reference, place);
     }
-    text.put(format_args!("NDIME= 3\nNELEM= {}\n", mesh.tets.len()));
+    text.put(format_args!("NDIME= 3\nNELEM= {}\n", mesh.tets.len() + stack.cells.len()));
     for (number, nodes) in mesh.tets.nodes.iter().enumerate() {
         text.int(TETRAHEDRON);
         nodes.iter().for_each(|&node| text.int(node));
+        text.int(number as i64);
+        text.end_line()?;
+    }
+    for (cell, number) in stack.cells.iter().zip(mesh.tets.len()..) {
+        text.int(stacks::number_of(cell.kind));
+        cell.nodes().iter().for_each(|&node| text.int(node));
         text.int(number as i64);
         text.end_line()?;
     }
@@ -196,17 +215,20 @@ fn emit(to: &mut dyn Write, mesh: &TetMesh, tags: &BTreeMap<i32, String>) -> io:
         text.int(number as i64);
         text.end_line()?;
     }
-    // Triangles by marker, in their order.
-    let mut rows: Vec<Vec<u32>> = vec![Vec::new(); order.len()];
-    for (triangle, reference) in mesh.triangles.refs.iter().enumerate() {
-        rows[of[reference]].push(triangle as u32);
+    // Triangles by marker, in their order, and quadrilaterals behind them.
+    let mut rows: Vec<Vec<(i64, &[u32])>> = vec![Vec::new(); order.len()];
+    for (nodes, reference) in mesh.triangles.nodes.iter().zip(&mesh.triangles.refs) {
+        rows[of[reference]].push((TRIANGLE, nodes));
+    }
+    for (nodes, reference) in stack.quads.nodes.iter().zip(&stack.quads.refs) {
+        rows[of[reference]].push((QUADRILATERAL, nodes));
     }
     text.put(format_args!("NMARK= {}\n", order.len()));
-    for (tag, triangles) in order.iter().zip(&rows) {
-        text.put(format_args!("MARKER_TAG= {tag}\nMARKER_ELEMS= {}\n", triangles.len()));
-        for &triangle in triangles {
-            text.int(TRIANGLE);
-            mesh.triangles.nodes[triangle as usize].iter().for_each(|&node| text.int(node));
+    for (tag, faces) in order.iter().zip(&rows) {
+        text.put(format_args!("MARKER_TAG= {tag}\nMARKER_ELEMS= {}\n", faces.len()));
+        for &(kind, nodes) in faces {
+            text.int(kind);
+            nodes.iter().for_each(|&node| text.int(node));
             text.end_line()?;
         }
     }

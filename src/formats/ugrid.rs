@@ -3,9 +3,10 @@
 //! triangles, quadrilaterals, references of both, tetrahedra, pyramids, prisms, hexahedra; indices count from 1.
 use super::scan::Scan;
 use super::text::Text;
-use super::{Dataset, error};
+use super::{Dataset, error, stacks};
 use crate::geometry::{Label, Names};
 use crate::mesh::io::{Batch, Error, Read};
+use crate::mesh::stack::{Cell, Kind, Stack};
 use crate::mesh::{Elements, TetMesh};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
@@ -95,7 +96,20 @@ impl Source<'_> {
         }
         Ok(nodes)
     }
+
+    fn references(&mut self, count: usize) -> Result<Vec<i32>, Error> {
+        let mut refs = Vec::with_capacity(self.scan.room(count, 2));
+        for _ in 0..count {
+            let value = self.int()?;
+            let fits = i32::try_from(value);
+            refs.push(fits.map_err(|_| self.fail(format!("the reference {value} does not fit 32 bits")))?);
+        }
+        Ok(refs)
+    }
 }
+
+/// Where the nodes of a pyramid stand in the file: UGRID has its apex in the third place (VTK, SU2 and CGNS in the last).
+const PYRAMID: [usize; 5] = [1, 0, 3, 4, 2];
 
 /// Reads a grid without what lies beside.
 pub(super) fn read(path: &Path, bytes: &[u8], encoding: Encoding) -> Result<Read<Dataset>, Error> {
@@ -113,37 +127,29 @@ pub(super) fn read(path: &Path, bytes: &[u8], encoding: Encoding) -> Result<Read
             source.fail(format!("the counts {counts:?} do not fit into the file; it was cut{}", other(encoding)))
         );
     }
-    for (count, name) in
-        [(quadrilaterals, "quadrilaterals"), (pyramids, "pyramids"), (prisms, "prisms"), (hexahedra, "hexahedra")]
-    {
-        if count > 0 {
-            return Err(
-                source.fail(format!("there are {count} {name}: tetrahedra and triangles are read; split the others"))
-            );
-        }
-    }
     let mut mesh = TetMesh { vertices: Vec::with_capacity(source.scan.room(vertices, 6)), ..TetMesh::default() };
     for _ in 0..vertices {
         mesh.vertices.push([source.real()?, source.real()?, source.real()?]);
     }
     mesh.vertex_refs = vec![0; vertices];
-    let nodes = source.elements(triangles)?;
-    let mut refs = Vec::with_capacity(nodes.len());
-    for _ in 0..triangles {
-        let value = source.int()?;
-        refs.push(
-            i32::try_from(value).map_err(|_| source.fail(format!("the reference {value} does not fit 32 bits")))?,
-        );
-    }
-    mesh.triangles = Elements { nodes, refs };
+    let (of_triangles, of_quads) = (source.elements(triangles)?, source.elements(quadrilaterals)?);
+    mesh.triangles = Elements { nodes: of_triangles, refs: source.references(triangles)? };
+    let quads = Elements { nodes: of_quads, refs: source.references(quadrilaterals)? };
     let nodes = source.elements(tets)?;
     mesh.tets = Elements { refs: vec![1; nodes.len()], nodes };
+    let mut stack = Stack::default();
+    stack.quads = quads;
+    let pyramids = source.elements::<5>(pyramids)?.into_iter().map(|nodes| PYRAMID.map(|i| nodes[i]));
+    stack.cells.extend(pyramids.map(|nodes| Cell::new(Kind::Pyramid, &nodes, 1)));
+    stack.cells.extend(source.elements::<6>(prisms)?.iter().map(|nodes| Cell::new(Kind::Prism, nodes, 1)));
+    stack.cells.extend(source.elements::<8>(hexahedra)?.iter().map(|nodes| Cell::new(Kind::Hexahedron, nodes, 1)));
     let mut notices = Vec::new();
+    stacks::join(path, &mut mesh, &mut stack, &mut notices)?;
     let left = &bytes[source.scan.at..];
     if !left.trim_ascii().is_empty() {
-        notices.push(format!("{}: {} bytes behind the tetrahedra are not read", path.display(), left.len()));
+        notices.push(format!("{}: {} bytes behind the cells are not read", path.display(), left.len()));
     }
-    Ok(Read { content: Dataset { mesh, ..Dataset::default() }, notices })
+    Ok(Read { content: Dataset { mesh, stack, ..Dataset::default() }, notices })
 }
 
 /// What else a wrong count may mean.
@@ -215,8 +221,8 @@ pub(super) fn write(batch: &mut Batch, path: &Path, data: &Dataset, encoding: En
     {
         return Err(error::at(path, "counts", "they do not fit 32 bits; write .lb8l.ugrid"));
     }
-    batch.add_main(path, |to| emit(to, mesh, encoding))?;
-    let references: BTreeSet<i32> = mesh.triangles.refs.iter().copied().collect();
+    batch.add_main(path, |to| emit(to, (mesh, &data.stack), encoding))?;
+    let references: BTreeSet<i32> = mesh.triangles.refs.iter().chain(&data.stack.quads.refs).copied().collect();
     let name = |reference: &i32| data.names.triangles.get(reference).and_then(|label| label.name.clone());
     let beside = names_path(path);
     if !references.iter().any(|reference| name(reference).is_some()) && !beside.exists() {
@@ -247,7 +253,7 @@ pub(super) fn write(batch: &mut Batch, path: &Path, data: &Dataset, encoding: En
     Ok(notices)
 }
 
-fn emit(to: &mut dyn Write, mesh: &TetMesh, encoding: Encoding) -> io::Result<()> {
+fn emit(to: &mut dyn Write, (mesh, stack): (&TetMesh, &Stack), encoding: Encoding) -> io::Result<()> {
     let mut text = Text::new(to);
     let int = |text: &mut Text, value: i64| match encoding {
         Encoding::Text => text.int(value),
@@ -264,24 +270,34 @@ fn emit(to: &mut dyn Write, mesh: &TetMesh, encoding: Encoding) -> io::Result<()
         Encoding::Binary { .. } => text.raw(&(value as f32).to_le_bytes()),
     };
     let end_row = |text: &mut Text| if encoding == Encoding::Text { text.end_line() } else { text.hand_on() };
-    let counts = [mesh.vertices.len(), mesh.triangles.len(), 0, mesh.tets.len(), 0, 0, 0];
-    counts.iter().for_each(|&count| int(&mut text, count as i64));
+    let [pyramids, prisms, hexahedra] = stack.counts();
+    let [vertices, triangles, quads, tets] =
+        [mesh.vertices.len(), mesh.triangles.len(), stack.quads.len(), mesh.tets.len()];
+    [vertices, triangles, quads, tets, pyramids, prisms, hexahedra]
+        .iter()
+        .for_each(|&count| int(&mut text, count as i64));
     end_row(&mut text)?;
     for point in &mesh.vertices {
         point.iter().for_each(|&x| real(&mut text, x));
         end_row(&mut text)?;
     }
-    for nodes in &mesh.triangles.nodes {
-        nodes.iter().for_each(|&v| int(&mut text, i64::from(v) + 1));
-        end_row(&mut text)?;
-    }
-    for &reference in &mesh.triangles.refs {
+    let row = |text: &mut Text, nodes: &[u32]| {
+        nodes.iter().for_each(|&v| int(text, i64::from(v) + 1));
+        end_row(text)
+    };
+    mesh.triangles.nodes.iter().try_for_each(|nodes| row(&mut text, nodes))?;
+    stack.quads.nodes.iter().try_for_each(|nodes| row(&mut text, nodes))?;
+    for &reference in mesh.triangles.refs.iter().chain(&stack.quads.refs) {
         int(&mut text, reference.into());
         end_row(&mut text)?;
     }
-    for nodes in &mesh.tets.nodes {
-        nodes.iter().for_each(|&v| int(&mut text, i64::from(v) + 1));
-        end_row(&mut text)?;
+    mesh.tets.nodes.iter().try_for_each(|nodes| row(&mut text, nodes))?;
+    for cell in stack.cells_of(Kind::Pyramid) {
+        let mut nodes = [0; 5];
+        PYRAMID.iter().zip(cell.nodes()).for_each(|(&place, &v)| nodes[place] = v);
+        row(&mut text, &nodes)?;
     }
+    let others = stack.cells_of(Kind::Prism).chain(stack.cells_of(Kind::Hexahedron));
+    others.into_iter().try_for_each(|cell| row(&mut text, cell.nodes()))?;
     text.finish()
 }

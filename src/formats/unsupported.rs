@@ -27,8 +27,13 @@ pub(super) fn notices(format: Format, data: &Dataset) -> Vec<String> {
         count(mesh.edges.len(), "edges");
     }
     if !regions {
-        let found: BTreeSet<i32> = mesh.tets.refs.iter().copied().filter(|&region| region != 1).collect();
-        count(if found.is_empty() { 0 } else { mesh.tets.len() }, "references of tetrahedra");
+        let cells = data.stack.cells.iter().map(|cell| cell.reference);
+        let found: BTreeSet<i32> = mesh.tets.refs.iter().copied().chain(cells).filter(|&region| region != 1).collect();
+        let cells = mesh.tets.len() + data.stack.cells.len();
+        count(
+            if found.is_empty() { 0 } else { cells },
+            if data.stack.is_empty() { "references of tetrahedra" } else { "references of cells" },
+        );
     }
     if !matches!(format, Format::Vtu | Format::LegacyVtk | Format::Xdmf { .. }) {
         count(mesh.vertex_refs.iter().filter(|&&reference| reference != 0).count(), "references of vertices");

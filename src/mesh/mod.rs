@@ -16,6 +16,7 @@ pub mod ranges;
 #[doc(hidden)]
 pub mod samples;
 pub mod split_nonmanifold;
+pub mod stack;
 pub mod stamped_set;
 mod starts;
 mod tet_mesh;

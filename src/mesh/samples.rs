@@ -1,7 +1,9 @@
 //! Small meshes for tests and benches; no part of the interface.
 use super::adjacency::{FACES, NONE, neighbours, sorted3};
+use super::stack::{Cell, Kind, Stack};
 use super::vector::{Vec3, volume6};
 use super::{Elements, TetMesh};
+use std::collections::BTreeMap;
 
 /// The unit cube as n³ cells of six tetrahedra (Kuhn), boundary triangles of reference 1 to 6 by the side.
 pub fn cube(n: u32) -> TetMesh {
@@ -32,6 +34,77 @@ pub fn cube(n: u32) -> TetMesh {
         }
     }
     with_boundary(vertices, tets)
+}
+
+/// The unit cube of n³ cells with a layer of prisms of this height below it, on whose lower side the triangles have the reference 5; quadrilaterals
+/// around the layer with the references of the cube's sides. Not joined.
+pub fn on_prisms(n: u32, height: f64) -> (TetMesh, Stack) {
+    let mut mesh = cube(n);
+    let all: Vec<([u32; 3], i32)> = mesh.triangles.iter().collect();
+    let mut below = BTreeMap::new();
+    let mut lower = |mesh: &mut TetMesh, v: u32| {
+        *below.entry(v).or_insert_with(|| {
+            let [x, y, _] = mesh.vertices[v as usize];
+            mesh.vertices.push([x, y, -height]);
+            mesh.vertex_refs.push(0);
+            mesh.vertices.len() as u32 - 1
+        })
+    };
+    let mut stack = Stack::default();
+    mesh.triangles = Elements::default();
+    for (nodes, side) in all {
+        if side != 5 {
+            mesh.triangles.push(nodes, side);
+            continue;
+        }
+        let [a, b, c] = nodes;
+        let [d, e, f] = nodes.map(|v| lower(&mut mesh, v));
+        stack.cells.push(Cell::new(Kind::Prism, &[a, b, c, d, e, f], 1));
+        mesh.triangles.push([d, e, f], 5);
+        for quad in [[a, b, e, d], [b, c, f, e], [c, a, d, f]] {
+            let corners = [quad[0], quad[1], quad[2]].map(|v| mesh.vertices[v as usize]);
+            if side_of(corners) != 7 {
+                stack.quads.push(quad, side_of(corners));
+            }
+        }
+    }
+    (mesh, stack)
+}
+
+/// A unit cube of ten tetrahedra and a pyramid about its centre, on a hexahedron with a prism beside it; triangles and quadrilaterals on all of the
+/// boundary. Not joined.
+pub fn of_all_kinds() -> (TetMesh, Stack) {
+    let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+    let mut vertices: Vec<Vec3> = corners.iter().map(|corner| corner.map(f64::from)).collect();
+    vertices.push([0.5, 0.5, 0.4]);
+    vertices.extend([[0.0, 0.0, -0.3], [1.0, 0.0, -0.3], [1.0, 1.0, -0.3], [0.0, 1.0, -0.3]]);
+    vertices.extend([[-0.7, 0.0, -0.3], [-0.7, 1.0, -0.3]]);
+    let mut mesh = TetMesh { vertex_refs: vec![0; vertices.len()], vertices, ..TetMesh::default() };
+    for ([a, b, c, d], side) in
+        [([0, 1, 5, 4], 3), ([1, 2, 6, 5], 2), ([2, 3, 7, 6], 4), ([3, 0, 4, 7], 1), ([4, 5, 6, 7], 6)]
+    {
+        for [a, b, c] in [[a, b, c], [a, c, d]] {
+            mesh.tets.push([a, c, b, 8], 1);
+            mesh.triangles.push([a, b, c], side);
+        }
+    }
+    let mut stack = Stack::default();
+    stack.cells.push(Cell::new(Kind::Pyramid, &[0, 1, 2, 3, 8], 1));
+    stack.cells.push(Cell::new(Kind::Prism, &[0, 13, 9, 3, 14, 12], 1));
+    stack.cells.push(Cell::new(Kind::Hexahedron, &[9, 10, 11, 12, 0, 1, 2, 3], 1));
+    mesh.triangles.push([0, 13, 9], 3);
+    mesh.triangles.push([3, 12, 14], 4);
+    for (quad, side) in [
+        ([9, 12, 11, 10], 5),
+        ([9, 13, 14, 12], 5),
+        ([0, 3, 14, 13], 1),
+        ([0, 9, 10, 1], 3),
+        ([1, 10, 11, 2], 2),
+        ([2, 11, 12, 3], 4),
+    ] {
+        stack.quads.push(quad, side);
+    }
+    (mesh, stack)
 }
 
 /// The mesh with its vertices and tetrahedra in an order without any sense.

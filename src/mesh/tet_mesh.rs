@@ -34,6 +34,12 @@ impl<const N: usize> Elements<N> {
         self.refs.push(reference);
     }
 
+    /// Keeps the first elements, so many.
+    pub fn truncate(&mut self, count: usize) {
+        self.nodes.truncate(count);
+        self.refs.truncate(count);
+    }
+
     /// Elements with their references.
     pub fn iter(&self) -> impl Iterator<Item = ([u32; N], i32)> + '_ {
         self.nodes.iter().copied().zip(self.refs.iter().copied())

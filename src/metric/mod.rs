@@ -12,6 +12,7 @@ pub mod field;
 pub mod frame;
 pub mod from_image;
 pub mod from_points;
+pub mod frozen;
 pub mod goal;
 pub mod gradation;
 pub mod held;

@@ -181,8 +181,8 @@ fn data_at_elements_and_odd_numbers_are_read() {
         refusal("a.msh", text.replacen(from, to, 1))
     };
     assert!(
-        with("8 4 2 5 1 10 7 3 900", "8 5 2 5 1 10 7 3 900")
-            .contains("line 17: elements of type 5 (hexahedra): only simplices")
+        with("8 4 2 5 1 10 7 3 900", "8 11 2 5 1 10 7 3 900")
+            .contains("line 17: elements of type 11 (of second order): only cells")
     );
     assert!(with("8 4 2 5 1 10", "8 4 2 5 1 11").contains("line 17: there is no node 11"));
     assert!(with("7 1 0 0", "10 1 0 0").contains("node 10 is there twice"));

@@ -6,6 +6,7 @@ mod gmsh;
 mod other_solvers;
 mod round_trip;
 mod sample;
+mod stacks;
 mod su2;
 mod ugrid;
 mod vtu;

@@ -12,7 +12,7 @@ const MESH: &str = "%\n% Problem dimension\n%\nNDIME= 3\n%\nNELEM= 1\n10 0 1 2 3
 fn a_mesh_as_documented_is_read() {
     let place = Place::new();
     let path = place.text("a.su2", MESH);
-    let Dataset { mesh, names, fields } = read(&path);
+    let Dataset { mesh, names, fields, .. } = read(&path);
     assert_eq!(mesh.vertices, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.5]]);
     assert_eq!((mesh.tets.nodes, mesh.tets.refs), (vec![[0, 1, 2, 3]], vec![1]));
     assert_eq!((mesh.triangles.nodes, mesh.triangles.refs), (vec![[0, 2, 1], [0, 1, 3], [1, 2, 3]], vec![1, 2, 2]));
@@ -28,9 +28,15 @@ fn what_is_wrong_is_named_by_its_line() {
     };
     assert_eq!(with("NDIME= 3", "NDIME= 2"), "line 4: NDIME= 2: meshes in 3D are read; give one");
     assert_eq!(with("NDIME= 3", ""), "line 6: NDIME= must come first; write NDIME= 3 above");
-    let message = "line 7: an element of type 12 (hexahedron): tetrahedra and triangles are read; split the others";
-    assert_eq!(with("10 0 1 2 3 0", "12 0 1 2 3 4 5 6 7 0"), message);
-    assert!(with("5 0 2 1\n", "9 0 2 1 3\n").starts_with("line 18: an element of type 9 (quadrilateral)"));
+    let voxel = with("10 0 1 2 3 0", "11 0 1 2 3 4 5 6 7 0");
+    assert!(
+        voxel.starts_with("line 7: an element of type 11 (voxel): tetrahedra, prisms, pyramids and hexahedra are read"),
+        "{voxel}"
+    );
+    let far = with("10 0 1 2 3 0", "12 0 1 2 3 4 5 6 7 0");
+    let wanted = "cell 1 of those that are no tetrahedra, a hexahedron: it has a vertex that is not there: there are 4";
+    assert_eq!(far, wanted);
+    assert!(with("5 0 2 1\n", "9 0 2 1 3\n").starts_with("quadrilateral 1: it is the face of no prism"));
     assert!(with("10 0 1 2 3", "10 0 1 2 x").starts_with("line 7: a whole number is expected, not 'x'"));
     assert_eq!(with("10 0 1 2 3", "10 0 1 2 4"), "tetrahedron 1 of 1: it has a vertex that is not there: there are 4");
     assert!(with("10 0 1 2 3", "10 0 1 2 -1").contains("-1 is no number of a vertex; they count from 0"));

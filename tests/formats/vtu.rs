@@ -175,9 +175,10 @@ fn what_is_wrong_is_named() {
         refusal("a.vtu", file.replacen(from, to, 1))
     };
     assert!(
-        with(" 10\n 10\n 5\n", " 12\n 10\n 5\n")
-            .starts_with("cell 1 of 5: a cell of type 12 (hexahedron): tetrahedra, triangles")
+        with(" 10\n 10\n 5\n", " 11\n 10\n 5\n")
+            .starts_with("cell 1 of 5: a cell of type 11 (voxel): tetrahedra, prisms")
     );
+    assert!(with(" 10\n 10\n 5\n", " 12\n 10\n 5\n").starts_with("cell 1 of 5: a cell of type 12 with 4 points"));
     assert!(with(" 10\n 10\n 5\n", " 5\n 10\n 5\n").starts_with("cell 1 of 5: a cell of type 5 with 4 points"));
     assert!(with(" 4\n 8\n 11\n", " 8\n 4\n 11\n").starts_with("cell 1 of 5: a cell of type 10 with 8 points"));
     assert!(

@@ -48,7 +48,9 @@ impl Begun {
             }
         }
         let given = input.read(team, notices);
-        let prepared = given.and_then(|given| input.prepare(team, given, None, notices));
+        let prepared = given
+            .and_then(|given| given.without_stack(&input.mesh, "work part by part"))
+            .and_then(|given| input.prepare(team, given, None, notices));
         let Input { on, source, .. } = agreed(ranks, prepared)?;
         let complexity = input.amount.complexity().unwrap_or_else(|| source.complexity(team, &on.mesh));
         let logs = decomposition::logs_on(team, &on.mesh, &source);

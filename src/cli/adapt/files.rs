@@ -67,7 +67,8 @@ impl Targets {
     ) -> Result<(Report, Vec<String>), Failure> {
         let mut outputs = self.outputs()?;
         let field = Field { metrics: std::mem::take(&mut report.metrics) };
-        let mut data = Dataset { mesh: std::mem::take(&mut report.mesh), names: report.names.clone(), fields: vec![] };
+        let (mesh, stack) = (std::mem::take(&mut report.mesh), std::mem::take(&mut report.stack));
+        let mut data = Dataset { mesh, stack, names: report.names.clone(), fields: vec![] };
         match &self.metric {
             Some(target) => outputs.metric(team, target, &field)?,
             None => {
@@ -77,7 +78,7 @@ impl Targets {
             }
         }
         let lost = outputs.mesh(team, &self.mesh, &data)?;
-        report.mesh = data.mesh;
+        (report.mesh, report.stack) = (data.mesh, data.stack);
         report.metrics = field.metrics;
         self.finish(outputs, &mut report, times)?;
         Ok((report, lost))

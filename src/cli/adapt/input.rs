@@ -6,6 +6,7 @@ use super::field::FieldArguments;
 use super::local::Locals;
 use super::meet::Meeting;
 use super::source::{How, On, Raw};
+use crate::adapt::beside::Beside;
 use crate::cli::metric::common::Amount;
 use crate::cli::metric::fields::MultiscaleArguments;
 use crate::cli::metric::geometry::GeometryArguments;
@@ -21,6 +22,7 @@ use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::crossing::{self, Crossings};
 use crate::mesh::io::Read;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
+use crate::mesh::stack::{Outside, Stack};
 use crate::metric::{Source, Sym3};
 use crate::sizing::layer::Walls;
 use crate::tasks::{Team, stage};
@@ -76,6 +78,8 @@ pub struct InputArguments {
 pub struct Given {
     /// The mesh.
     pub mesh: TetMesh,
+    /// Its cells that are no tetrahedra.
+    pub stack: Stack,
     /// ln M at its vertices.
     pub logs: Option<Vec<Sym3>>,
     /// What its references are called, by its file or the one beside it.
@@ -112,6 +116,8 @@ pub struct OnModel {
     pub how: How,
     /// How the number of vertices was met that --vertices asks for.
     pub meeting: Option<Meeting>,
+    /// The cells that are no tetrahedra: then the mesh is what lies beside them.
+    pub beside: Option<Beside>,
 }
 
 /// A share of √(8 h R).
@@ -165,8 +171,8 @@ impl InputArguments {
             logs = Some(read.content);
             stage("metric read");
         }
-        let Dataset { mesh, names, fields } = content;
-        Ok(Given { mesh, logs, names, fields, is_result: false })
+        let Dataset { mesh, stack, names, fields } = content;
+        Ok(Given { mesh, stack, logs, names, fields, is_result: false })
     }
 
     /// Completes the boundary, puts the mesh on its model, and brings the metric to its complexity.
@@ -178,7 +184,7 @@ impl InputArguments {
         cad: Option<Model>,
         notices: &mut Vec<String>,
     ) -> Result<Input, Error> {
-        let Given { mut mesh, mut logs, mut names, fields, is_result } = given;
+        let Given { mut mesh, stack, mut logs, mut names, fields, is_result } = given;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let added = complete_matched(team, &mut mesh, &faces);
         stage("boundary complete");
@@ -189,9 +195,12 @@ impl InputArguments {
             self.tell_crossings(team, &mesh, &faces, notices);
         }
         let copies = if is_result { Vec::new() } else { self.take_apart(team, &mut mesh, &faces, notices)? };
+        if !stack.is_empty() && !copies.is_empty() {
+            return Err(format!("{}: a mesh with {} must not be pinched so", self.mesh.display(), stack.told()).into());
+        }
         logs.iter_mut().for_each(|logs| copy_values(logs, &copies));
-        let mesh = Arc::new(mesh);
-        let (model, place) = self.place(team, &mesh, cad, notices).map_err(|error| match copies.is_empty() {
+        let outside = (!stack.is_empty()).then(|| Outside::of(&stack, &mut mesh));
+        let (model, mut place) = self.place(team, &mesh, cad, notices).map_err(|error| match copies.is_empty() {
             true => error,
             false => format!("{error}. {APART}").into(),
         })?;
@@ -199,12 +208,19 @@ impl InputArguments {
         if names.is_empty() {
             names = on_mesh(&mesh, &place, &model);
         }
+        let (mut faces, mut beside) = (faces, None);
+        if let Some(outside) = outside {
+            let found = self.beside(team, (stack, outside), mesh, place, &model)?;
+            (mesh, place, beside) = (found.0, found.1, Some(found.2));
+            faces = MatchedFaces::of(team, &mesh.tets.nodes);
+        }
+        let mesh = Arc::new(mesh);
         let raw = Raw { logs, copies, fields };
         let kept = self.amount.vertices.is_some().then(|| raw.clone());
-        let on = On { place: &place, model: &model, names: &names };
+        let on = On { place: &place, model: &model, names: &names, beside: beside.as_ref() };
         let (source, how) = self.source(team, (&mesh, faces), raw, on, (self.amount.complexity(), notices))?;
         let size = [mesh.vertices.len(), mesh.tets.len()];
-        Ok(Input { on: OnModel { mesh, size, place, model, names, how, meeting: None }, source, raw: kept })
+        Ok(Input { on: OnModel { mesh, size, place, model, names, how, meeting: None, beside }, source, raw: kept })
     }
 
     /// Tells where the boundary of the mesh passes through itself.
@@ -227,9 +243,9 @@ impl InputArguments {
 
     /// The metric made again, of another complexity.
     pub fn source_of(&self, team: Team<'_>, input: &Input, complexity: f64) -> Result<(Source, How), Error> {
-        let Input { on: OnModel { mesh, place, model, names, .. }, raw, .. } = input;
+        let Input { on: OnModel { mesh, place, model, names, beside, .. }, raw, .. } = input;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
-        let on = On { place, model, names };
+        let on = On { place, model, names, beside: beside.as_ref() };
         // What there is to say was said of the first.
         let wanted = (Some(complexity), &mut Vec::new());
         self.source(team, (mesh, faces), raw.clone().unwrap_or_default(), on, wanted)

@@ -14,6 +14,7 @@ mod scratch;
 mod sliced;
 mod slices;
 mod source;
+mod stack;
 mod walls;
 
 use super::figures::FigureArguments;
@@ -21,6 +22,7 @@ use super::waiting::Waiting;
 use super::{Outcome, interrupt};
 use crate::adapt::forecast::most_in_memory;
 use crate::adapt::{self, Adapted, Criterion, Freeze, Grains, Options, PointCreation, Scheduler, SurfaceBounds};
+use crate::formats::check_stack;
 use crate::geometry::classify::keeps_references;
 use crate::memory;
 use crate::metric::Field;
@@ -126,6 +128,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut notices = Vec::new();
     let mut line = Some(Waiting::for_what("reading the mesh"));
     let mut given = arguments.input.read(team, &mut notices)?;
+    check_stack(&arguments.output, &given.stack)?;
     let (mut cad, mut start) = (None, Some(start));
     for cycle in 1..=arguments.cycles {
         let start = start.take().unwrap_or_else(Instant::now);
@@ -141,7 +144,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let adapted = arguments.adapted(team, (&pool, plan), &mut input, (&progress, is_last))?;
         let finished = start.elapsed();
         let line = Waiting::for_what("measuring and writing");
-        let report = Report::new(team, &asked, &input.on, adapted, (progress.forecast(), None));
+        let held = adapted.extracted.part.as_ref().map(|joint| joint.held.clone());
+        let mut report = Report::new(team, &asked, &input.on, adapted, (progress.forecast(), None));
+        report.rejoin(team, &input.on, held.as_deref())?;
         stage("report");
         let (mut report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
         drop(line);
@@ -164,8 +169,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
             return Ok(ExitCode::from(memory::end::EXIT_CODE));
         }
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
-        let (mesh, names) = (std::mem::take(&mut report.mesh), report.names.clone());
-        given = Given { mesh, logs, names, fields: Vec::new(), is_result: true };
+        let (mesh, stack, names) =
+            (std::mem::take(&mut report.mesh), std::mem::take(&mut report.stack), report.names.clone());
+        given = Given { mesh, stack, logs, names, fields: Vec::new(), is_result: true };
         cad = arguments.input.has_model().then_some(input.on.model);
     }
     Ok(ExitCode::SUCCESS)
@@ -194,8 +200,11 @@ impl Arguments {
             self.check_references(&input.on).map_err(named)?;
         }
         let adapt = |input: &Input| {
-            let Input { on: OnModel { mesh, place, model, .. }, source, .. } = input;
-            let adapted = adapt::adapt(mesh, place, model, source, &options, pool, progress);
+            let Input { on: OnModel { mesh, place, model, beside, .. }, source, .. } = input;
+            let adapted = match beside {
+                Some(beside) => beside.adapt(mesh, place, model, source, &options, pool, progress),
+                None => adapt::adapt(mesh, place, model, source, &options, pool, progress),
+            };
             progress.finish();
             progress.has_room()?;
             adapted.map_err(|error| named(error.to_string()).into())

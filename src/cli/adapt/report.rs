@@ -3,6 +3,7 @@ use super::input::OnModel;
 use super::meet::Meeting;
 use super::rounds::Parts;
 use super::source::Chords;
+use super::stack::Kept;
 use crate::adapt::forecast::Forecast;
 use crate::adapt::{Adapted, GrowthEnd, KINDS, Kind, Refusal, Work};
 use crate::cli::metric::fields::Made;
@@ -16,6 +17,7 @@ use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::crossing::{Crossing, Crossings};
 use crate::mesh::numbers::from_one;
+use crate::mesh::stack::Stack;
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
 use crate::tasks::Team;
@@ -111,13 +113,16 @@ pub struct Report {
     /// The rounds and the processes, part by part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) parts: Option<Parts>,
+    /// Prisms, pyramids and hexahedra, which stayed as they are; all other figures are of the tetrahedra beside them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) kept: Option<Kept>,
     input_vertices: usize,
     input_tets: usize,
     pub(super) statistics: Statistics,
     fidelity: Fidelity,
     /// Boundary vertices, from 0 and in JSON from 1, that found no room on the model: their tetrahedra would be inverted at its closest point.
     #[serde(serialize_with = "from_one")]
-    off_model: Vec<u32>,
+    pub(super) off_model: Vec<u32>,
     /// Whether it stopped growing before its metric was met, and why.
     overgrown: bool,
     growth_end: Option<GrowthEnd>,
@@ -135,6 +140,9 @@ pub struct Report {
     /// The adapted mesh.
     #[serde(skip)]
     pub mesh: TetMesh,
+    /// Its cells that are no tetrahedra.
+    #[serde(skip)]
+    pub stack: Stack,
     /// What its references are called.
     #[serde(skip)]
     pub names: Names,
@@ -155,6 +163,9 @@ impl Report {
     ) -> Self {
         let (extracted, (forecast, statistics)) = (adapted.extracted, known);
         let (mut mesh, model) = (extracted.mesh, &input.model);
+        // The stack's boundary keeps its references, and so does what continues it.
+        #[cfg(feature = "occt")]
+        let refs = input.beside.as_ref().map(|_| mesh.triangles.refs.clone());
         let names = match model {
             Model::Discrete(surface) => {
                 surface.restore(&mut mesh, &extracted.classification);
@@ -168,6 +179,14 @@ impl Report {
             #[cfg(feature = "occt")]
             Model::Occt(_) => input.names.clone(),
         };
+        #[cfg(feature = "occt")]
+        let names = match refs {
+            Some(refs) if matches!(model, Model::Occt(_)) => {
+                mesh.triangles.refs = refs;
+                input.names.clone()
+            }
+            _ => names,
+        };
         let fidelity = fidelity::measure_adapted(team, &mesh, model, &extracted.classification, &extracted.held);
         Self {
             version: env!("CARGO_PKG_VERSION"),
@@ -177,6 +196,7 @@ impl Report {
             chords: input.how.chords,
             vertices_wanted: input.meeting,
             parts: None,
+            kept: None,
             input_vertices: input.size[0],
             input_tets: input.size[1],
             statistics: statistics.unwrap_or_else(|| Statistics::in_metric(team, &mesh, &extracted.metrics)),
@@ -191,6 +211,7 @@ impl Report {
             operations: operations(&adapted.work),
             seconds: Seconds { geometry: adapted.geometry.as_secs_f64(), ..Seconds::default() },
             mesh,
+            stack: Stack::default(),
             names,
             metrics: extracted.metrics,
         }
@@ -215,6 +236,9 @@ impl Report {
     pub fn text(&self) -> String {
         let mut table = Table::new();
         table.row("input", format_args!("{} vertices, {} tetrahedra", self.input_vertices, self.input_tets));
+        if let Some(kept) = &self.kept {
+            kept.row(&mut table);
+        }
         if let Some(made) = &self.multiscale {
             made.rows(&mut table);
         }

@@ -122,7 +122,7 @@ impl InputArguments {
         }
         let counts = files.reader().counts();
         let size = [counts.vertices, counts.tets];
-        let on = OnModel { mesh, size, place, model, names, how: Default::default(), meeting: None };
+        let on = OnModel { mesh, size, place, model, names, how: Default::default(), meeting: None, beside: None };
         Ok(Begun { on, complexity, content: Content::Slices(Box::new(files), shell) })
     }
 }

@@ -2,6 +2,7 @@
 use super::input::{Error, InputArguments};
 use super::local;
 use crate::adapt;
+use crate::adapt::beside::Beside;
 use crate::cli::files::reading::Carrier;
 use crate::cli::metric::fields::Made;
 use crate::cli::metric::goal;
@@ -12,6 +13,7 @@ use crate::geometry::classify::Classification;
 use crate::geometry::{Model, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
+use crate::metric::frozen::Fitted;
 use crate::metric::goal::NORM;
 use crate::metric::held::GREATEST_RATIO;
 use crate::metric::multiscale::{Bounds, Cut, Measure, Options, SizeBound, bounded, diameter};
@@ -47,6 +49,8 @@ pub struct How {
     pub goal: Option<goal::Made>,
     /// What was cut along curved walls, with --limit-chords.
     pub chords: Option<Chords>,
+    /// How it was fitted to a stack.
+    pub fitted: Option<Fitted>,
 }
 
 /// What --limit-chords has cut.
@@ -74,6 +78,8 @@ pub(super) struct On<'a> {
     pub place: &'a Classification,
     pub model: &'a Model,
     pub names: &'a Names,
+    /// The stack that the mesh lies beside.
+    pub beside: Option<&'a Beside>,
 }
 
 impl On<'_> {
@@ -93,7 +99,7 @@ impl InputArguments {
         on: On<'_>,
         (complexity, notices): (Option<f64>, &mut Vec<String>),
     ) -> Result<(Source, How), Error> {
-        let (mut source, how) = self.unscaled(team, (mesh, faces), raw, on, (complexity, notices))?;
+        let (mut source, mut how) = self.unscaled(team, (mesh, faces), raw, on, (complexity, notices))?;
         stage("metric ready");
         if source.cut() > 0 {
             notices.push(format!(
@@ -104,6 +110,11 @@ impl InputArguments {
         }
         self.scale(team, mesh, &mut source, complexity, how.made.is_some() || how.goal.is_some())?;
         stage("complexity");
+        if let Some(beside) = on.beside {
+            let (source, fitted) = self.fitted(team, mesh, beside, &source);
+            how.fitted = Some(fitted);
+            return Ok((source, how));
+        }
         Ok((source, how))
     }
 

@@ -206,7 +206,7 @@ fn write_as_it_is(
             crate::geometry::classify::associate(&mut mesh, &meshed.place);
         }
     }
-    let data = Dataset { mesh, names: names.clone(), fields: Vec::new() };
+    let data = Dataset { mesh, names: names.clone(), ..Dataset::default() };
     let (lost, mesh) = (targets.mesh_alone(team, &data)?, data.mesh);
     lost.iter().for_each(super::note);
     let solids = model.topology().solids;

@@ -187,7 +187,16 @@ impl Refined {
         self.notices.iter().chain(&flaw).for_each(crate::cli::note);
         let place = self.adapted.extracted.classification.clone();
         let size = [self.start.vertices.len(), self.start.tets.len()];
-        let on = OnModel { mesh: self.start, size, place, model, names, how: Default::default(), meeting: None };
+        let on = OnModel {
+            mesh: self.start,
+            size,
+            place,
+            model,
+            names,
+            how: Default::default(),
+            meeting: None,
+            beside: None,
+        };
         let report = Report::new(team, asked, &on, self.adapted, (None, None));
         let [prepared, finished] = self.times;
         let (report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;

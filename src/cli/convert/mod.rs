@@ -8,6 +8,7 @@ use super::translation::Translation;
 use crate::formats::{self, Dataset, Format, Options, Placement};
 use crate::geometry::{Label, names};
 use crate::mesh::io::FieldKind;
+use crate::mesh::stack::Stack;
 use crate::tasks::{Plan, Team};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -38,6 +39,9 @@ pub struct Arguments {
     /// Write text where the format would be binary (.vtu, .vtk, .xdmf, .msh, .ply, OpenFOAM)
     #[arg(long)]
     text: bool,
+    /// Split prisms, pyramids and hexahedra into tetrahedra, and quadrilaterals into triangles, without new vertices
+    #[arg(long)]
+    split: bool,
     /// Leave the association with a model out of .mesh and .meshb: there are readers, meshio's among them, that stop at its keywords
     #[arg(long)]
     plain: bool,
@@ -51,7 +55,7 @@ pub struct Arguments {
 
 /// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let Arguments { input, output, fields, names, text, plain, scale, translate } = arguments;
+    let Arguments { input, output, fields, names, text, split, plain, scale, translate } = arguments;
     if pieces::are_wanted(output) {
         return pieces::run(arguments);
     }
@@ -72,6 +76,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let placement = Placement { scale: scale.unwrap_or(1.0), translation: translate.unwrap_or_default().0 };
         notices.extend(placement.apply(&mut data));
     }
+    if *split {
+        data.stack = Stack::default();
+    }
     if *plain {
         data.mesh.association = Default::default();
     }
@@ -90,9 +97,11 @@ fn describe(data: &Dataset, to: Format) -> Table {
     let mesh = &data.mesh;
     if !to.is_fields() {
         table.row("vertices", mesh.vertices.len());
+        let [tets, triangles] =
+            if data.stack.is_empty() { [mesh.tets.len(), mesh.triangles.len()] } else { data.stack.own() };
         let rows = [
-            ("tetrahedra", mesh.tets.len(), &data.names.tetrahedra),
-            ("triangles", mesh.triangles.len(), &data.names.triangles),
+            ("tetrahedra", tets, &data.names.tetrahedra),
+            ("triangles", triangles, &data.names.triangles),
             ("edges", mesh.edges.len(), &data.names.edges),
         ];
         for (name, count, labels) in rows {
@@ -100,6 +109,10 @@ fn describe(data: &Dataset, to: Format) -> Table {
                 table.row(name, format_args!("{count}{}", listed(labels)));
             }
         }
+    }
+    if !data.stack.is_empty() {
+        table.row("other cells", data.stack.told());
+        table.row("quadrilaterals", data.stack.quads.len());
     }
     for field in &data.fields {
         let kind = match field.kind {

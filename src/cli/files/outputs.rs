@@ -132,7 +132,8 @@ impl Outputs {
             return Err(format!("{path}: a mesh is wanted for this format; give .sol or .solb").into());
         };
         // What is written is all owned; only formats of other programs come here.
-        let data = Dataset { mesh: mesh.clone(), names: names.clone(), fields: fields.into_named() };
+        let data =
+            Dataset { mesh: mesh.clone(), names: names.clone(), fields: fields.into_named(), ..Dataset::default() };
         let notices = self.dataset(team, to, &data, Options::default())?;
         Ok(if format.is_fields() { Vec::new() } else { named(to, notices) })
     }

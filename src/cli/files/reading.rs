@@ -18,7 +18,7 @@ pub fn mesh(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, io::Error> {
         return formats::read_on(team, path);
     }
     let Read { content: mesh, notices } = io::read_mesh_on(team, path)?;
-    Ok(Read { content: Dataset { mesh, names: names::read(path)?, fields: Vec::new() }, notices })
+    Ok(Read { content: Dataset { mesh, names: names::read(path)?, ..Dataset::default() }, notices })
 }
 
 /// Opens a volume mesh (.meshb) that is larger than memory, to be read by slices.
@@ -126,7 +126,7 @@ pub fn fields(team: Team<'_>, asked: &Path, carrier: Carrier<'_>) -> Result<Read
             Ok(Read { content: Fields::named(data.fields, carrier.vertices.len()), notices })
         }
         _ => {
-            let Read { content: Dataset { mesh, names, fields }, notices } = formats::read_on(team, asked)?;
+            let Read { content: Dataset { mesh, names, fields, .. }, notices } = formats::read_on(team, asked)?;
             if fields.is_empty() {
                 let message = "no field at the vertices; give a file of fields, or a mesh with fields in its file";
                 return Err(format!("{}: {message}", asked.display()).into());

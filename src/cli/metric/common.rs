@@ -261,7 +261,7 @@ pub fn all_logs(
     let none = Carrier { path: asked, vertices: &[], fields: &[] };
     let (Read { content, notices }, mesh) = reading::logs(team, asked, none, vertices)?;
     run.note(&notices);
-    Ok((content, mesh.map(|(mesh, names)| Dataset { mesh, names, fields: Vec::new() })))
+    Ok((content, mesh.map(|(mesh, names)| Dataset { mesh, names, ..Dataset::default() })))
 }
 
 /// The complexity of ln M on a mesh (`path` is for the error): positive.

@@ -183,6 +183,6 @@ impl Job<'_> {
                 .map(|(field, named)| NamedField { name: named.name.clone(), kind: field.kind, values: field.values })
                 .collect();
         }
-        Ok(Dataset { mesh, names, fields })
+        Ok(Dataset { mesh, names, fields, ..Dataset::default() })
     }
 }

@@ -1,6 +1,8 @@
 //! Lists of numbers: as text, or raw bytes between brackets.
 use super::file::Head;
+use super::ordered::Face;
 use super::scan::{Scanner, Token};
+use crate::mesh::adjacency::NONE;
 use crate::mesh::io::Error;
 
 /// A list's number of entries, which take so many bytes at least; more than can follow are refused before there is memory for them.
@@ -133,35 +135,40 @@ pub(super) fn tuple(scanner: &mut Scanner, width: usize, found: &mut Vec<f64>) -
     scanner.expect(b')')
 }
 
-/// Triangles: `n(3(a b c) …)` as text, or, of the class faceCompactList, where each begins and then all of their points.
-pub(super) fn triangles(scanner: &mut Scanner, head: &Head) -> Result<Vec<[u32; 3]>, Error> {
+/// Faces of three or four points, behind the third of three none: `n(3(a b c) …)` as text, or, of the class faceCompactList, where each begins and
+/// then all of their points.
+pub(super) fn faces(scanner: &mut Scanner, head: &Head) -> Result<Vec<Face>, Error> {
     let other = |scanner: &Scanner, face: usize, size: u64| {
-        scanner
-            .fail(format!("face {face} has {size} points: only meshes of tetrahedra are read; split the cells first"))
+        let wanted = "only tetrahedra, prisms, pyramids and hexahedra are read; split the cells first";
+        scanner.fail(format!("face {face} has {size} points: {wanted}"))
     };
     if head.class == "faceCompactList" {
         let starts = labels(scanner, head, None)?;
         let points = labels(scanner, head, Some(starts.last().map_or(0, |&last| last as usize)))?;
-        for (face, pair) in starts.windows(2).enumerate() {
-            if u64::from(pair[0]) + 3 != u64::from(pair[1]) {
-                return Err(other(scanner, face, u64::from(pair[1]).saturating_sub(pair[0].into())));
-            }
-        }
         if starts.first().is_some_and(|&first| first != 0) {
             return Err(scanner.fail("the first face should begin at 0"));
         }
-        return Ok(points.as_chunks().0.to_vec());
+        let mut found = Vec::with_capacity(starts.len());
+        for (face, pair) in starts.windows(2).enumerate() {
+            match points.get(pair[0] as usize..pair[1] as usize) {
+                Some(&[a, b, c]) => found.push([a, b, c, NONE]),
+                Some(&[a, b, c, d]) => found.push([a, b, c, d]),
+                _ => return Err(other(scanner, face, u64::from(pair[1]).saturating_sub(pair[0].into()))),
+            }
+        }
+        return Ok(found);
     }
     let count = count(scanner, 6)?;
     scanner.expect(b'(')?;
     let mut faces = Vec::with_capacity(count);
     for face in 0..count {
         let size: u64 = scanner.value()?;
-        if size != 3 {
+        if size != 3 && size != 4 {
             return Err(other(scanner, face, size));
         }
         scanner.expect(b'(')?;
-        faces.push([label(scanner)?, label(scanner)?, label(scanner)?]);
+        let [a, b, c] = [label(scanner)?, label(scanner)?, label(scanner)?];
+        faces.push([a, b, c, if size == 4 { label(scanner)? } else { NONE }]);
         scanner.expect(b')')?;
     }
     scanner.expect(b')')?;
@@ -220,15 +227,17 @@ mod tests {
     }
 
     #[test]
-    fn faces_of_other_than_three_points_are_named() {
+    fn faces_of_other_than_three_or_four_points_are_named() {
         let path = Path::new("f");
         let text = Head { class: "faceList".into(), ..head(false, 4, 8) };
-        let read = |bytes: &[u8], head: &Head| triangles(&mut Scanner::new(path, bytes), head);
-        assert_eq!(read(b"2(3(0 1 2) 3(3 4 5))", &text).unwrap(), [[0, 1, 2], [3, 4, 5]]);
-        assert!(read(b"2(3(0 1 2) 4(3 4 5 6))", &text).unwrap_err().to_string().contains("face 1 has 4 points"));
+        let read = |bytes: &[u8], head: &Head| faces(&mut Scanner::new(path, bytes), head);
+        assert_eq!(read(b"2(3(0 1 2) 4(3 4 5 6))", &text).unwrap(), [[0, 1, 2, NONE], [3, 4, 5, 6]]);
+        assert!(read(b"2(3(0 1 2) 5(3 4 5 6 7))", &text).unwrap_err().to_string().contains("face 1 has 5 points"));
         let compact = Head { class: "faceCompactList".into(), ..text };
-        assert_eq!(read(b"3(0 3 6)\n6(0 1 2 3 4 5)", &compact).unwrap(), [[0, 1, 2], [3, 4, 5]]);
-        assert!(read(b"3(0 3 7)\n7(0 1 2 3 4 5 6)", &compact).unwrap_err().to_string().contains("face 1 has 4 points"));
+        assert_eq!(read(b"3(0 3 7)\n7(0 1 2 3 4 5 6)", &compact).unwrap(), [[0, 1, 2, NONE], [3, 4, 5, 6]]);
+        assert!(
+            read(b"3(0 3 8)\n8(0 1 2 3 4 5 6 7)", &compact).unwrap_err().to_string().contains("face 1 has 5 points")
+        );
         assert!(read(b"2(1 4)\n4(0 1 2 3)", &compact).is_err());
     }
 }

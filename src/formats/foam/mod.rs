@@ -1,13 +1,15 @@
 //! Cases of OpenFOAM: the mesh (polyMesh) and fields at its cells, as text or raw bytes, plain or gzip.
-//! Source: OpenFOAM user guide, "Mesh description" and "Field files" (v1912); only what is a mesh of tetrahedra.
+//! Source: OpenFOAM user guide, "Mesh description" and "Field files" (v1912); only tetrahedra, prisms, pyramids and hexahedra.
 //!
 //! Reading goes bytes → `file` (head) → `scan` (words) → `list`, `boundary` → `poly_mesh`; fields go from cells to vertices by `average`.
 mod boundary;
 mod field;
 mod file;
 mod list;
+mod ordered;
 mod poly_mesh;
 mod scan;
+mod words;
 mod write;
 
 pub use boundary::Patch;
@@ -16,11 +18,12 @@ pub use field::{
 };
 pub use write::write_poly_mesh;
 
-use super::{Dataset, NamedField, cells_to_vertices, vertices_to_cells};
+use super::{Dataset, NamedField, cells_to_vertices, error, vertices_to_cells};
 use crate::geometry::Names;
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Batch, Error, Read};
 use crate::tasks::Team;
+use poly_mesh::PolyMesh;
 use std::path::{Path, PathBuf};
 
 /// The name of a patch of triangles without one.
@@ -56,12 +59,17 @@ fn case_of(path: &Path) -> PathBuf {
     case.unwrap_or(path).to_owned()
 }
 
-/// Reads the mesh of a case and the names of its references, without fields.
+/// Reads a mesh of tetrahedra alone of a case and the names of its references, without fields.
 ///
 /// # Errors
-/// As [`read`].
+/// As [`read`]; and when there are other cells.
 pub fn read_mesh(path: &Path) -> Result<(TetMesh, Names), Error> {
-    poly_mesh::read(&poly_mesh_of(path))
+    let folder = poly_mesh_of(path);
+    let Dataset { mesh, stack, names, .. } = poly_mesh::read(&folder)?.data;
+    if stack.is_empty() {
+        return Ok((mesh, names));
+    }
+    Err(error::at(&folder, "cells", format!("there are {}, and tetrahedra alone are wanted here", stack.told())))
 }
 
 /// The cells on both sides of the inner faces of a case, in their order: owner and neighbour.
@@ -76,7 +84,7 @@ pub fn read_inner_faces(path: &Path) -> Result<Vec<[u32; 2]>, Error> {
 ///
 /// # Errors
 /// [`Error::System`] when a file is not there or cannot be read, [`Error::Content`] when what it says cannot be true, or the mesh has
-/// cells that are no tetrahedra.
+/// cells that are no tetrahedra, prisms, pyramids or hexahedra.
 pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
     read_on(Team::alone(), path)
 }
@@ -86,16 +94,21 @@ pub fn read(path: &Path) -> Result<Read<Dataset>, Error> {
 /// # Errors
 /// As [`read`].
 pub fn read_on(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, Error> {
-    let (mesh, names) = read_mesh(path)?;
-    let (mut fields, mut notices, mut passed) = (Vec::new(), Vec::new(), Vec::new());
+    let PolyMesh { mut data, cells, mut notices } = poly_mesh::read(&poly_mesh_of(path))?;
+    let (mut fields, mut passed) = (Vec::new(), Vec::new());
     if let Some(time) = newest_time(&case_of(path)) {
         for file in files_of(&time)? {
             let name =
                 file.file_stem().filter(|_| file.extension().is_some_and(|end| end == "gz")).or(file.file_name());
             let name = name.unwrap_or_default().to_string_lossy().into_owned();
-            match read_cell_field(&file, mesh.tets.len())? {
-                Ok(CellField { kind, values }) => {
-                    let values = cells_to_vertices(team, &mesh, &values, kind.values());
+            match read_cell_field(&file, cells.len())? {
+                Ok(CellField { kind, mut values }) => {
+                    let width = kind.values();
+                    if !data.stack.is_empty() {
+                        let rows = cells.iter().flat_map(|&cell| &values[cell as usize * width..][..width]);
+                        values = data.stack.spread(rows.copied().collect(), width);
+                    }
+                    let values = cells_to_vertices(team, &data.mesh, &values, width);
                     fields.push(NamedField { name, kind, values });
                 }
                 Err(class) => passed.push(format!("{name} ({class})")),
@@ -109,7 +122,8 @@ pub fn read_on(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, Error> {
             ));
         }
     }
-    Ok(Read { content: Dataset { mesh, names, fields }, notices })
+    data.fields = fields;
+    Ok(Read { content: data, notices })
 }
 
 /// The time folder of the greatest time.
@@ -180,7 +194,7 @@ pub fn write_on(team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Resu
 pub fn add(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset, text: bool) -> Result<Vec<String>, Error> {
     let mesh = &data.mesh;
     let folder = poly_mesh_of(path);
-    let patches = write::add_poly_mesh(batch, team, &folder, mesh, &data.names, &|_, _| "patch".to_owned(), text)?;
+    let patches = write::add_poly_mesh(batch, team, &folder, data, &|_, _| "patch".to_owned(), text)?;
     let mut notices = Vec::new();
     let lost = [
         ("edges", mesh.edges.len()),
@@ -206,13 +220,17 @@ pub fn add(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset, text:
     batch.folder(&time)?;
     let entries: Vec<_> = patches.into_iter().map(|patch| (patch.name, "type zeroGradient;".to_owned())).collect();
     for NamedField { name, kind, values } in &data.fields {
-        let values = vertices_to_cells(team, mesh, values, kind.values());
+        let mut values = vertices_to_cells(team, mesh, values, kind.values());
+        if !data.stack.is_empty() {
+            values = data.stack.gather(values, kind.values());
+        }
         let file = name.replace(|c: char| !c.is_ascii_alphanumeric() && !"_.-".contains(c), "_");
         if file != *name {
             notices.push(format!("the field {name} is called {file} there"));
         }
+        let cells = data.own_tets() + data.stack.cells.len();
         let field = CellField { kind: *kind, values };
-        field::add_cell_field(batch, &time.join(file), &field, mesh.tets.len(), &entries, text)?;
+        field::add_cell_field(batch, &time.join(file), &field, cells, &entries, text)?;
     }
     Ok(notices)
 }

@@ -2,25 +2,17 @@
 use super::boundary::Patch;
 use super::field::{write_labels, write_reals};
 use super::file::head_text;
+use super::ordered::Ordered;
+use super::words::words;
 use super::{unnamed_region, unnamed_surface};
+use crate::formats::Dataset;
 use crate::geometry::{Label, Names};
-use crate::mesh::TetMesh;
-use crate::mesh::adjacency::{FACES, MatchedFaces, NONE, Side, TriangleIndex};
+use crate::mesh::adjacency::NONE;
 use crate::mesh::io::{Batch, Error};
 use crate::tasks::Team;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
-
-/// The faces of a mesh in OpenFOAM's order: inner ones by owner, then neighbour ("upper triangular"), then those of each patch.
-struct Ordered {
-    nodes: Vec<[u32; 3]>,
-    owner: Vec<u32>,
-    neighbour: Vec<u32>,
-    patches: Vec<Patch>,
-    /// Inner faces that are triangles of the mesh, with what triangle, ascending.
-    inside: Vec<(u32, u32)>,
-}
 
 /// Writes the polyMesh `folder`, which is made where it is not there; `kind` says of which type the patch of a reference with a name is.
 /// Returns the patches, in their order: by reference.
@@ -31,13 +23,12 @@ struct Ordered {
 pub fn write_poly_mesh(
     team: Team<'_>,
     folder: &Path,
-    mesh: &TetMesh,
-    names: &Names,
+    data: &Dataset,
     kind: &dyn Fn(i32, &str) -> String,
     text: bool,
 ) -> Result<Vec<Patch>, Error> {
     let mut batch = Batch::new();
-    let patches = add_poly_mesh(&mut batch, team, folder, mesh, names, kind, text)?;
+    let patches = add_poly_mesh(&mut batch, team, folder, data, kind, text)?;
     batch.commit()?;
     Ok(patches)
 }
@@ -48,12 +39,13 @@ pub(super) fn add_poly_mesh(
     batch: &mut Batch,
     team: Team<'_>,
     folder: &Path,
-    mesh: &TetMesh,
-    names: &Names,
+    data: &Dataset,
     kind: &dyn Fn(i32, &str) -> String,
     text: bool,
 ) -> Result<Vec<Patch>, Error> {
-    let faces = Ordered::of(team, folder, mesh, names, kind)?;
+    let data = &*data.as_written();
+    let (mesh, names) = (&data.mesh, &data.names);
+    let faces = Ordered::of(team, folder, data, kind)?;
     batch.folder(folder)?;
     remove_old(batch, folder);
     let head = |name: &str, class: &str, text| head_text(class, "constant/polyMesh", name, text);
@@ -66,23 +58,29 @@ pub(super) fn add_poly_mesh(
     file("points", "vectorField", &|w| write_reals(w, mesh.vertices.as_flattened(), 3, text))?;
     file("owner", "labelList", &|w| write_labels(w, &faces.owner, text))?;
     file("neighbour", "labelList", &|w| write_labels(w, &faces.neighbour, text))?;
-    add_zones(batch, folder, mesh, names, &faces)?;
+    add_zones(batch, folder, data, &faces)?;
     batch.add(&folder.join("boundary"), |w| write_boundary(w, &faces.patches, names))?;
     batch.add_main(&folder.join("faces"), |w| write_faces(w, &faces.nodes, text))?;
     Ok(faces.patches)
 }
 
-fn write_faces(w: &mut dyn Write, nodes: &[[u32; 3]], text: bool) -> std::io::Result<()> {
+fn write_faces(w: &mut dyn Write, nodes: &[[u32; 4]], text: bool) -> std::io::Result<()> {
     let class = if text { "faceList" } else { "faceCompactList" };
     w.write_all(head_text(class, "constant/polyMesh", "faces", text).as_bytes())?;
     if text {
         write!(w, "\n{}\n(", nodes.len())?;
-        nodes.iter().try_for_each(|[a, b, c]| write!(w, "\n3({a} {b} {c})"))?;
+        nodes.iter().try_for_each(|&[a, b, c, d]| match d {
+            NONE => write!(w, "\n3({a} {b} {c})"),
+            d => write!(w, "\n4({a} {b} {c} {d})"),
+        })?;
         return w.write_all(b"\n)\n");
     }
-    let starts: Vec<u32> = (0..=nodes.len() as u32).map(|face| 3 * face).collect();
+    let mut starts = vec![0; nodes.len() + 1];
+    for (face, nodes) in nodes.iter().enumerate() {
+        starts[face + 1] = starts[face] + if nodes[3] == NONE { 3 } else { 4 };
+    }
     write_labels(w, &starts, text)?;
-    write_labels(w, nodes.as_flattened(), text)
+    write_labels(w, &nodes.as_flattened().iter().copied().filter(|&node| node != NONE).collect::<Vec<_>>(), text)
 }
 
 fn write_boundary(w: &mut dyn Write, patches: &[Patch], names: &Names) -> std::io::Result<()> {
@@ -124,127 +122,12 @@ fn label_entry(label: Option<&Label>, word: &str) -> String {
     }
 }
 
-/// A word for each reference, by its name where it has one; no two are the same.
-fn words(
-    references: &BTreeSet<i32>,
-    labels: &BTreeMap<i32, Label>,
-    unnamed: fn(i32) -> String,
-) -> BTreeMap<i32, String> {
-    let mut taken = BTreeSet::new();
-    let mut words = BTreeMap::new();
-    for &reference in references {
-        let name = labels.get(&reference).and_then(|label| label.name.as_deref());
-        let mut word = name.map_or_else(|| unnamed(reference), word);
-        if !taken.insert(word.clone()) {
-            word = format!("{word}_{reference}");
-            while !taken.insert(word.clone()) {
-                word.push('_');
-            }
-        }
-        words.insert(reference, word);
-    }
-    words
-}
-
-/// A name as OpenFOAM's words are: of letters, digits and few other signs, not beginning like a number.
-fn word(name: &str) -> String {
-    let fits = |c: char| if c.is_ascii_alphanumeric() || c == '_' || c == '.' { c } else { '_' };
-    let word: String = name.chars().map(fits).collect();
-    if word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') { word } else { format!("_{word}") }
-}
-
-impl Ordered {
-    fn of(
-        team: Team<'_>,
-        folder: &Path,
-        mesh: &TetMesh,
-        names: &Names,
-        kind: &dyn Fn(i32, &str) -> String,
-    ) -> Result<Self, Error> {
-        let wrong =
-            |message: String| Error::Content { path: folder.to_owned(), place: "mesh to write".to_owned(), message };
-        let matched = MatchedFaces::of(team, &mesh.tets.nodes);
-        if let Some(crowd) = matched.crowded {
-            return Err(wrong(format!(
-                "{} tetrahedra share the face of the nodes {:?} (from 0): `geo-adapt inspect` has more",
-                crowd.tets, crowd.nodes
-            )));
-        }
-        let tets = &mesh.tets.nodes;
-        let around = &matched.neighbours;
-        let sides = TriangleIndex::new(team, &mesh.triangles.nodes, mesh.vertices.len()).sides(team, tets);
-        // In the order of the tetrahedra, and so are the sides.
-        let mut sides = sides.into_iter().peekable();
-        let (mut nodes, mut owner, mut neighbour, mut inside) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut boundary: BTreeMap<i32, Vec<Side>> = BTreeMap::new();
-        for (tet, around) in around.iter().enumerate() {
-            let mut of_face = [NONE; 4];
-            while let Some(side) = sides.next_if(|side| side.tet as usize == tet) {
-                of_face[side.face as usize] = side.triangle;
-            }
-            let mut upper: Vec<_> =
-                (0..4).filter(|&face| around[face] != NONE && around[face] as usize > tet).collect();
-            upper.sort_unstable_by_key(|&face| around[face]);
-            for face in upper {
-                if of_face[face] != NONE {
-                    inside.push((nodes.len() as u32, of_face[face]));
-                }
-                nodes.push(FACES[face].map(|i| tets[tet][i]));
-                owner.push(tet as u32);
-                neighbour.push(around[face]);
-            }
-            for face in (0..4).filter(|&face| around[face] == NONE) {
-                if of_face[face] == NONE {
-                    return Err(wrong(format!(
-                        "face {face} of tetrahedron {} has no neighbour and no triangle: `geo-adapt inspect` has more",
-                        tet + 1
-                    )));
-                }
-                let side = Side { triangle: of_face[face], tet: tet as u32, face: face as u32 };
-                boundary.entry(mesh.triangles.refs[side.triangle as usize]).or_default().push(side);
-            }
-        }
-        let joined = joined(boundary.keys().copied(), names, kind);
-        let words = words(&joined.keys().copied().collect(), &names.triangles, unnamed_surface);
-        let mut patches = Vec::new();
-        for (reference, of_name) in joined {
-            let start = nodes.len();
-            for side in of_name.iter().flat_map(|reference| &boundary[reference]) {
-                nodes.push(FACES[side.face as usize].map(|i| tets[side.tet as usize][i]));
-                owner.push(side.tet);
-            }
-            let name = words[&reference].clone();
-            let kind = kind(reference, &name);
-            let mut parts: Vec<_> = of_name.iter().map(|reference| (*reference, boundary[reference].len())).collect();
-            if parts.len() == 1 {
-                parts.clear();
-            }
-            patches.push(Patch { name, reference, kind, faces: start..nodes.len(), parts });
-        }
-        Ok(Self { nodes, owner, neighbour, patches, inside })
-    }
-}
-
-/// References by the first of the same name and type, which become one patch: a name stays one name.
-fn joined(
-    references: impl Iterator<Item = i32>,
-    names: &Names,
-    kind: &dyn Fn(i32, &str) -> String,
-) -> BTreeMap<i32, Vec<i32>> {
-    let mut first: BTreeMap<(&str, String), i32> = BTreeMap::new();
-    let mut joined: BTreeMap<i32, Vec<i32>> = BTreeMap::new();
-    for reference in references {
-        let name = names.triangles.get(&reference).and_then(|label| label.name.as_deref());
-        let to = name.map_or(reference, |name| *first.entry((name, kind(reference, name))).or_insert(reference));
-        joined.entry(to).or_default().push(reference);
-    }
-    joined
-}
-
 /// Regions as zones of cells, unless there is but the one of reference 1 without a name; triangles inside as zones of faces.
-fn add_zones(batch: &mut Batch, folder: &Path, mesh: &TetMesh, names: &Names, faces: &Ordered) -> Result<(), Error> {
+fn add_zones(batch: &mut Batch, folder: &Path, data: &Dataset, faces: &Ordered) -> Result<(), Error> {
+    let names = &data.names;
+    let refs = data.mesh.tets.refs.iter().copied().chain(data.stack.cells.iter().map(|cell| cell.reference));
     let mut cells: BTreeMap<i32, Vec<u32>> = BTreeMap::new();
-    mesh.tets.refs.iter().zip(0..).for_each(|(&reference, cell)| cells.entry(reference).or_default().push(cell));
+    refs.zip(0..).for_each(|(reference, cell)| cells.entry(reference).or_default().push(cell));
     let plain =
         cells.len() < 2 && cells.keys().all(|reference| *reference == 1 && !names.tetrahedra.contains_key(reference));
     if !plain {
@@ -259,8 +142,8 @@ fn add_zones(batch: &mut Batch, folder: &Path, mesh: &TetMesh, names: &Names, fa
         )?;
     }
     let mut inside: BTreeMap<i32, Vec<u32>> = BTreeMap::new();
-    for &(face, triangle) in &faces.inside {
-        inside.entry(mesh.triangles.refs[triangle as usize]).or_default().push(face);
+    for &(face, reference) in &faces.inside {
+        inside.entry(reference).or_default().push(face);
     }
     if inside.is_empty() {
         return Ok(());

@@ -4,7 +4,6 @@ use super::super::text::Text;
 use super::super::vtu::{BY_KIND, REFERENCES, by_kind, by_name, to_vtk};
 use super::super::{Dataset, error};
 use super::values::encoded;
-use crate::mesh::TetMesh;
 use crate::mesh::io::{Batch, Error};
 use std::io::{self, Write};
 use std::path::Path;
@@ -87,7 +86,7 @@ fn emit(mut out: Out, data: &Dataset, total: usize) -> io::Result<()> {
     out.ints(counts.into_iter().flat_map(|(kind, count)| std::iter::repeat_n(kind as i32, count)))?;
     if cells > 0 {
         out.text.put(format_args!("CELL_DATA {cells}\n"));
-        references(&mut out, mesh, cells)?;
+        references(&mut out, data, cells)?;
     }
     at_points(&mut out, data)?;
     out.text.finish()
@@ -117,10 +116,11 @@ fn names(out: &mut Out, data: &Dataset) -> io::Result<()> {
 }
 
 /// The references of all cells, and of each kind of them.
-fn references(out: &mut Out, mesh: &TetMesh, cells: usize) -> io::Result<()> {
+fn references(out: &mut Out, data: &Dataset, cells: usize) -> io::Result<()> {
+    let mesh = &data.mesh;
     let all = [&mesh.tets.refs, &mesh.triangles.refs, &mesh.edges.refs].into_iter().flatten().copied().collect();
     out.text.put(format_args!("FIELD FieldData {}\n", 1 + BY_KIND.len()));
-    for (name, values) in [(REFERENCES[0], all)].into_iter().chain(BY_KIND.into_iter().zip(by_kind(mesh))) {
+    for (name, values) in [(REFERENCES[0], all)].into_iter().chain(BY_KIND.into_iter().zip(by_kind(data))) {
         out.text.put(format_args!("{name} 1 {cells} int\n"));
         out.ints(values)?;
     }

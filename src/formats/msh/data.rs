@@ -3,8 +3,8 @@ use super::super::NamedField;
 use super::super::cells::cells_to_vertices;
 use super::super::error;
 use super::super::tags::Tags;
+use super::Raw;
 use super::source::Source;
-use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, FieldKind};
 use crate::tasks::Team;
 
@@ -58,19 +58,14 @@ fn count(source: &mut Source) -> Result<usize, Error> {
 
 impl View {
     /// Makes a field of it, of the last step where there are several. Values of elements become means at the vertices.
-    pub fn resolve(
-        self,
-        mesh: &TetMesh,
-        nodes: &Tags,
-        tets: &[usize],
-        fields: &mut Vec<NamedField>,
-        notices: &mut Vec<String>,
-    ) {
+    pub fn resolve(self, raw: &mut Raw, fields: &mut Vec<NamedField>) {
+        let Raw { mesh, stack, nodes, tets, cells, notices, .. } = raw;
         let name = error::short(&self.name);
-        let of_tets = if self.at_nodes { None } else { Some(Tags::new(tets)) };
-        let (places, items) = match &of_tets {
-            None => (nodes, mesh.vertices.len()),
-            Some(Ok(tags)) if !tets.is_empty() => (tags, tets.len()),
+        let of_cells = if self.at_nodes { None } else { Some(Tags::new(&[&tets[..], cells].concat())) };
+        let count = tets.len() + cells.len();
+        let (places, items) = match &of_cells {
+            None => (&*nodes, mesh.vertices.len()),
+            Some(Ok(tags)) if count > 0 => (tags, count),
             _ => {
                 notices.push(format!("{name}: its elements are not told apart, it is left out"));
                 return;
@@ -86,11 +81,12 @@ impl View {
             }
         }
         if found < items {
-            let what = if self.at_nodes { "nodes" } else { "tetrahedra" };
+            let what = if self.at_nodes { "nodes" } else { "cells" };
             notices.push(format!("{name}: values at {found} of {items} {what}, it is left out"));
             return;
         }
         if !self.at_nodes {
+            all = if stack.is_empty() { all } else { stack.spread(all, self.width) };
             all = cells_to_vertices(Team::alone(), mesh, &all, self.width);
             notices.push(format!("{name} was given at elements: its mean about each vertex is taken"));
         }

@@ -1,4 +1,4 @@
-//! gmsh's meshes (.msh), versions 2.2 and 4.1, as text and binary: points, lines, triangles and tetrahedra of the first order, names of
+//! gmsh's meshes (.msh), versions 2.2 and 4.1, as text and binary: points, lines, triangles, quadrilaterals and cells of the first order, names of
 //! physical groups, data at nodes and elements. Source: gmsh's reference manual, "MSH file format".
 //!
 //! A reference is the number of the elementary entity (the face of the model); its name is that of the physical group that has it, so
@@ -13,9 +13,10 @@ pub(super) use write::write;
 
 use super::orientation;
 use super::tags::Tags;
-use super::{Dataset, error};
+use super::{Dataset, error, stacks};
 use crate::geometry::{Label, Names};
 use crate::mesh::io::{Error, Read};
+use crate::mesh::stack::{Kind, Stack};
 use crate::mesh::{Elements, TetMesh};
 use crate::tasks::Team;
 use source::{Encoding, Source};
@@ -25,15 +26,27 @@ use std::path::Path;
 /// gmsh's numbers of the elements that we have.
 const LINE: i64 = 1;
 const TRIANGLE: i64 = 2;
+const QUADRILATERAL: i64 = 3;
 const TETRAHEDRON: i64 = 4;
 const POINT: i64 = 15;
+
+/// gmsh's numbers of the cells of a stack; the order of the nodes is ours.
+const CELLS: [(i64, Kind); 3] = [(5, Kind::Hexahedron), (6, Kind::Prism), (7, Kind::Pyramid)];
+
+/// The kind of cells of such a number.
+fn kind_of(number: i64) -> Option<Kind> {
+    CELLS.into_iter().find(|(other, _)| *other == number).map(|(_, kind)| kind)
+}
 
 /// What a file holds.
 struct Raw {
     mesh: TetMesh,
+    stack: Stack,
     nodes: Tags,
     /// Numbers of the tetrahedra.
     tets: Vec<usize>,
+    /// Numbers of the cells of the stack.
+    cells: Vec<usize>,
     /// Names of the physical groups by dimension and number.
     groups: BTreeMap<(i64, i64), String>,
     /// Physical groups of the entities by dimension and number of the entity.
@@ -47,12 +60,13 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     let mut raw = sections(path, bytes)?;
     raw.mesh.association = Default::default(); // the numbers of gmsh's model, which is not ours
     let names = names(&raw);
+    stacks::join(path, &mut raw.mesh, &mut raw.stack, &mut raw.notices)?;
     let mut fields = Vec::new();
     for view in std::mem::take(&mut raw.data) {
-        view.resolve(&raw.mesh, &raw.nodes, &raw.tets, &mut fields, &mut raw.notices);
+        view.resolve(&mut raw, &mut fields);
     }
-    let Raw { mut mesh, mut notices, .. } = raw;
-    let kept = compact(&mut mesh, |mesh, keep| {
+    let Raw { mut mesh, mut stack, mut notices, .. } = raw;
+    let kept = compact((&mut mesh, &mut stack), |mesh, keep| {
         mesh.tets.nodes.as_flattened().iter().chain(mesh.triangles.nodes.as_flattened()).for_each(|&v| keep(v));
         mesh.edges.nodes.as_flattened().iter().for_each(|&v| keep(v));
     });
@@ -64,12 +78,12 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
             field.values = rows.flat_map(|(row, _)| row).copied().collect();
         }
     }
-    Ok(Read { content: Dataset { mesh, names, fields }, notices })
+    Ok(Read { content: Dataset { mesh, stack, names, fields }, notices })
 }
 
 /// Reads the mesh that gmsh made of a CAD model, version 4.1. References are the numbers of the model's edges, faces and solids; the
 /// association is that of the nodes that were written on entities, with their parameters where there are any. Nodes that no tetrahedron
-/// has are left out, and where most tetrahedra are negative all are turned.
+/// has are left out, and where most tetrahedra are negative all are turned. Other cells than tetrahedra are left out too.
 ///
 /// # Errors
 /// [`Error::System`] when the file cannot be read, [`Error::Content`] when it is no such file, or there are no tetrahedra in it.
@@ -79,8 +93,10 @@ pub fn read_msh(path: &Path) -> Result<TetMesh, Error> {
     if mesh.tets.is_empty() {
         return Err(error::at(path, "Elements", "no tetrahedra in it"));
     }
-    compact(&mut mesh, |mesh, keep| mesh.tets.nodes.as_flattened().iter().for_each(|&v| keep(v)));
-    orientation::unify(Team::alone(), &mut mesh);
+    compact((&mut mesh, &mut Stack::default()), |mesh, keep| {
+        mesh.tets.nodes.as_flattened().iter().for_each(|&v| keep(v))
+    });
+    orientation::unify_all(Team::alone(), &mesh.vertices, &mut mesh.tets.nodes);
     Ok(mesh)
 }
 
@@ -89,8 +105,10 @@ fn sections(path: &Path, bytes: &[u8]) -> Result<Raw, Error> {
     let mut source = Source::new(path, bytes);
     let mut raw = Raw {
         mesh: TetMesh::default(),
+        stack: Stack::default(),
         nodes: Tags::Row { first: 1, count: 0 },
         tets: Vec::new(),
+        cells: Vec::new(),
         groups: BTreeMap::new(),
         of_entity: BTreeMap::new(),
         data: Vec::new(),
@@ -203,11 +221,14 @@ fn names(raw: &Raw) -> Names {
         labels
     };
     let mesh = &raw.mesh;
-    Names { edges: of(1, &mesh.edges.refs), triangles: of(2, &mesh.triangles.refs), tetrahedra: of(3, &mesh.tets.refs) }
+    let stack = &raw.stack;
+    let faces: Vec<i32> = mesh.triangles.refs.iter().chain(&stack.quads.refs).copied().collect();
+    let cells = mesh.tets.refs.iter().copied().chain(stack.cells.iter().map(|cell| cell.reference));
+    Names { edges: of(1, &mesh.edges.refs), triangles: of(2, &faces), tetrahedra: of(3, &cells.collect::<Vec<_>>()) }
 }
 
 /// Removes the nodes that are not `used`, with their elements and places. Returns which nodes stay.
-fn compact(mesh: &mut TetMesh, used: impl Fn(&TetMesh, &mut dyn FnMut(u32))) -> Vec<bool> {
+fn compact((mesh, stack): (&mut TetMesh, &mut Stack), used: impl Fn(&TetMesh, &mut dyn FnMut(u32))) -> Vec<bool> {
     let mut kept = vec![false; mesh.vertices.len()];
     used(mesh, &mut |v| kept[v as usize] = true);
     if !kept.contains(&false) {
@@ -228,6 +249,7 @@ fn compact(mesh: &mut TetMesh, used: impl Fn(&TetMesh, &mut dyn FnMut(u32))) -> 
     renumber(&mut mesh.tets, &number);
     renumber(&mut mesh.triangles, &number);
     renumber(&mut mesh.edges, &number);
+    stack.nodes_mut().for_each(|v| *v = number[*v as usize]);
     let on = &mut mesh.association;
     on.vertices.retain(|on| kept[on.vertex as usize]);
     on.edges.retain(|on| kept[on.vertex as usize]);

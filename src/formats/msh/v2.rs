@@ -2,8 +2,9 @@
 use super::super::tags::Tags;
 use super::source::Source;
 use super::v4::refused;
-use super::{LINE, POINT, Raw, TETRAHEDRON, TRIANGLE};
+use super::{LINE, POINT, QUADRILATERAL, Raw, TETRAHEDRON, TRIANGLE, kind_of};
 use crate::mesh::io::Error;
+use crate::mesh::stack::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number and coordinates of each node.
@@ -31,9 +32,9 @@ fn tag(source: &mut Source) -> Result<usize, Error> {
     usize::try_from(value).map_err(|_| source.fail(format!("{value} is no number of a node or element")))
 }
 
-/// Physical group and entity of each element of a dimension.
+/// Physical group and entity of each element: lines, triangles, quadrilaterals, tetrahedra, the other cells.
 #[derive(Default)]
-struct Groups([Vec<[i64; 2]>; 3]);
+struct Groups([Vec<[i64; 2]>; 5]);
 
 /// Elements: in a text number, type and tags of each; in binary files blocks of the same type.
 pub(super) fn elements(source: &mut Source, raw: &mut Raw) -> Result<(), Error> {
@@ -59,15 +60,23 @@ pub(super) fn elements(source: &mut Source, raw: &mut Raw) -> Result<(), Error> 
             done = done.saturating_add(follow as usize);
         }
     }
-    let mesh = &mut raw.mesh;
-    let all = [(1, &mut mesh.edges.refs), (2, &mut mesh.triangles.refs), (3, &mut mesh.tets.refs)];
-    for ((dimension, refs), pairs) in all.into_iter().zip(groups.0) {
-        let (found, of_entity) = references(&pairs).map_err(|number| {
+    let (mesh, stack, of_entity) = (&mut raw.mesh, &mut raw.stack, &mut raw.of_entity);
+    let [lines, triangles, quads, tets, cells] = groups.0;
+    let mut references = |dimension: i64, pairs: &[[i64; 2]]| {
+        let (found, known) = references(pairs).map_err(|number| {
             source.fail(format!("the number {number} of an entity or group does not fit 32 bits; renumber them"))
         })?;
-        *refs = found;
-        raw.of_entity.extend(of_entity.into_iter().map(|(entity, group)| ((dimension, entity), group)));
-    }
+        of_entity.extend(known.into_iter().map(|(entity, group)| ((dimension, entity), group)));
+        Ok::<_, Error>(found)
+    };
+    mesh.edges.refs = references(1, &lines)?;
+    let mut faces = references(2, &[triangles, quads].concat())?;
+    stack.quads.refs = faces.split_off(mesh.triangles.nodes.len());
+    mesh.triangles.refs = faces;
+    let mut all = references(3, &[tets, cells].concat())?;
+    let of_cells = all.split_off(mesh.tets.nodes.len());
+    stack.cells.iter_mut().zip(of_cells).for_each(|(cell, reference)| cell.reference = reference);
+    mesh.tets.refs = all;
     Ok(())
 }
 
@@ -80,33 +89,49 @@ fn element(source: &mut Source, raw: &mut Raw, groups: &mut Groups, head: (usize
             *slot = tag;
         }
     }
-    match kind {
-        LINE => raw.mesh.edges.nodes.push(nodes_of(source, raw)?),
-        TRIANGLE => raw.mesh.triangles.nodes.push(nodes_of(source, raw)?),
+    let of = match kind {
+        LINE => {
+            raw.mesh.edges.nodes.push(nodes_of(source, raw)?);
+            0
+        }
+        TRIANGLE => {
+            raw.mesh.triangles.nodes.push(nodes_of(source, raw)?);
+            1
+        }
+        QUADRILATERAL => {
+            raw.stack.quads.nodes.push(nodes_of(source, raw)?);
+            2
+        }
         TETRAHEDRON => {
             raw.mesh.tets.nodes.push(nodes_of(source, raw)?);
             raw.tets.push(number);
+            3
         }
         POINT => {
             source.int()?;
             return Ok(());
         }
-        _ => return Err(refused(source, kind)),
-    }
-    groups.0[match kind {
-        LINE => 0,
-        TRIANGLE => 1,
-        _ => 2,
-    }]
-    .push(group);
+        _ => {
+            let of = kind_of(kind).ok_or_else(|| refused(source, kind))?;
+            let nodes = (0..of.corners()).map(|_| node(source, raw)).collect::<Result<Vec<u32>, _>>()?;
+            raw.stack.cells.push(Cell::new(of, &nodes, 0));
+            raw.cells.push(number);
+            4
+        }
+    };
+    groups.0[of].push(group);
     Ok(())
+}
+
+fn node(source: &mut Source, raw: &Raw) -> Result<u32, Error> {
+    let tag = tag(source)?;
+    raw.nodes.place(tag).ok_or_else(|| source.fail(format!("there is no node {tag}")))
 }
 
 fn nodes_of<const N: usize>(source: &mut Source, raw: &Raw) -> Result<[u32; N], Error> {
     let mut nodes = [0; N];
-    for node in &mut nodes {
-        let tag = tag(source)?;
-        *node = raw.nodes.place(tag).ok_or_else(|| source.fail(format!("there is no node {tag}")))?;
+    for slot in &mut nodes {
+        *slot = node(source, raw)?;
     }
     Ok(nodes)
 }

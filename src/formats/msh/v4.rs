@@ -1,8 +1,9 @@
 //! Version 4.1: nodes and elements in blocks by entity.
 use super::super::tags::Tags;
 use super::source::Source;
-use super::{LINE, POINT, Raw, TETRAHEDRON, TRIANGLE};
+use super::{LINE, POINT, QUADRILATERAL, Raw, TETRAHEDRON, TRIANGLE, kind_of};
 use crate::mesh::io::Error;
+use crate::mesh::stack::Cell;
 use crate::mesh::{OnEdge, OnFace, OnVertex};
 
 /// Entities: box, physical groups, boundary. The first group gives the entity its name.
@@ -104,6 +105,10 @@ pub(super) fn elements(source: &mut Source, raw: &mut Raw) -> Result<(), Error> 
                     let nodes = element(source, raw)?;
                     raw.mesh.triangles.push(nodes, reference);
                 }
+                QUADRILATERAL => {
+                    let nodes = element(source, raw)?;
+                    raw.stack.quads.push(nodes, reference);
+                }
                 TETRAHEDRON => {
                     let nodes = element(source, raw)?;
                     raw.mesh.tets.push(nodes, reference);
@@ -112,7 +117,12 @@ pub(super) fn elements(source: &mut Source, raw: &mut Raw) -> Result<(), Error> 
                 POINT => {
                     source.size()?;
                 }
-                _ => return Err(refused(source, kind)),
+                _ => {
+                    let of = kind_of(kind).ok_or_else(|| refused(source, kind))?;
+                    let nodes = (0..of.corners()).map(|_| node(source, raw)).collect::<Result<Vec<u32>, _>>()?;
+                    raw.stack.cells.push(Cell::new(of, &nodes, reference));
+                    raw.cells.push(tag);
+                }
             }
         }
     }
@@ -122,22 +132,24 @@ pub(super) fn elements(source: &mut Source, raw: &mut Raw) -> Result<(), Error> 
 /// The nodes of an element.
 fn element<const N: usize>(source: &mut Source, raw: &Raw) -> Result<[u32; N], Error> {
     let mut nodes = [0; N];
-    for node in &mut nodes {
-        let tag = source.size()?;
-        *node = raw.nodes.place(tag).ok_or_else(|| source.fail(format!("there is no node {tag}")))?;
+    for slot in &mut nodes {
+        *slot = node(source, raw)?;
     }
     Ok(nodes)
+}
+
+fn node(source: &mut Source, raw: &Raw) -> Result<u32, Error> {
+    let tag = source.size()?;
+    raw.nodes.place(tag).ok_or_else(|| source.fail(format!("there is no node {tag}")))
 }
 
 /// An element that we do not have.
 pub(super) fn refused(source: &Source, kind: i64) -> Error {
     let name = match kind {
-        3 => " (quadrilaterals)",
-        5 => " (hexahedra)",
-        6 => " (prisms)",
-        7 => " (pyramids)",
         8..=14 => " (of second order)",
         _ => "",
     };
-    source.fail(format!("elements of type {kind}{name}: only simplices of the first order are read; split the others"))
+    source.fail(format!(
+        "elements of type {kind}{name}: only cells, faces and lines of the first order are read; split the others"
+    ))
 }

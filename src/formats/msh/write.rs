@@ -1,11 +1,12 @@
 //! Writing a .msh of version 2.2 or 4.1. All nodes are in one block: which entity they are on is not known here.
 use super::super::text::Text;
 use super::super::{Dataset, NamedField};
-use super::{LINE, TETRAHEDRON, TRIANGLE};
+use super::{CELLS, LINE, QUADRILATERAL, TETRAHEDRON, TRIANGLE};
 use crate::geometry::Label;
+use crate::mesh::TetMesh;
 use crate::mesh::io::{Batch, Error, FieldKind};
 use crate::mesh::vector::Vec3;
-use crate::mesh::{Elements, TetMesh};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::Path;
@@ -52,10 +53,28 @@ impl Out<'_> {
     }
 }
 
-/// Elements of a dimension: entities, their groups and their elements.
-struct Part {
-    dimension: i32,
+/// Elements of a kind: nodes, so many of each, and references.
+struct Block<'a> {
     kind: i32,
+    width: usize,
+    nodes: Cow<'a, [u32]>,
+    refs: Cow<'a, [i32]>,
+}
+
+impl<'a> Block<'a> {
+    fn new(kind: i64, width: usize, nodes: &'a [u32], refs: &'a [i32]) -> Self {
+        Self { kind: kind as i32, width, nodes: nodes.into(), refs: refs.into() }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (&[u32], i32)> {
+        self.nodes.chunks_exact(self.width).zip(self.refs.iter().copied())
+    }
+}
+
+/// Elements of a dimension: entities, their groups and their elements.
+struct Part<'a> {
+    dimension: i32,
+    blocks: Vec<Block<'a>>,
     /// Numbers of the entities by reference; gmsh wants them positive.
     entities: BTreeMap<i32, i32>,
     /// Physical groups by reference.
@@ -64,17 +83,17 @@ struct Part {
     names: BTreeMap<i32, String>,
 }
 
-impl Part {
+impl<'a> Part<'a> {
     /// With `grouped` each entity gets a group, without a name where it has none. If there are any groups, gmsh writes only elements in
     /// groups, and meshio wants every element in one.
     fn new(
-        (dimension, kind): (i32, i64),
-        refs: &[i32],
+        dimension: i32,
+        blocks: Vec<Block<'a>>,
         labels: &BTreeMap<i32, Label>,
         grouped: bool,
         notices: &mut Vec<String>,
     ) -> Self {
-        let found: BTreeSet<i32> = refs.iter().copied().collect();
+        let found: BTreeSet<i32> = blocks.iter().flat_map(|block| block.refs.iter().copied()).collect();
         let mut entities: BTreeMap<i32, i32> = found.iter().filter(|&&r| r > 0).map(|&r| (r, r)).collect();
         let mut free = (1..).filter(|number| !found.contains(number));
         for &reference in found.iter().filter(|&&reference| reference <= 0) {
@@ -93,7 +112,12 @@ impl Part {
                 groups.insert(*reference, entity);
             }
         }
-        Self { dimension, kind: kind as i32, entities, groups, names }
+        Self { dimension, blocks, entities, groups, names }
+    }
+
+    /// The number of its elements.
+    fn len(&self) -> usize {
+        self.blocks.iter().map(|block| block.refs.len()).sum()
     }
 }
 
@@ -108,10 +132,27 @@ pub(in super::super) fn write(
     let (mesh, names) = (&data.mesh, &data.names);
     let mut notices = Vec::new();
     let grouped = !names.is_empty();
+    let lines = vec![Block::new(LINE, 2, mesh.edges.nodes.as_flattened(), &mesh.edges.refs)];
+    let quads = &data.stack.quads;
+    let faces = vec![
+        Block::new(TRIANGLE, 3, mesh.triangles.nodes.as_flattened(), &mesh.triangles.refs),
+        Block::new(QUADRILATERAL, 4, quads.nodes.as_flattened(), &quads.refs),
+    ];
+    let mut cells = vec![Block::new(TETRAHEDRON, 4, mesh.tets.nodes.as_flattened(), &mesh.tets.refs)];
+    cells.extend(CELLS.map(|(number, kind)| {
+        let of_kind = || data.stack.cells_of(kind);
+        let nodes = of_kind().flat_map(|cell| cell.nodes().iter().copied()).collect();
+        Block {
+            kind: number as i32,
+            width: kind.corners(),
+            nodes,
+            refs: of_kind().map(|cell| cell.reference).collect(),
+        }
+    }));
     let parts = [
-        Part::new((1, LINE), &mesh.edges.refs, &names.edges, grouped, &mut notices),
-        Part::new((2, TRIANGLE), &mesh.triangles.refs, &names.triangles, grouped, &mut notices),
-        Part::new((3, TETRAHEDRON), &mesh.tets.refs, &names.tetrahedra, grouped, &mut notices),
+        Part::new(1, lines, &names.edges, grouped, &mut notices),
+        Part::new(2, faces, &names.triangles, grouped, &mut notices),
+        Part::new(3, cells, &names.tetrahedra, grouped, &mut notices),
     ];
     batch.add_main(path, |to| emit(&mut Out { text: Text::new(to), is_text }, data, &parts, is_new))?;
     Ok(notices)
@@ -136,10 +177,10 @@ fn emit(out: &mut Out, data: &Dataset, parts: &[Part; 3], is_new: bool) -> io::R
     if is_new {
         entities(out, mesh, parts)?;
         nodes_4(out, mesh, parts)?;
-        elements_4(out, mesh, parts)?;
+        elements_4(out, parts)?;
     } else {
         nodes_2(out, mesh)?;
-        elements_2(out, mesh, parts)?;
+        elements_2(out, parts)?;
     }
     data.fields.iter().try_for_each(|field| node_data(out, field))?;
     out.text.finish()
@@ -147,11 +188,11 @@ fn emit(out: &mut Out, data: &Dataset, parts: &[Part; 3], is_new: bool) -> io::R
 
 /// Entities with their boxes and physical groups.
 fn entities(out: &mut Out, mesh: &TetMesh, parts: &[Part; 3]) -> io::Result<()> {
-    fn boxes<const N: usize>(mesh: &TetMesh, elements: &Elements<N>) -> BTreeMap<i32, [Vec3; 2]> {
+    fn boxes(mesh: &TetMesh, part: &Part) -> BTreeMap<i32, [Vec3; 2]> {
         let mut boxes: BTreeMap<i32, [Vec3; 2]> = BTreeMap::new();
-        for (nodes, reference) in elements.iter() {
+        for (nodes, reference) in part.blocks.iter().flat_map(Block::iter) {
             let [low, high] = boxes.entry(reference).or_insert([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]);
-            for point in nodes.map(|v| mesh.vertices[v as usize]) {
+            for point in nodes.iter().map(|&v| mesh.vertices[v as usize]) {
                 for i in 0..3 {
                     (low[i], high[i]) = (low[i].min(point[i]), high[i].max(point[i]));
                 }
@@ -163,8 +204,8 @@ fn entities(out: &mut Out, mesh: &TetMesh, parts: &[Part; 3]) -> io::Result<()> 
     out.size(0);
     parts.iter().for_each(|part| out.size(part.entities.len()));
     out.end_row()?;
-    let boxes = [boxes(mesh, &mesh.edges), boxes(mesh, &mesh.triangles), boxes(mesh, &mesh.tets)];
-    for (part, boxes) in parts.iter().zip(boxes) {
+    for part in parts {
+        let boxes = boxes(mesh, part);
         for (reference, &entity) in &part.entities {
             out.int(entity);
             boxes[reference].as_flattened().iter().for_each(|&x| out.real(x));
@@ -202,35 +243,36 @@ fn nodes_4(out: &mut Out, mesh: &TetMesh, parts: &[Part; 3]) -> io::Result<()> {
     Ok(())
 }
 
-fn elements_4(out: &mut Out, mesh: &TetMesh, parts: &[Part; 3]) -> io::Result<()> {
-    /// The blocks of a dimension, their elements in the order of the mesh; returns the next number of an element.
-    fn blocks<const N: usize>(out: &mut Out, part: &Part, elements: &Elements<N>, first: usize) -> io::Result<usize> {
+fn elements_4(out: &mut Out, parts: &[Part; 3]) -> io::Result<()> {
+    /// The elements of a kind by their references, each in their order.
+    fn rows(block: &Block) -> BTreeMap<i32, Vec<u32>> {
         let mut rows: BTreeMap<i32, Vec<u32>> = BTreeMap::new();
-        for (element, &reference) in (0..).zip(&elements.refs) {
+        for (element, &reference) in (0..).zip(&*block.refs) {
             rows.entry(reference).or_default().push(element);
         }
-        let mut next = first;
-        for (reference, row) in rows {
-            [part.dimension, part.entities[&reference], part.kind].into_iter().for_each(|int| out.int(int));
+        rows
+    }
+    let total = parts.iter().map(Part::len).sum();
+    out.line(format_args!("$Elements"));
+    let found = |block: &Block| block.refs.iter().collect::<BTreeSet<_>>().len();
+    let count = parts.iter().flat_map(|part| &part.blocks).map(found).sum();
+    [count, total, usize::from(total > 0), total].into_iter().for_each(|size| out.size(size));
+    out.end_row()?;
+    let mut next = 1;
+    for (part, block) in parts.iter().flat_map(|part| part.blocks.iter().map(move |block| (part, block))) {
+        for (reference, row) in rows(block) {
+            [part.dimension, part.entities[&reference], block.kind].into_iter().for_each(|int| out.int(int));
             out.size(row.len());
             out.end_row()?;
             for element in row {
                 out.size(next);
-                elements.nodes[element as usize].iter().for_each(|&v| out.size(v as usize + 1));
+                let at = block.width * element as usize;
+                block.nodes[at..at + block.width].iter().for_each(|&v| out.size(v as usize + 1));
                 out.end_row()?;
                 next += 1;
             }
         }
-        Ok(next)
     }
-    let total = mesh.edges.len() + mesh.triangles.len() + mesh.tets.len();
-    out.line(format_args!("$Elements"));
-    let blocks_of = parts.iter().map(|part| part.entities.len()).sum();
-    [blocks_of, total, usize::from(total > 0), total].into_iter().for_each(|size| out.size(size));
-    out.end_row()?;
-    let next = blocks(out, &parts[0], &mesh.edges, 1)?;
-    let next = blocks(out, &parts[1], &mesh.triangles, next)?;
-    blocks(out, &parts[2], &mesh.tets, next)?;
     out.end("Elements");
     Ok(())
 }
@@ -246,28 +288,26 @@ fn nodes_2(out: &mut Out, mesh: &TetMesh) -> io::Result<()> {
     Ok(())
 }
 
-fn elements_2(out: &mut Out, mesh: &TetMesh, parts: &[Part; 3]) -> io::Result<()> {
-    fn list<const N: usize>(out: &mut Out, part: &Part, elements: &Elements<N>, first: i32) -> io::Result<i32> {
-        let count = elements.len() as i32;
+fn elements_2(out: &mut Out, parts: &[Part; 3]) -> io::Result<()> {
+    out.line(format_args!("$Elements\n{}", parts.iter().map(Part::len).sum::<usize>()));
+    let mut number = 1;
+    for (part, block) in parts.iter().flat_map(|part| part.blocks.iter().map(move |block| (part, block))) {
+        let count = block.refs.len() as i32;
         if !out.is_text && count > 0 {
-            [part.kind, count, 2].into_iter().for_each(|int| out.int(int));
+            [block.kind, count, 2].into_iter().for_each(|int| out.int(int));
         }
-        for ((nodes, reference), number) in elements.iter().zip(first..) {
+        for (nodes, reference) in block.iter() {
             out.int(number);
             if out.is_text {
-                [part.kind, 2].into_iter().for_each(|int| out.int(int));
+                [block.kind, 2].into_iter().for_each(|int| out.int(int));
             }
             out.int(part.groups.get(&reference).copied().unwrap_or(0));
             out.int(part.entities[&reference]);
             nodes.iter().for_each(|&v| out.int(v as i32 + 1));
             out.end_row()?;
+            number += 1;
         }
-        Ok(first + count)
     }
-    out.line(format_args!("$Elements\n{}", mesh.edges.len() + mesh.triangles.len() + mesh.tets.len()));
-    let next = list(out, &parts[0], &mesh.edges, 1)?;
-    let next = list(out, &parts[1], &mesh.triangles, next)?;
-    list(out, &parts[2], &mesh.tets, next)?;
     out.end("Elements");
     Ok(())
 }

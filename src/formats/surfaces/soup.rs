@@ -89,6 +89,6 @@ impl Soup {
         }
         let used: BTreeSet<i32> = self.mesh.triangles.refs.iter().copied().collect();
         self.names.triangles.retain(|reference, _| used.contains(reference));
-        Read { content: Dataset { mesh: self.mesh, names: self.names, fields: Vec::new() }, notices }
+        Read { content: Dataset { mesh: self.mesh, names: self.names, ..Dataset::default() }, notices }
     }
 }

@@ -27,7 +27,7 @@ pub(in super::super) fn write(
     shape: Shape,
     as_text: bool,
 ) -> Result<Vec<String>, Error> {
-    let mut surface = Dataset { mesh: data.mesh.clone(), names: data.names.clone(), fields: Vec::new() };
+    let mut surface = Dataset { mesh: data.mesh.clone(), names: data.names.clone(), ..Dataset::default() };
     // As one region: what lies between regions is not the outside.
     surface.mesh.tets.refs.fill(1);
     complete_boundary(team, &mut surface.mesh);

@@ -8,11 +8,12 @@ mod xml;
 pub(super) use write::{by_kind, by_name, to_vtk, write};
 
 use super::cells::cells_to_vertices;
-use super::format::vtk::{self, LINE, TETRAHEDRON, TRIANGLE, VERTEX};
-use super::{Dataset, NamedField, error};
+use super::format::vtk::{self, LINE, QUADRILATERAL, TETRAHEDRON, TRIANGLE, VERTEX};
+use super::{Dataset, NamedField, error, stacks};
 use crate::geometry::{Label, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, FieldKind, Read};
+use crate::mesh::stack::{Cell, Stack};
 use crate::tasks::Team;
 use decode::Decoder;
 use std::collections::BTreeMap;
@@ -47,8 +48,11 @@ struct Reader<'d, 'a> {
     decoder: Decoder<'d, 'a>,
     reference: Option<String>,
     mesh: TetMesh,
+    stack: Stack,
     at_points: BTreeMap<String, Joined>,
     at_tets: BTreeMap<String, Joined>,
+    /// At the cells of the stack, of each array of `at_tets`.
+    at_stack: BTreeMap<String, Vec<f64>>,
     /// Names of the arrays in the order of the file, points before cells.
     order: Vec<String>,
     notices: Vec<String>,
@@ -69,18 +73,21 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
         decoder: Decoder::new(path, &document),
         reference: REFERENCES.into_iter().find(|name| has(name)).map(String::from),
         mesh: TetMesh::default(),
+        stack: Stack::default(),
         at_points: BTreeMap::new(),
         at_tets: BTreeMap::new(),
+        at_stack: BTreeMap::new(),
         order: Vec::new(),
         notices: Vec::new(),
     };
     for piece in &document.pieces {
         reader.piece(piece)?;
     }
+    stacks::join(path, &mut reader.mesh, &mut reader.stack, &mut reader.notices)?;
     let names = reader.names(&document.field_data)?;
     let fields = reader.fields();
-    let Reader { mesh, notices, .. } = reader;
-    Ok(Read { content: Dataset { mesh, names, fields }, notices })
+    let Reader { mesh, stack, notices, .. } = reader;
+    Ok(Read { content: Dataset { mesh, stack, names, fields }, notices })
 }
 
 impl<'a> Reader<'_, 'a> {
@@ -203,32 +210,45 @@ impl<'a> Reader<'_, 'a> {
                     self.mesh.tets.push([vertex(a)?, vertex(b)?, vertex(c)?, vertex(d)?], reference)
                 }
                 (TRIANGLE, &[a, b, c]) => self.mesh.triangles.push([vertex(a)?, vertex(b)?, vertex(c)?], reference),
+                (QUADRILATERAL, &[a, b, c, d]) => {
+                    self.stack.quads.push([vertex(a)?, vertex(b)?, vertex(c)?, vertex(d)?], reference)
+                }
                 (LINE, &[a, b]) => self.mesh.edges.push([vertex(a)?, vertex(b)?], reference),
                 (VERTEX, _) => {}
-                (TETRAHEDRON | TRIANGLE | LINE, nodes) => {
+                (TETRAHEDRON | TRIANGLE | QUADRILATERAL | LINE, nodes) => {
                     return Err(wrong(format!("a cell of type {kind} with {} points", nodes.len())));
                 }
-                _ => {
-                    let name = vtk::name(kind);
-                    return Err(wrong(format!(
-                        "a cell of type {kind}{name}: tetrahedra, triangles and lines are read; split the others"
-                    )));
-                }
+                (_, nodes) => match stacks::kind_of(kind) {
+                    Some(of) if of.corners() == nodes.len() => {
+                        let nodes = nodes.iter().map(|&node| vertex(node)).collect::<Result<Vec<u32>, _>>()?;
+                        self.stack.cells.push(Cell::new(of, &nodes, reference));
+                    }
+                    Some(_) => return Err(wrong(format!("a cell of type {kind} with {} points", nodes.len()))),
+                    None => {
+                        let name = vtk::name(kind);
+                        return Err(wrong(format!(
+                            "a cell of type {kind}{name}: tetrahedra, prisms, pyramids, hexahedra, triangles, quadrilaterals and lines are read; split \
+                             the others"
+                        )));
+                    }
+                },
             }
         }
         self.cell_arrays(piece, &types)
     }
 
-    /// The values of the tetrahedra.
+    /// The values of the tetrahedra and of the stack's cells.
     fn cell_arrays(&mut self, piece: &Piece<'a>, types: &[i64]) -> Result<(), Error> {
         for array in &piece.cell_data {
             match array.kind {
                 Kind::Real(_) if array.width > MOST => self.skip_wide(array),
                 Kind::Real(_) => {
                     let values = self.decoder.reals(array, piece.cells)?;
-                    let rows = values.chunks_exact(array.width).zip(types).filter(|(_, kind)| **kind == TETRAHEDRON);
-                    let of_tets = rows.flat_map(|(row, _)| row).copied().collect();
-                    self.join(array, of_tets, false);
+                    let rows = || values.chunks_exact(array.width).zip(types);
+                    let of_tets = rows().filter(|(_, kind)| **kind == TETRAHEDRON);
+                    let of_stack = rows().filter(|(_, kind)| stacks::kind_of(**kind).is_some());
+                    self.at_stack.entry(array.name.clone()).or_default().extend(of_stack.flat_map(|(row, _)| row));
+                    self.join(array, of_tets.flat_map(|(row, _)| row).copied().collect(), false);
                 }
                 _ if REFERENCES.contains(&array.name.as_str()) || BY_KIND.contains(&array.name.as_str()) => {}
                 _ => self.skip(array),
@@ -252,21 +272,27 @@ impl<'a> Reader<'_, 'a> {
         let mut fields = Vec::new();
         let order = std::mem::take(&mut self.order);
         let with_tets = !self.mesh.tets.is_empty();
+        let cells =
+            if self.stack.is_empty() { self.mesh.tets.len() } else { self.stack.own()[0] + self.stack.cells.len() };
         for name in order {
-            let (joined, is_cells) = match self.at_points.remove(&name) {
+            let (mut joined, is_cells) = match self.at_points.remove(&name) {
                 Some(joined) => (joined, false),
                 None => match self.at_tets.remove(&name) {
                     Some(joined) if with_tets => (joined, true),
                     _ => continue,
                 },
             };
-            let items = if is_cells { self.mesh.tets.len() } else { self.mesh.vertices.len() };
+            if is_cells {
+                joined.values.extend(self.at_stack.remove(&name).unwrap_or_default());
+            }
+            let items = if is_cells { cells } else { self.mesh.vertices.len() };
             if joined.values.len() != items * joined.width {
                 self.notices.push(format!("the array {} is not in all pieces and is left out", error::short(&name)));
                 continue;
             }
             let Joined { width, mut values } = joined;
             if is_cells {
+                values = if self.stack.is_empty() { values } else { self.stack.spread(values, width) };
                 values = cells_to_vertices(Team::alone(), &self.mesh, &values, width);
                 self.notices
                     .push(format!("{} was given at cells: their mean about each vertex is taken", error::short(&name)));

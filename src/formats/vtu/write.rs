@@ -1,10 +1,10 @@
 //! Writing a .vtu: appended raw data in blocks of zlib, or words.
-use super::super::format::vtk::{LINE, TETRAHEDRON, TRIANGLE};
+use super::super::format::vtk::{LINE, QUADRILATERAL, TETRAHEDRON, TRIANGLE};
+use super::super::stacks::number_of;
 use super::super::text::Text;
 use super::super::{Dataset, NamedField};
 use super::{BY_KIND, REFERENCES, SYMMETRIC};
 use crate::geometry::Names;
-use crate::mesh::TetMesh;
 use crate::mesh::io::{Batch, Error, FieldKind};
 use crate::tasks::Team;
 use flate2::Compression;
@@ -106,23 +106,29 @@ fn sections(data: &Dataset) -> Vec<Section<'_>> {
     if mesh.vertex_refs.iter().any(|&reference| reference != 0) {
         at_points.push(named(REFERENCES[0], 1, Values::Int((&mesh.vertex_refs).into())));
     }
-    let references = [&mesh.tets.refs, &mesh.triangles.refs, &mesh.edges.refs].into_iter().flatten();
-    let mut cells = vec![named(REFERENCES[0], 1, Values::Int(references.copied().collect()))];
-    cells.extend(BY_KIND.into_iter().zip(by_kind(mesh)).map(|(name, refs)| named(name, 1, Values::Int(refs.into()))));
+    let mut cells = vec![named(REFERENCES[0], 1, Values::Int(references(data).concat().into()))];
+    cells.extend(BY_KIND.into_iter().zip(by_kind(data)).map(|(name, refs)| named(name, 1, Values::Int(refs.into()))));
     let points = vec![named("Points", 3, Values::Real(mesh.vertices.as_flattened().into()))];
     vec![
         Section { tag: "PointData", arrays: at_points },
         Section { tag: "CellData", arrays: cells },
         Section { tag: "Points", arrays: points },
-        Section { tag: "Cells", arrays: topology(mesh) },
+        Section { tag: "Cells", arrays: topology(data) },
     ]
 }
 
+/// The references of cells in space, on surfaces and along curves, each in the order of the file.
+fn references(Dataset { mesh, stack, .. }: &Dataset) -> [Vec<i32>; 3] {
+    let cells = mesh.tets.refs.iter().copied().chain(stack.cells.iter().map(|cell| cell.reference));
+    let faces = mesh.triangles.refs.iter().chain(&stack.quads.refs).copied();
+    [cells.collect(), faces.collect(), mesh.edges.refs.clone()]
+}
+
 /// The references of each kind of cells, 0 for the other cells.
-pub(in super::super) fn by_kind(mesh: &TetMesh) -> [Vec<i32>; 3] {
-    let kinds = [&mesh.tets.refs, &mesh.triangles.refs, &mesh.edges.refs];
+pub(in super::super) fn by_kind(data: &Dataset) -> [Vec<i32>; 3] {
+    let kinds = references(data);
     [0, 1, 2].map(|kind| {
-        let of = |(at, refs): (usize, &&Vec<i32>)| if at == kind { refs.to_vec() } else { vec![0; refs.len()] };
+        let of = |(at, refs): (usize, &Vec<i32>)| if at == kind { refs.clone() } else { vec![0; refs.len()] };
         kinds.iter().enumerate().flat_map(of).collect()
     })
 }
@@ -148,27 +154,34 @@ pub(in super::super) fn to_vtk(field: &NamedField) -> Cow<'_, [f64]> {
 }
 
 /// Nodes of the cells, their ends among these, their types.
-fn topology(mesh: &TetMesh) -> Vec<Array<'_>> {
+fn topology(Dataset { mesh, stack, .. }: &Dataset) -> Vec<Array<'static>> {
     let nodes = || {
         let tets = mesh.tets.nodes.as_flattened().iter();
-        tets.chain(mesh.triangles.nodes.as_flattened()).chain(mesh.edges.nodes.as_flattened()).copied()
+        let cells = stack.cells.iter().flat_map(|cell| cell.nodes());
+        let faces = mesh.triangles.nodes.as_flattened().iter().chain(stack.quads.nodes.as_flattened());
+        tets.chain(cells).chain(faces).chain(mesh.edges.nodes.as_flattened()).copied()
     };
-    let counts = [(mesh.tets.len(), 4, TETRAHEDRON), (mesh.triangles.len(), 3, TRIANGLE), (mesh.edges.len(), 2, LINE)];
+    let kinds = || {
+        let of = |(count, width, kind): (usize, i64, i64)| std::iter::repeat_n((width, kind), count);
+        let cells = stack.cells.iter().map(|cell| (cell.kind.corners() as i64, number_of(cell.kind)));
+        let behind =
+            [(mesh.triangles.len(), 3, TRIANGLE), (stack.quads.len(), 4, QUADRILATERAL), (mesh.edges.len(), 2, LINE)];
+        of((mesh.tets.len(), 4, TETRAHEDRON)).chain(cells).chain(behind.into_iter().flat_map(of))
+    };
     let ends = || {
-        let widths = counts.into_iter().flat_map(|(count, width, _)| std::iter::repeat_n(width, count));
-        widths.scan(0, |end, width| {
+        kinds().scan(0, |end, (width, _)| {
             *end += width;
             Some(*end)
         })
     };
-    let total: usize = counts.iter().map(|(count, width, _)| count * *width as usize).sum();
+    let total: usize = kinds().map(|(width, _)| width as usize).sum();
     // Half as long where it does.
     let (nodes, ends) = if total.max(mesh.vertices.len()) <= i32::MAX as usize {
         (Values::Int(nodes().map(|v| v as i32).collect()), Values::Int(ends().map(|end: i64| end as i32).collect()))
     } else {
         (Values::Long(nodes().map(i64::from).collect()), Values::Long(ends().collect()))
     };
-    let types = counts.into_iter().flat_map(|(count, _, kind)| std::iter::repeat_n(kind as u8, count)).collect();
+    let types = kinds().map(|(_, kind)| kind as u8).collect();
     let array = |name: &'static str, values| Array { name: name.into(), width: 1, values };
     vec![array("connectivity", nodes), array("offsets", ends), array("types", Values::Byte(types))]
 }
@@ -194,8 +207,9 @@ pub(super) fn order() -> &'static str {
 
 fn head(data: &Dataset, compressor: &str) -> String {
     let order = order();
-    let (points, cells) =
-        (data.mesh.vertices.len(), data.mesh.tets.len() + data.mesh.triangles.len() + data.mesh.edges.len());
+    let (mesh, stack) = (&data.mesh, &data.stack);
+    let faces = mesh.triangles.len() + stack.quads.len();
+    let (points, cells) = (mesh.vertices.len(), mesh.tets.len() + stack.cells.len() + faces + mesh.edges.len());
     format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{order}\" header_type=\"UInt64\"{compressor}>\n\
          <UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n",

@@ -76,7 +76,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     all.iter().try_for_each(|grid| reader.grid(grid, several))?;
     let fields = reader.fields();
     let Reader { mesh, notices, .. } = reader;
-    Ok(Read { content: Dataset { mesh, names: names(&tree), fields }, notices })
+    Ok(Read { content: Dataset { mesh, names: names(&tree), fields, ..Dataset::default() }, notices })
 }
 
 /// The files that an .xdmf names, as far as it can be read.

@@ -75,13 +75,18 @@ impl<'l> Searcher<'l> {
     }
 
     /// The tetrahedron of the lowest number that holds p; where none does, the nearest one, and of several the one of the lowest number. In a mesh
-    /// without inverted tetrahedra that depends on nothing else. Points that follow one another had best be near each other.
+    /// without inverted tetrahedra that depends on nothing else. Where p is a vertex, to the bit, that has all the weight. Points that follow one
+    /// another had best be near each other.
     pub fn locate(&mut self, p: Vec3) -> Location {
-        let found = match self.locator.walk(p, self.hint) {
+        let mut found = match self.locator.walk(p, self.hint) {
             Walk::Found(found) => self.lowest(p, found),
             Walk::Lost(tet) => self.beyond_walls(p, tet),
         };
         self.hint = found.tet;
+        let nodes = self.locator.tets()[found.tet as usize];
+        if let Some(at) = nodes.iter().position(|&v| self.locator.vertices()[v as usize] == p) {
+            found.weights = std::array::from_fn(|i| f64::from(u8::from(i == at)));
+        }
         found
     }
 

@@ -2,6 +2,7 @@
 mod discrete;
 mod errors;
 mod habits;
+mod stacks;
 mod stop;
 mod telling;
 mod touching;

@@ -40,7 +40,7 @@ fn data() -> Dataset {
         of("metric", FieldKind::SymmetricTensor, &|_, k| k as f64),
         of("p", FieldKind::Scalar, &|x, _| x),
     ];
-    Dataset { mesh, names, fields }
+    Dataset { mesh, names, fields, ..Dataset::default() }
 }
 
 /// The faces of tetrahedra in the plane of that x, each once.
@@ -193,7 +193,8 @@ fn cells_that_are_no_tetrahedra_are_named() {
         fs::write(&path, text).unwrap();
         error
     };
-    assert!(message("faces", "3(", "4(7 ").contains("has 4 points: only meshes of tetrahedra"));
+    assert!(message("faces", "3(", "5(7 6 ").contains("has 5 points: only tetrahedra, prisms"));
+    assert!(message("faces", "3(", "4(7 ").contains("cell "));
     assert!(message("faces", "3(0", "3(99").contains("there are 8 points"));
     assert!(message("faces", "3(0", "3(5").contains("cell "));
     assert!(message("owner", "\n5\n)", "\n0\n)").contains("only"));

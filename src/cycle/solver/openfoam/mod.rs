@@ -282,7 +282,7 @@ impl Solver for Config {
         let case = job.folder.join(CASE);
         let kind_of = |reference: i32, _: &str| kinds.get(&reference).map_or("patch", |kind| kind.patch()).to_owned();
         let folder = case.join("constant/polyMesh");
-        let patches = foam::write_poly_mesh(Team::alone(), &folder, &data.mesh, &data.names, &kind_of, false);
+        let patches = foam::write_poly_mesh(Team::alone(), &folder, &data, &kind_of, false);
         let patches = patches.map_err(|error| error.to_string())?;
         let time = case.join("0");
         std::fs::create_dir_all(&time).map_err(|error| format!("{}: {error}", time.display()))?;

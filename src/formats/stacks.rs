@@ -1,0 +1,44 @@
+//! Prisms, pyramids and hexahedra, and which formats have them.
+use super::format::vtk::{HEXAHEDRON, PRISM, PYRAMID};
+use super::{Format, error};
+use crate::mesh::TetMesh;
+use crate::mesh::io::Error;
+use crate::mesh::stack::{Kind, Stack};
+use std::path::Path;
+
+/// The numbers of the cells as VTK and SU2 have them.
+const VTK: [(i64, Kind); 3] = [(PYRAMID, Kind::Pyramid), (PRISM, Kind::Prism), (HEXAHEDRON, Kind::Hexahedron)];
+
+/// The kind of cells that VTK and SU2 call so.
+pub(super) fn kind_of(number: i64) -> Option<Kind> {
+    VTK.into_iter().find(|(other, _)| *other == number).map(|(_, kind)| kind)
+}
+
+/// What VTK and SU2 call the cells of a kind.
+pub(super) fn number_of(kind: Kind) -> i64 {
+    VTK.into_iter().find(|(_, other)| *other == kind).map_or(0, |(number, _)| number)
+}
+
+/// Joins a stack to the mesh that was read with it. A notice may be added.
+pub(super) fn join(path: &Path, mesh: &mut TetMesh, stack: &mut Stack, notices: &mut Vec<String>) -> Result<(), Error> {
+    let told = stack.join(mesh).map_err(|error| error::at(path, error.place(), error.to_string()))?;
+    notices.extend(told.map(|told| format!("{}: {told}", path.display())));
+    Ok(())
+}
+
+/// Refuses to write prisms, pyramids and hexahedra to a file whose format has no place for them.
+///
+/// # Errors
+/// [`Error::Content`], with the remedy; and when the format is not known.
+pub fn check_stack(path: &Path, stack: &Stack) -> Result<(), Error> {
+    let format = Format::of(path)?;
+    if stack.is_empty() || format.holds_stacks() || format.is_fields() || matches!(format, Format::Surface(_)) {
+        return Ok(());
+    }
+    let message = format!(
+        "the mesh has {}, for which this format is not written: give .su2, .ugrid, .msh, .vtu or a case of OpenFOAM, or split them by \
+         `geo-adapt convert --split`",
+        stack.told()
+    );
+    Err(error::at(path, "extension", message))
+}
