@@ -25,9 +25,9 @@ from judging import cycles, loops, meshfile, metric, walls  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 OUT = cycles.ROOT / "out" / "naca0012"
-# y⁺ about 1 at half the chord; the other one keeps cells as wide as the slab.
-WALL = f"upper+lower:yplus=1,re=6e6,length=0.5,growth=1.2,tangential=0.05,side0:h={airfoil.WIDTH},growth=1.0001,chord=off"
-FIRST, HMAX = 7, 100
+# y⁺ about 1 at half the chord; the second wall, a side of the slab, keeps cells as wide as that is.
+WALL = f"upper+lower:yplus=1,re=6e6,length=0.5,growth=1.25,chord=1,side0:h={1.2 * airfoil.WIDTH:g},growth=1.0001,chord=off"
+FIRST, HMAX = 6, 100
 # Lift and drag of TMR (CFL3D on 897 x 257 points, far field at 500 chords) by angle.
 PUBLISHED = {10: {"CL": 1.091, "CD": 0.0123}, 0: {"CD": 0.00819}}
 # Where the profile of velocities is taken, on the upper side.
@@ -42,17 +42,22 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, default=cycles.ROOT / "target/release/geo-adapt")
     parser.add_argument("--short", action="store_true", help="10° alone, coarser")
+    parser.add_argument("--restart", action="store_true", help="throw away what is there")
     parser.add_argument("--angles", type=int, nargs="+", choices=sorted(PUBLISHED), default=list(PUBLISHED), help="degrees (default: 10 0)")
     return parser.parse_args()
 
 
 def first(program, folder):
     """The model and the first mesh: the coarse one, adapted to the layers that it can have."""
-    mesh, cad = folder / "coarse.mesh", folder / "naca0012.step"
-    airfoil.coarse(mesh)
-    model.write(cad)
-    where = ["--cad", cad]
-    return cad, loops.layered(program, mesh, ["--wall", WALL], ([*where, "--hmax", HMAX], where), FIRST)
+    mesh, cad, made = folder / "coarse.mesh", folder / "naca0012.step", folder / "made.json"
+    if not made.is_file():
+        folder.mkdir(parents=True, exist_ok=True)
+        airfoil.coarse(mesh)
+        model.write(cad)
+        where = ["--cad", cad]
+        last = loops.layered(program, mesh, ["--wall", WALL], ([*where, "--hmax", HMAX], where), FIRST)
+        made.write_text(json.dumps(str(last)))
+    return cad, Path(json.loads(made.read_text()))
 
 
 def judged(path, solve, functionals, angle):
@@ -99,8 +104,8 @@ def flown(options, angle, cad, mesh):
     values = {"MESH": mesh, "MODEL": cad, "FLOW": HERE / "flow.cfg", "ANGLE": str(angle), "WALLS": WALL, "FOLDER": folder}
     text = loops.filled((HERE / "loop.toml").read_text(), values)
     config = folder.parent / f"{name}.toml"
-    config.write_text(loops.replaced(text, {"complexity": 5000, "max_complexity": 5000} if options.short else {}))
-    seconds, steps = loops.run(options.program, config, folder, "--restart")
+    config.write_text(loops.replaced(text, {"max_complexity": 5000} if options.short else {}))
+    seconds, steps = loops.run(options.program, config, folder)
     for step in steps:
         number = step["cycle"]
         path = mesh if number == 1 else folder / f"cycle-{number - 1:02}/adapt/mesh.meshb"
@@ -117,8 +122,8 @@ def main():
     options = arguments()
     if not loops.has_su2():
         return 0
-    shutil.rmtree(OUT / "first", ignore_errors=True)
-    (OUT / "first").mkdir(parents=True)
+    if options.restart:
+        shutil.rmtree(OUT, ignore_errors=True)
     cad, mesh = first(options.program, OUT / "first")
     return max(flown(options, angle, cad, mesh) for angle in ([10] if options.short else options.angles))
 
