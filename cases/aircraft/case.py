@@ -5,7 +5,6 @@ coarse adaptation. It needs SU2_CFD on the PATH, and ends with 0 where that is n
 """
 
 import json
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -41,12 +40,8 @@ def told(program, *words):
 
 def first(program, folder):
     """The first mesh, its model with the far field, and the parts of the aircraft, by which its faces are named."""
-    folder.mkdir(parents=True, exist_ok=True)
-    body, mesh = folder / MODEL.name, folder / "first.meshb"
-    shutil.copyfile(MODEL, body)
-    numbers = parts.of_faces(json.loads(told(program, "model", body, "--json"))["faces"])
-    names = [word for name, faces in numbers.items() for word in ("--name", f"{name}={','.join(map(str, faces))}")]
-    told(program, "model", body, *names)
+    numbers = parts.of_faces(json.loads(told(program, "model", MODEL, "--json"))["faces"])
+    body, mesh = loops.named(program, MODEL, folder, numbers), folder / "first.meshb"
     told(program, "bootstrap", body, "--far-field", "box:10", "--symmetry", "y", "-o", mesh, "-q")
     return mesh, mesh.with_suffix(".brep"), list(numbers)
 

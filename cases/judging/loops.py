@@ -87,9 +87,19 @@ def configuration(here, options):
     return (here / ("loop-su2.toml" if by_su2(options) else "loop.toml")).read_text()
 
 
-def ran(options, here, out, shorter):
-    """Runs loop.toml of the folder `here` (loop-su2.toml by SU2) as these arguments say, `shorter` being the values of the short form; the folder under
-    `out` that the loop is in, and the cycles of its report."""
+def named(program, model, folder, names):
+    """A copy of a model in a folder, with names for faces: {name: numbers}."""
+    folder.mkdir(parents=True, exist_ok=True)
+    copy = folder / model.name
+    shutil.copyfile(model, copy)
+    words = [word for name, faces in names.items() for word in ("--name", f"{name}={','.join(map(str, faces))}")]
+    subprocess.run([str(word) for word in (program, "model", copy, *words)], check=True, stdout=subprocess.DEVNULL)
+    return copy
+
+
+def ran(options, here, out, shorter, values=()):
+    """Runs loop.toml of the folder `here` (loop-su2.toml by SU2) as these arguments say, `shorter` being the values of the short form and `values` what stands
+    for names in capitals; the folder under `out` that the loop is in, and the cycles of its report."""
     folder = out / (("short" if options.short else "loop") + ("-su2" if by_su2(options) else ""))
     folder.mkdir(parents=True, exist_ok=True)
     changed = {"folder": json.dumps(str(folder))} | (shorter if options.short else {})
@@ -98,7 +108,7 @@ def ran(options, here, out, shorter):
     if options.processes:
         changed["processes"] = options.processes
     config = folder.with_suffix(".toml")
-    config.write_text(replaced(configuration(here, options), changed))
+    config.write_text(replaced(filled(configuration(here, options), dict(values)), changed))
     return folder, run(options.program, config, folder, *(["--restart"] if options.restart or options.short else []))[1]
 
 

@@ -14,7 +14,7 @@ SCALE = 0.594689181
 POWERS = {1: 0.298222773, 2: -0.127125232, 4: -0.357907906, 6: 0.291984971, 8: -0.105174606}
 DEGREE = 8
 # The width of the slab, and how far the square of the far field is from the middle of the chord, chords.
-WIDTH, FAR = 0.1, 500.0
+WIDTH, FAR = 0.02, 500.0
 MIDDLE = 0.5
 # Faces in their order in the model: their references in meshes are 1, 2, …
 NAMES = {1: "upper", 2: "lower", 3: "side0", 4: "side1", **dict.fromkeys(range(5, 9), "farfield")}

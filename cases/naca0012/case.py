@@ -104,7 +104,7 @@ def flown(options, angle, cad, mesh):
     values = {"MESH": mesh, "MODEL": cad, "FLOW": HERE / "flow.cfg", "ANGLE": str(angle), "WALLS": WALL, "FOLDER": folder}
     text = loops.filled((HERE / "loop.toml").read_text(), values)
     config = folder.parent / f"{name}.toml"
-    config.write_text(loops.replaced(text, {"max_complexity": 5000} if options.short else {}))
+    config.write_text(loops.replaced(text, {"max_complexity": 4500} if options.short else {}))
     seconds, steps = loops.run(options.program, config, folder)
     for step in steps:
         number = step["cycle"]
