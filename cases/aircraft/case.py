@@ -25,10 +25,10 @@ BOUNDS = [*COMMON, Bound("vertices", "≥", 180000, 180000), Bound("adaptation",
 SHORT = [*COMMON, Bound("vertices", "≥", 40000, 40000), Bound("adaptation", "≤", 0.05, 0.15)]
 # File: words of `view`. Lengths are metres; x goes aft, z up.
 PICTURES = {
-    "wing": ["--color", "Mach", "--range", "0.3,1.5", "--no-wire", "--view", "-90,89", "--at", "18,9,0", "--zoom", "2.4"],
-    "wing-mesh": ["--color", "Mach", "--range", "0.3,1.5", "--view", "-90,89", "--at", "18,9,0", "--zoom", "2.4"],
+    "wing": ["--color", "Mach", "--range", "0.3,1.5", "--no-wire", "--view=-90,89", "--at", "17.5,8.5,0", "--zoom", "1.9"],
+    "wing-mesh": ["--color", "Mach", "--range", "0.3,1.5", "--view=-90,89", "--at", "17.5,8.5,0", "--zoom", "1.9"],
     "aircraft": ["--color", "Mach", "--range", "0.3,1.5", "--no-wire", "--view", "125,25"],
-    "cut": ["--cut", "y=8.5", "--color", "Mach", "--range", "0.3,1.5", "--view", "-90,0", "--at", "18.5,8.5,0", "--zoom", "40"],
+    "cut": ["--cut", "y=8.5", "--color", "Mach", "--range", "0.3,1.5", "--view=-90,0", "--at", "18.5,8.5,-0.3", "--zoom", "6"],
     "nacelle": ["--color", "Mach", "--range", "0.3,1.5", "--view", "125,-20", "--at", "13,5.2,-2", "--zoom", "6"],
 }
 

@@ -21,7 +21,11 @@ NAMES = {"farfield": [1, 3, 4, 5, 6], "symmetry": [2], "wing": [7, 8, 9, 10]}
 PUBLISHED = {"CD": 0.165396, "CL": 0.346937}
 # (target, floor of today): relative differences from the published ones, which are within 0.55 % of each other.
 BOUNDS = [Bound("drag, error", "≤", 0.0055, 0.01), Bound("lift, error", "≤", 0.0055, 0.01), Bound("adaptation", "≤", 0.05, 0.05)]
-SHORT = [Bound("drag, error", "≤", 0.0055, 0.02), Bound("lift, error", "≤", 0.0055, 0.025), Bound("adaptation", "≤", 0.05, 0.15)]
+# SU2 has its values at the vertices, OpenFOAM in the cells, of which there are five times as many: of the same coarse mesh it makes less.
+SHORT = {
+    "openfoam": [Bound("drag, error", "≤", 0.0055, 0.02), Bound("lift, error", "≤", 0.0055, 0.025), Bound("adaptation", "≤", 0.05, 0.15)],
+    "su2": [Bound("drag, error", "≤", 0.0055, 0.15), Bound("lift, error", "≤", 0.0055, 0.05), Bound("adaptation", "≤", 0.05, 0.15)],
+}
 SHORTER = {"complexity": "1000", "max_complexity": "1500", "every": "1", "factor": "1.5"}
 
 
@@ -46,7 +50,7 @@ def main():
     folder.with_suffix(".json").write_text(json.dumps(result, indent=1))
     cycles.say("  ".join(f"{key} {value:.5g}" for key, value in result.items()))
     cycles.say(f"{folder}/report.html, {folder}/vortex.png, {folder}/coefficients.png")
-    return loops.judged(SHORT if options.short else BOUNDS, result)
+    return loops.judged(SHORT[options.solver] if options.short else BOUNDS, result)
 
 
 if __name__ == "__main__":

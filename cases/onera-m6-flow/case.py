@@ -21,7 +21,11 @@ MACH = 0.84
 BOUNDS = [
     Bound("within", "≥", 0.8, 0.75), Bound("inner", "≥", 0.8, 0.88), Bound("adaptation", "≤", 0.05, 0.05), Bound("lift", "≥", 0.28, 0.27),
 ]
-SHORT = [Bound("within", "≥", 0.8, 0.6), Bound("inner", "≥", 0.8, 0.65), Bound("adaptation", "≤", 0.05, 0.1), Bound("lift", "≥", 0.28, 0.25)]
+# SU2 has its values at the vertices, OpenFOAM in the cells, of which there are five times as many: of the same coarse mesh it makes less.
+SHORT = {
+    "openfoam": [Bound("within", "≥", 0.8, 0.6), Bound("inner", "≥", 0.8, 0.65), Bound("adaptation", "≤", 0.05, 0.1), Bound("lift", "≥", 0.28, 0.25)],
+    "su2": [Bound("within", "≥", 0.8, 0.4), Bound("inner", "≥", 0.8, 0.45), Bound("adaptation", "≤", 0.05, 0.1), Bound("lift", "≥", 0.28, 0.25)],
+}
 SHORTER = {"complexity": "4000", "max_complexity": "4000", "every": "1", "local": "[]"}
 FEWER = {"openfoam": {"steps": "800"}, "su2": {"iterations": "200"}}
 
@@ -43,7 +47,7 @@ def main():
     folder.with_suffix(".json").write_text(json.dumps(result, indent=1))
     cycles.say("  ".join(f"{key} {value:.5g}" for key, value in result.items()))
     cycles.say(f"{folder}/report.html, {folder}/sections.png")
-    return loops.judged(SHORT if options.short else BOUNDS, result)
+    return loops.judged(SHORT[options.solver] if options.short else BOUNDS, result)
 
 
 if __name__ == "__main__":
