@@ -7,7 +7,6 @@ twice. It needs SU2_CFD on the PATH, and ends with 0 where that is not there. Ex
 import argparse
 import json
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -43,28 +42,15 @@ def arguments():
 
 
 def first(program, folder):
-    """The first mesh: the coarse one, adapted again and again to the layers that it can have."""
+    """The first mesh: the coarse one, adapted to the layers that it can have."""
     mesh = folder / "coarse.mesh"
     plate.coarse(mesh)
-    for turn in range(FIRST):
-        sizes, made = folder / "wall.solb", folder / f"first-{turn}.meshb"
-        for words in (["metric", "wall", mesh, "--wall", WALL, "--hmax", "0.15", "-o", sizes], ["adapt", mesh, "--metric", sizes, "-o", made]):
-            subprocess.run([str(word) for word in (program, *words, "-q")], check=True)
-        mesh = made
-    return mesh
-
-
-def fields(folder):
-    """The fields of a solve by their names."""
-    kinds, values = meshfile.read_fields(folder / "solution.solb")
-    names = json.loads((folder / "solution.names.json").read_text())["fields"]
-    columns = np.cumsum([0, *(meshfile.VALUES_OF_KIND[kind] for kind in kinds)])
-    return {name: values[:, a:b].squeeze() for name, a, b in zip(names, columns, columns[1:], strict=False)}
+    return loops.layered(program, mesh, ["--wall", WALL], (["--hmax", "0.15"], []), FIRST)
 
 
 def judged(path, solve, functionals):
     """The figures of a solve on a mesh, whose metric lies beside it."""
-    mesh, found = meshfile.read_mesh(path), fields(solve)
+    mesh, found = meshfile.read_mesh(path), loops.fields(solve / "solution.solb")
     ratios = metric.mean_ratios(mesh.points, mesh.tets, meshfile.read_metric(path.with_suffix(".solb")))
     x, along, friction = plate.friction(mesh, found, AT)
     y_plus, u_plus = plate.profile(mesh, found, AT, friction, 0.05)
@@ -98,8 +84,7 @@ def drawn(path, along, profile):
 
 def main():
     options = arguments()
-    if shutil.which("SU2_CFD") is None:
-        cycles.say("SU2_CFD is not on the PATH: nothing is run (https://su2code.github.io)")
+    if not loops.has_su2():
         return 0
     folder = OUT / ("short" if options.short else "loop")
     shutil.rmtree(folder, ignore_errors=True)
@@ -107,9 +92,7 @@ def main():
     flow = folder.parent / f"{folder.name}.cfg"
     shutil.copyfile(HERE / "flow.cfg", flow)
     values = {"MESH": first(options.program, folder.parent), "FLOW": flow, "WALLS": WALL, "FOLDER": folder}
-    text = (HERE / "loop.toml").read_text()
-    for name, value in values.items():
-        text = text.replace(f'"{name}"', json.dumps(str(value)))
+    text = loops.filled((HERE / "loop.toml").read_text(), values)
     if options.short:
         text = text.replace("max_complexity = 8000", "max_complexity = 4000")
     config = folder.parent / f"{folder.name}.toml"

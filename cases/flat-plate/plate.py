@@ -1,53 +1,23 @@
 """The slab of the flat plate: its coarse first mesh, and what a solution on a mesh says of the plate."""
 
-import json
-from itertools import permutations
-
 import numpy as np
+from judging import slab
+from judging.walls import B, KAPPA, spalding  # noqa: F401
 
 # x of the front, of the plate's begin and end, the height and the width of the slab.
 FRONT, BEGIN, END, HEIGHT, WIDTH = -1 / 3, 0.0, 2.0, 1.0, 0.05
 NAMES = {1: "wall", 2: "before", 3: "side0", 4: "side1", 5: "inlet", 6: "outlet", 7: "top"}
 # Of the flow in flow.cfg, in its units: density and velocity of the free stream and pressure 1 at T = 300 K.
 MACH, REYNOLDS, GAMMA = 0.2, 5e6, 1.4
-# Spalding's and the logarithmic law's constants.
-KAPPA, B = 0.41, 5.0
 
 
 def coarse(path):
     """Writes the first mesh, .mesh with its names beside, of boxes cut into six tetrahedra each, one across the slab."""
     xs = np.concatenate([np.linspace(FRONT, BEGIN, 5), np.linspace(BEGIN, END, 25)[1:]])
     ys = HEIGHT * np.array([0, 0.01, 0.03, 0.07, 0.14, 0.25, 0.4, 0.6, 0.8, 1.0])
-    zs = np.array([0.0, WIDTH])
-    shape = (len(xs), len(ys), len(zs))
-    points = np.array([[x, y, z] for x in xs for y in ys for z in zs])
-    tets = []
-    for cell in np.ndindex(*(n - 1 for n in shape)):
-        for order in permutations(range(3)):
-            corner, nodes = np.array(cell), [np.ravel_multi_index(cell, shape)]
-            for axis in order:
-                corner[axis] += 1
-                nodes.append(np.ravel_multi_index(corner, shape))
-            a, b, c, d = points[nodes]
-            tets.append(nodes if np.linalg.det([b - a, c - a, d - a]) > 0 else [*nodes[:2], nodes[3], nodes[2]])
-    faces = {}
-    for nodes in tets:
-        for face in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)):
-            face = tuple(nodes[i] for i in face)
-            key = tuple(sorted(face))
-            faces[key] = None if key in faces else face
-    triangles = [face for face in faces.values() if face is not None]
-    references = [reference(points[list(face)]) for face in triangles]
-
-    def rows(name, nodes, numbers):
-        return [name, str(len(nodes)), *(" ".join(str(n + 1) for n in row) + f" {number}" for row, number in zip(nodes, numbers, strict=True))]
-
-    lines = ["MeshVersionFormatted 2", "Dimension 3", "Vertices", str(len(points))]
-    lines += [f"{x:.17g} {y:.17g} {z:.17g} 0" for x, y, z in points]
-    lines += rows("Triangles", triangles, references) + rows("Tetrahedra", tets, [1] * len(tets)) + ["End"]
-    path.write_text("\n".join(lines) + "\n")
-    named = {str(number): {"name": name} for number, name in NAMES.items()}
-    path.with_suffix(".names.json").write_text(json.dumps({"triangles": named}))
+    grid = np.stack(np.meshgrid(xs, ys, [0.0, WIDTH], indexing="ij"), axis=-1)
+    points, tets, triangles = slab.tetrahedra(grid)
+    slab.write(path, points, tets, triangles, [reference(points[list(face)]) for face in triangles], NAMES)
 
 
 def reference(corners):
@@ -80,14 +50,6 @@ def profile(mesh, fields, at, c_f, width):
     y_plus = points[:, 1] * REYNOLDS * np.sqrt(0.5 * c_f)
     order = np.argsort(y_plus)
     return y_plus[order], (velocity / shear)[order]
-
-
-def spalding(y_plus):
-    """u⁺ of the law of Spalding (1961)."""
-    u = np.linspace(0, 40, 40001)
-    terms = KAPPA * u
-    y = u + np.exp(-KAPPA * B) * (np.exp(terms) - 1 - terms - terms**2 / 2 - terms**3 / 6)
-    return np.interp(y_plus, y, u)
 
 
 def heights(mesh):

@@ -3,11 +3,15 @@
 import argparse
 import json
 import re
+import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import numpy as np
+
+from . import meshfile
 from .cycles import ROOT, say
 
 
@@ -20,6 +24,25 @@ def replaced(text, values):
     return text.replace('"../../', f'"{ROOT}/')
 
 
+def filled(text, values):
+    """A configuration with values in the places of "NAME"."""
+    for name, value in values.items():
+        text = text.replace(f'"{name}"', json.dumps(value if isinstance(value, (int, float)) else str(value)))
+    return text
+
+
+def layered(program, mesh, wall, words, turns):
+    """A coarse mesh, adapted again and again to the layers along a wall that it can have; the last one. `words`: where the boundary is and how large sizes are,
+    of `metric wall` and of `adapt`."""
+    folder, (of_metric, of_adapt) = mesh.parent, words
+    for turn in range(turns):
+        sizes, made = folder / "wall.solb", folder / f"first-{turn}.meshb"
+        for line in (["metric", "wall", mesh, *wall, *of_metric, "-o", sizes], ["adapt", mesh, "--metric", sizes, *of_adapt, "-o", made]):
+            subprocess.run([str(word) for word in (program, *line, "-q")], check=True)
+        mesh = made
+    return mesh
+
+
 def run(program, config, folder, *words):
     """Runs a loop; seconds, and the cycles of its report."""
     began = time.monotonic()
@@ -28,35 +51,83 @@ def run(program, config, folder, *words):
     return time.monotonic() - began, json.loads((folder / "report.json").read_text())["cycles"]
 
 
-def arguments(description, short):
-    """The command line of a case of a flow; `short`: what its short form is."""
+def has_su2():
+    """Whether SU2 can be run; says where it is had if not."""
+    found = shutil.which("SU2_CFD") is not None
+    if not found:
+        say("SU2_CFD is not on the PATH: nothing is run (https://su2code.github.io)")
+    return found
+
+
+def arguments(description, short, solvers=()):
+    """The command line of a case of a flow; `short`: what its short form is; `solvers`: between which there is a choice, the usual one first."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, default=ROOT / "target/release/geo-adapt")
     parser.add_argument("--short", action="store_true", help=short)
     parser.add_argument("--restart", action="store_true", help="throw away what is there")
     parser.add_argument("--complexity", type=float, help="of the end (default: of loop.toml)")
     parser.add_argument("--processes", type=int, help="of the solver (default: 1)")
+    if solvers:
+        parser.add_argument("--solver", choices=solvers, default=solvers[0], help=f"default: {solvers[0]}")
     return parser.parse_args()
 
 
-def ran(options, here, out, shorter):
-    """Runs loop.toml of the folder `here` as these arguments say, `shorter` being the values of the short form; the folder under `out` that the loop
-    is in, and the cycles of its report."""
-    folder = out / ("short" if options.short else "loop")
+def by_su2(options):
+    """Whether a case that has a choice is to be run by SU2."""
+    return getattr(options, "solver", None) == "su2"
+
+
+def has_solver(options):
+    """Whether the solver of a case can be run: cases/run installs all but SU2."""
+    return not by_su2(options) or has_su2()
+
+
+def configuration(here, options):
+    """The loop of a case, by the solver that was asked for."""
+    return (here / ("loop-su2.toml" if by_su2(options) else "loop.toml")).read_text()
+
+
+def named(program, model, folder, names):
+    """A copy of a model in a folder, with names for faces: {name: numbers}."""
     folder.mkdir(parents=True, exist_ok=True)
-    changed = dict(shorter) if options.short else {}
+    copy = folder / model.name
+    shutil.copyfile(model, copy)
+    words = [word for name, faces in names.items() for word in ("--name", f"{name}={','.join(map(str, faces))}")]
+    subprocess.run([str(word) for word in (program, "model", copy, *words)], check=True, stdout=subprocess.DEVNULL)
+    return copy
+
+
+def ran(options, here, out, shorter, values=()):
+    """Runs loop.toml of the folder `here` (loop-su2.toml by SU2) as these arguments say, `shorter` being the values of the short form and `values` what stands
+    for names in capitals; the folder under `out` that the loop is in, and the cycles of its report."""
+    folder = out / (("short" if options.short else "loop") + ("-su2" if by_su2(options) else ""))
+    folder.mkdir(parents=True, exist_ok=True)
+    changed = {"folder": json.dumps(str(folder))} | (shorter if options.short else {})
     if options.complexity:
         changed["max_complexity"] = f"{options.complexity:g}"
     if options.processes:
         changed["processes"] = options.processes
     config = folder.with_suffix(".toml")
-    config.write_text(replaced((here / "loop.toml").read_text(), changed))
+    config.write_text(replaced(filled(configuration(here, options), dict(values)), changed))
     return folder, run(options.program, config, folder, *(["--restart"] if options.restart or options.short else []))[1]
 
 
 def last(loop, folder):
     """The last mesh of a loop, and the solution on it."""
     return folder / f"cycle-{loop[-2]['cycle']:02}/adapt/mesh.meshb", folder / f"cycle-{loop[-1]['cycle']:02}/solve/solution.solb"
+
+
+def fields(solution):
+    """The fields of a solution by their names, shape (n,) or (n, values)."""
+    kinds, values = meshfile.read_fields(solution)
+    names = json.loads(solution.with_suffix(".names.json").read_text())["fields"]
+    columns = np.cumsum([0, *(meshfile.VALUES_OF_KIND[kind] for kind in kinds)])
+    return {name: values[:, a:b].squeeze() for name, a, b in zip(names, columns, columns[1:], strict=False)}
+
+
+def pressure(found):
+    """The pressure among the fields of OpenFOAM or SU2; both have that of the free stream as their unit."""
+    return found["p"] if "p" in found else found["Pressure"]
 
 
 def adaptation(loop):

@@ -1,10 +1,9 @@
-"""A supersonic ramp, Mach 2 and 15°, inviscid, by OpenFOAM in the loop: angle, strength and sharpness of its shock against theory.
+"""A supersonic ramp, Mach 2 and 15°, inviscid, by OpenFOAM or SU2 in the loop: angle, strength and sharpness of its shock against theory.
 
-Runs loop.toml anew, judges its last mesh and solution, and the same solver on a uniform mesh of as many vertices. --short: coarser and with
+Runs loop.toml or, with --solver su2, loop-su2.toml anew, judges its last mesh and solution, and the same solver on a uniform mesh of as many vertices. --short: coarser and with
 fewer cycles, with its own floors. Exit code: 0 when every floor is held, else 1.
 """
 
-import argparse
 import json
 import math
 import re
@@ -30,32 +29,24 @@ SHORT = [
     Bound("uniform error / error", "≥", 3, 2), Bound("cells", "≤", 0.01, 0.02), Bound("layer", "≤", 0.01, 0.03),
 ]
 # What is another in the short form.
-SHORTER = {"complexity": "500", "max_complexity": "1000", "steps": "800", "folder": '"../../out/ramp/short"'}
-
-
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, default=cycles.ROOT / "target/release/geo-adapt")
-    parser.add_argument("--short", action="store_true", help="coarser, fewer cycles")
-    return parser.parse_args()
+SHORTER = {"complexity": "500", "max_complexity": "1000"}
+# How a solver calls its steps, and how many they are in the short form and on the uniform mesh.
+STEPS = {"openfoam": ("steps", 800, 3000), "su2": ("iterations", 400, 1500)}
 
 
 def judged(mesh, solution, exact):
-    """Figures of a mesh and the fields p, T, U, rho, Mach on it."""
-    kinds, values = meshfile.read_fields(solution)
-    if kinds != [1, 1, 2, 1, 1]:
-        sys.exit(f"{solution}: expected p, T, U, rho and Mach")
-    # The free stream has the pressure 1.
-    return shock.figures(meshfile.read_mesh(mesh), values[:, 0], values[:, 6], exact)
+    """Figures of a mesh and the fields on it."""
+    fields = loops.fields(solution)
+    return shock.figures(meshfile.read_mesh(mesh), loops.pressure(fields), fields["Mach"], exact)
 
 
-def uniform(program, text, vertices, folder, exact):
+def uniform(options, text, vertices, folder, exact):
     """Figures on a mesh of one size everywhere with as many vertices, within some percent."""
     folder.mkdir(parents=True, exist_ok=True)
     mesh, size = folder / "uniform.meshb", (1.31 * 0.05 / vertices) ** (1 / 3)
     for _ in range(3):
         mesh.unlink(missing_ok=True)
-        words = [program, "bootstrap", MODEL, "-o", mesh, "--size", str(size), "--feature-cells", "off", "-q"]
+        words = [options.program, "bootstrap", MODEL, "-o", mesh, "--size", str(size), "--feature-cells", "off", "-q"]
         if subprocess.run(words, check=False).returncode != 0:
             sys.exit("the uniform mesh could not be made")
         found = len(meshfile.read_mesh(mesh).points)
@@ -63,24 +54,25 @@ def uniform(program, text, vertices, folder, exact):
         if abs(found / vertices - 1) < 0.05:
             break
     # One solve; what is adapted after it is small, and of no interest.
-    changed = {"steps": "3000", "complexity": "100", "max_complexity": "100", "folder": f'"{folder}/uniform"'}
+    name, _, steps = STEPS[options.solver]
+    changed = {name: steps, "complexity": "100", "max_complexity": "100", "folder": f'"{folder}/uniform"'}
     text = re.sub(r'(?m)^bootstrap = .*\noptions = .*$', f'file = "{mesh}"\ncad = "{MODEL}"', loops.replaced(text, changed))
     config = folder / "uniform.toml"
     config.write_text(text)
-    loops.run(program, config, folder / "uniform", "--restart")
+    loops.run(options.program, config, folder / "uniform", "--restart")
     return judged(mesh, folder / "uniform/cycle-01/solve/solution.solb", exact)
 
 
 def main():
-    options, exact = arguments(), shock.oblique(2.0, math.radians(15))
-    folder = OUT / ("short" if options.short else "loop")
-    folder.mkdir(parents=True, exist_ok=True)
-    text = (HERE / "loop.toml").read_text()
-    config = folder.parent / f"{folder.name}.toml"
-    config.write_text(loops.replaced(text, SHORTER if options.short else {}))
-    seconds, steps = loops.run(options.program, config, folder, "--restart")
+    options = loops.arguments(__doc__, short="coarser, fewer cycles", solvers=list(STEPS))
+    if not loops.has_solver(options):
+        return 0
+    exact, (name, few, _) = shock.oblique(2.0, math.radians(15)), STEPS[options.solver]
+    options.restart = True
+    folder, steps = loops.ran(options, HERE, OUT, SHORTER | {name: few})
+    text, seconds = loops.configuration(HERE, options), sum(value for step in steps for value in step["seconds"].values())
     result = judged(*loops.last(steps, folder), exact)
-    even = uniform(options.program, text, result["vertices"], OUT / f"{folder.name}-uniform", exact)
+    even = uniform(options, text, result["vertices"], OUT / f"{folder.name}-uniform", exact)
     cycles.say(f"exact    angle {math.degrees(exact.angle):.4f}°, pressure ratio {exact.pressure:.5f}, Mach number behind {exact.behind:.5f}")
     for name, found in [("adapted", result), ("uniform", even)]:
         shown = "  ".join(f"{key} {value:.5g}" for key, value in found.items())

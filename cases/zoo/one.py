@@ -10,8 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import layer
-import represent
-from judging import meshfile, report
+from judging import meshfile, report, represent
 
 CYCLES = 2
 FIELDS = ("layer", "geometry")

@@ -11,7 +11,7 @@ import numpy as np
 CASES = Path(__file__).resolve().parents[2] / "cases"
 sys.path[:0] = [str(CASES), str(CASES / "zoo")]
 import layer  # noqa: E402
-import represent  # noqa: E402
+from judging import represent  # noqa: E402
 
 
 def edge(*vertices, degenerate=False, seam=False):
