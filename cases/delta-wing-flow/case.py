@@ -1,6 +1,6 @@
 """The delta wing of the high-order workshops, laminar, Mach 0.3, Re 4000 and 12.5°, by OpenFOAM or SU2 in the loop: lift and drag beside the published ones.
 
-Runs loop.toml or, with --solver su2, loop-su2.toml (--restart: anew), compares C_D and C_L with those of Tsolakis 2021 (section 4.2.2, at 5.7 million vertices), and draws the vortex and
+Runs loop.toml or, with --solver su2, loop-su2.toml, or, with --goal, loop-goal.toml, whose meshes are made for the lift (--restart: anew); compares C_D and C_L with those of Tsolakis 2021 (section 4.2.2, at 5.7 million vertices), and draws the vortex and
 the way to the coefficients. --short: coarse, with its own floors, half a minute. Exit code: 0 when every floor is held, else 1.
 """
 
@@ -30,7 +30,7 @@ SHORTER = {"complexity": "1000", "max_complexity": "1500", "every": "1", "factor
 
 
 def main():
-    options = loops.arguments(__doc__, short="coarse, half a minute", solvers=["openfoam", "su2"])
+    options = loops.arguments(__doc__, short="coarse, half a minute", solvers=["openfoam", "su2"], goal="meshes for the lift, by OpenFOAM's adjoint")
     if not loops.has_solver(options):
         return 0
     # SU2 takes numbers in its list of walls for temperatures: the faces need names.

@@ -59,8 +59,9 @@ def has_su2():
     return found
 
 
-def arguments(description, short, solvers=()):
-    """The command line of a case of a flow; `short`: what its short form is; `solvers`: between which there is a choice, the usual one first."""
+def arguments(description, short, solvers=(), goal=None):
+    """The command line of a case of a flow; `short`: what its short form is; `solvers`: between which there is a choice, the usual one first; `goal`: what the
+    mesh can be made for."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, default=ROOT / "target/release/geo-adapt")
     parser.add_argument("--short", action="store_true", help=short)
@@ -69,7 +70,12 @@ def arguments(description, short, solvers=()):
     parser.add_argument("--processes", type=int, help="of the solver (default: 1)")
     if solvers:
         parser.add_argument("--solver", choices=solvers, default=solvers[0], help=f"default: {solvers[0]}")
-    return parser.parse_args()
+    if goal:
+        parser.add_argument("--goal", action="store_true", help=goal)
+    options = parser.parse_args()
+    if goal and options.goal and by_su2(options):
+        parser.error("--goal needs an adjoint, which is OpenFOAM's: leave --solver su2 out")
+    return options
 
 
 def by_su2(options):
@@ -82,9 +88,14 @@ def has_solver(options):
     return not by_su2(options) or has_su2()
 
 
+def variant(options):
+    """What is added to the names of the loop's file and folder: by which solver, or for which goal."""
+    return "-su2" if by_su2(options) else "-goal" if getattr(options, "goal", False) else ""
+
+
 def configuration(here, options):
-    """The loop of a case, by the solver that was asked for."""
-    return (here / ("loop-su2.toml" if by_su2(options) else "loop.toml")).read_text()
+    """The loop of a case, as it was asked for."""
+    return (here / f"loop{variant(options)}.toml").read_text()
 
 
 def named(program, model, folder, names):
@@ -98,9 +109,9 @@ def named(program, model, folder, names):
 
 
 def ran(options, here, out, shorter, values=()):
-    """Runs loop.toml of the folder `here` (loop-su2.toml by SU2) as these arguments say, `shorter` being the values of the short form and `values` what stands
+    """Runs loop.toml of the folder `here` (loop-su2.toml by SU2, loop-goal.toml for a goal) as these arguments say, `shorter` being the values of the short form and `values` what stands
     for names in capitals; the folder under `out` that the loop is in, and the cycles of its report."""
-    folder = out / (("short" if options.short else "loop") + ("-su2" if by_su2(options) else ""))
+    folder = out / (("short" if options.short else "loop") + variant(options))
     folder.mkdir(parents=True, exist_ok=True)
     changed = {"folder": json.dumps(str(folder))} | (shorter if options.short else {})
     if options.complexity:
