@@ -1,6 +1,7 @@
 //! The data of the loop: what solvers, steps and history hand to each other.
 use crate::formats::NamedField;
 use crate::mesh::io::FieldKind;
+use crate::metric::goal::terms::Flow;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -26,6 +27,9 @@ pub fn kind_of(values: usize) -> Option<FieldKind> {
     use FieldKind::{Scalar, SymmetricTensor, Tensor, Vector};
     [Scalar, Vector, SymmetricTensor, Tensor].into_iter().find(|kind| kind.values() == values)
 }
+
+/// A flow whose state and adjoint are fields of the solver, by their names, as `[flow]` of `metric goal --terms` has them.
+pub type GoalFlow = Flow<Vec<String>>;
 
 /// A program to start in a folder.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,5 +1,5 @@
 //! From names of fields to values of a vertex.
-use super::data::{FieldName, kind_of};
+use super::data::{FieldName, GoalFlow, kind_of};
 use std::fmt;
 
 /// What of the values of a vertex, which are counted from 1 through all fields; as text as `field pick --take` has it.
@@ -69,7 +69,7 @@ impl Value {
 ///
 /// # Errors
 /// When there is no such field.
-pub fn all_values(words: &[String], fields: &[FieldName]) -> Result<Vec<Value>, String> {
+fn all_values(words: &[String], fields: &[FieldName]) -> Result<Vec<Value>, String> {
     let mut found = Vec::new();
     for word in words {
         match fields.iter().position(|field| field.name == *word) {
@@ -81,6 +81,15 @@ pub fn all_values(words: &[String], fields: &[FieldName]) -> Result<Vec<Value>, 
         }
     }
     Ok(found)
+}
+
+/// The values of state and adjoint of a flow.
+///
+/// # Errors
+/// When the solver has no such field.
+pub fn flow_values(flow: &GoalFlow, fields: &[FieldName]) -> Result<[Vec<Value>; 2], String> {
+    let all = |words: &Vec<String>| all_values(words, fields).map_err(|error| format!("[goal] flow: {error}"));
+    Ok([all(&flow.primal)?, all(&flow.adjoint)?])
 }
 
 fn known(fields: &[FieldName]) -> String {

@@ -1,7 +1,7 @@
 //! The goal of a loop: what the solver tells of its functional, and the terms of the metric.
-use super::config::{Goal, GoalFlow};
-use super::data::{FieldName, Solved};
-use super::field_value::{Value, all_values};
+use super::config::Goal;
+use super::data::{FieldName, GoalFlow, Solved};
+use super::field_value::Value;
 use crate::metric::goal::terms::{Component, Term, Terms, Values};
 use std::path::Path;
 
@@ -77,15 +77,6 @@ impl Goal {
             }),
         }
     }
-}
-
-/// The values of state and adjoint of a flow.
-///
-/// # Errors
-/// When the solver has no such field.
-pub fn flow_values(flow: &GoalFlow, fields: &[FieldName]) -> Result<[Vec<Value>; 2], String> {
-    let all = |words: &Vec<String>| all_values(words, fields).map_err(|error| format!("[goal] flow: {error}"));
-    Ok([all(&flow.primal)?, all(&flow.adjoint)?])
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Refuses configurations whose keys are each allowed, but not together, before the loop begins.
 use super::{Config, FIRST, Growth, Loaded, NormWord};
-use crate::cycle::field_value::{Value, values_of};
-use crate::cycle::goal::flow_values;
+use crate::cycle::field_value::{Value, flow_values, values_of};
 use crate::metric::multiscale::Norm;
 use crate::sizing::layer::Walls;
 use crate::view::cut::Plane;

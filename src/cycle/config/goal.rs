@@ -1,6 +1,7 @@
 //! `[goal]`: the functional that the mesh is made for.
+use crate::cycle::data::GoalFlow;
 use crate::metric::goal::Boundary;
-use crate::metric::goal::terms::{Flow, Term, Values};
+use crate::metric::goal::terms::{Term, Values};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -26,9 +27,6 @@ pub struct Goal {
     /// A flow, by the names of the solver's fields.
     pub flow: Option<GoalFlow>,
 }
-
-/// A flow whose state and adjoint are fields of the solver, by their names, as `[flow]` of `metric goal --terms` has them.
-pub type GoalFlow = Flow<Vec<String>>;
 
 /// A pair of a weight and a field, by the names of the solver's fields; of a vector `U` one component `U:x`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ mod parts;
 mod words;
 
 pub use confined::Solvers;
-pub use goal::{Goal, GoalFlow, Until};
+pub use goal::{Goal, Until};
 pub use parts::{
     Adapt, Converged, FIRST, Growth, Mesh, Metric, NormWord, Output, Probe, Schedule, Transfer, TransferMethod,
 };

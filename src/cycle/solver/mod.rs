@@ -7,9 +7,8 @@ pub mod openfoam;
 mod reference;
 pub mod su2;
 
-pub use super::data::{Call, FieldName, Solved};
+pub use super::data::{Call, FieldName, GoalFlow, Solved};
 
-use crate::cycle::config::GoalFlow;
 use crate::formats::{Dataset, NamedField};
 use crate::geometry::{Names, names};
 use crate::mesh::TetMesh;

@@ -21,8 +21,7 @@ pub use forces::{Coefficients, Walls};
 pub use method::{Method, Scheme, Stage};
 
 use super::{FieldName, Job, Solver};
-use crate::cycle::config::GoalFlow;
-use crate::cycle::data::{Call, Solved};
+use crate::cycle::data::{Call, GoalFlow, Solved};
 use crate::cycle::launch::{self, find_program};
 use crate::formats::foam::{self, CellField};
 use crate::formats::{self, Dataset, NamedField};
