@@ -111,7 +111,8 @@ fn solve(processes: u32) -> Found {
     let time = last_time(&case).unwrap();
     let read = |name: &str| read_cell_field(&time.join(name), data.tets.len()).unwrap().unwrap().values;
     let (pressure, velocity) = (read("p"), read("U"));
-    let part = Walls::of(&data, &[8]).coefficients(&config.flow, &pressure, &velocity).drag;
+    let cells = Cells::of(Dataset { mesh: data, ..Dataset::default() });
+    let part = Walls::of(&cells, &[8]).coefficients(&config.flow, &pressure, &velocity).drag;
     eprintln!("{processes} processes: {part} of the part, {}, {} steps", outcome.coefficients.drag, outcome.steps);
     Found { part, drag: solved.functionals["CD"], pressure }
 }
