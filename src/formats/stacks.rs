@@ -29,7 +29,7 @@ pub fn check_stack(path: &Path, stack: &Stack) -> Result<(), Error> {
         return Ok(());
     }
     let message = format!(
-        "the mesh has {}, for which this format is not written: give .meshb, .su2, .ugrid, .msh, .vtu or a case of OpenFOAM, or split them by \
+        "the mesh has {}, for which this format is not written: give .meshb, .su2, .ugrid, .msh, .vtu, .cgns or a case of OpenFOAM, or split them by \
          `geo-adapt convert --split`",
         stack.told()
     );

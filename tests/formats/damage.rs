@@ -306,7 +306,8 @@ fn no_bytes_make_xdmf_with_its_arrays_panic() {
 
 #[test]
 fn no_bytes_make_cgns_panic() {
-    survive(seeds(&[("a.cgns", false)]), mesh);
+    let names = [("a.cgns", false)];
+    survive([seeds(&names), stacked(&names)].concat(), mesh);
 }
 
 #[test]
