@@ -66,8 +66,8 @@ fn the_mesh_is_made_for_the_drag() {
     assert_eq!(names, ["p", "T", "U", "rho", "Mach", "Ua", "pa"]);
     assert!(done["result"]["functionals"]["adjoint steps"].as_f64().unwrap() > 20.0, "{done}");
     // At the wall the adjoint of a force has its direction, in the units of the coefficient: here against x, 1 / (½ U² A) with ρ left out.
-    let mesh = read_mesh(path("start/mesh.meshb")).unwrap().content;
-    let solution = read_solution(path("cycle-01/solve/solution.solb")).unwrap().content;
+    let mesh = read_mesh(&path("start/mesh.meshb")).unwrap().content;
+    let solution = read_solution(&path("cycle-01/solve/solution.solb")).unwrap().content;
     let adjoint = &solution.fields[5].values;
     let at = |p: [f64; 3]| mesh.vertices.iter().position(|&q| q == p).unwrap();
     let wall = at([0.4, 0.4, 0.0]);
@@ -79,7 +79,7 @@ fn the_mesh_is_made_for_the_drag() {
     // The terms are those of the solver's flow, and the next mesh is fine at the plate.
     let terms = text("cycle-01/metric/terms.toml");
     assert!(terms.contains("incompressible") && terms.contains("density = 1.4"), "{terms}");
-    let mesh = read_mesh(path("cycle-01/adapt/mesh.meshb")).unwrap().content;
+    let mesh = read_mesh(&path("cycle-01/adapt/mesh.meshb")).unwrap().content;
     let near = mesh.vertices.iter().filter(|p| p[2] < 0.4).count() as f64 / mesh.vertices.len() as f64;
     assert!(near > 0.5, "{near}");
     // The next solve begins with it.

@@ -1,8 +1,9 @@
 //! Viscous flow by OpenFOAM, where it is installed: the friction on a flat plate is that of Blasius, and several processes find what one does.
 use geo_adapt::cycle::launch::find_program;
 use geo_adapt::cycle::solver::openfoam::drive::{drive, last_time};
-use geo_adapt::cycle::solver::openfoam::{Config, Walls};
+use geo_adapt::cycle::solver::openfoam::{Cells, Config, Walls};
 use geo_adapt::cycle::solver::{Job, Solver};
+use geo_adapt::formats::Dataset;
 use geo_adapt::formats::foam::read_cell_field;
 use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::io::write_mesh;
