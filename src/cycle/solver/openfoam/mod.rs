@@ -3,7 +3,7 @@
 //! `flow` says what holds where, `method` which program solves it (rhoCentralFoam with local time steps, or rhoSimpleFoam where the flow is
 //! slow and viscous), `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
 //! `programs`, as fast as `step_control` lets it, to first order in the cells of `first_order`, until it stands still or else to its `mean`, and `forces` sums up what
-//! acts on the walls. `adjoint` solves the adjoint of lift or drag then, where it is wanted. OpenFOAM v1912 (Debian's package `openfoam`).
+//! acts on the walls, over `cells`, which need not be tetrahedra. `adjoint` solves the adjoint of lift or drag then, where it is wanted. OpenFOAM v1912 (Debian's package `openfoam`).
 pub mod adjoint;
 mod cells;
 mod dictionaries;

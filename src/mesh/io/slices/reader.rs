@@ -170,7 +170,7 @@ fn refuse_stack(contents: &Contents<'_>) -> Result<(), Error> {
         None => Ok(()),
         Some(Section { keyword, count, body, .. }) => {
             let message = format!(
-                "there are {count}, which are not read by slices; split them by `geo-adapt convert --split`, or leave --memory out"
+                "there are {count}, which are not read by slices; split them by `geo-adapt convert --split` first"
             );
             Err(contents.source.error(body.start, keyword.name(), message))
         }
