@@ -34,16 +34,17 @@ pub fn read_mesh<'py>(
 }
 
 fn read(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, io::Error> {
-    if Format::of_file(path)? != Format::Libmeshb {
-        let read = formats::read(path)?;
-        if !read.content.stack.is_empty() {
-            let message = format!("there are {}: split them by `geo-adapt convert --split`", read.content.stack.told());
-            return Err(io::Error::Content { path: path.to_owned(), place: "cells".into(), message });
-        }
-        return Ok(read);
+    let read = if Format::of_file(path)? == Format::Libmeshb {
+        let Read { content: (mesh, stack), notices } = io::read_mesh_and_stack(team, path)?;
+        Read { content: Dataset { mesh, stack, names: names::read(path)?, ..Dataset::default() }, notices }
+    } else {
+        formats::read(path)?
+    };
+    if !read.content.stack.is_empty() {
+        let message = format!("there are {}: split them by `geo-adapt convert --split`", read.content.stack.told());
+        return Err(io::Error::Content { path: path.to_owned(), place: "cells".into(), message });
     }
-    let Read { content: mesh, notices } = io::read_mesh_on(team, path)?;
-    Ok(Read { content: Dataset { mesh, names: names::read(path)?, ..Dataset::default() }, notices })
+    Ok(read)
 }
 
 /// Writes a mesh with its names and fields: what the format cannot carry.

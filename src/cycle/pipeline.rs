@@ -11,8 +11,11 @@ use super::probe;
 use super::solver::{Before, Choice, Job};
 use super::step::{Running, Steps};
 use crate::geometry::{Label, Names, called, names};
-use crate::mesh::io::{Solution, SolutionField, read_mesh, write_beside, write_mesh, write_solution};
+use crate::mesh::io::{
+    Solution, SolutionField, read_mesh, read_mesh_and_stack, write_beside, write_mesh, write_solution,
+};
 use crate::mesh::samples::cube;
+use crate::tasks::Team;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -62,8 +65,22 @@ impl<'a> Pipeline<'a> {
             } else {
                 running.geo_adapt(vec!["convert".into(), text(&file), text(&target)])?;
             }
+            self.check_stack(&target)?;
             Ok(begun(self.loaded, &target))
         })
+    }
+
+    /// Refuses prisms, pyramids and hexahedra of the first mesh that could not go through the loop.
+    fn check_stack(&self, first: &Path) -> Result<(), Error> {
+        let (_, stack) = read_mesh_and_stack(Team::alone(), first)?.content;
+        if !stack.is_empty() && self.loaded.config.adapt.is_by_parts() {
+            return Err(Error::Failed(format!(
+                "the first mesh has {}, which are not kept where it is adapted part by part: leave [adapt] processes and memory out, or split them by \
+                 `geo-adapt convert --split`",
+                stack.told()
+            )));
+        }
+        Ok(self.loaded.config.solver.solver().check_stack(&stack)?)
     }
 
     /// The solution on the mesh of a cycle; `before` are the fields of the last one, where it was brought here.
@@ -80,7 +97,7 @@ impl<'a> Pipeline<'a> {
                 running.call(&call)?;
             }
             let mut solved = solver.collect(&job)?;
-            let counted = read_mesh(&mesh)?.content;
+            let (counted, stack) = read_mesh_and_stack(Team::alone(), &mesh)?.content;
             solved.check(counted.vertices.len())?;
             probe::add(&self.loaded.config.probes, &counted, &mut solved)?;
             self.loaded.config.goal.as_ref().map_or(Ok(()), |goal| goal.add(&mut solved))?;
@@ -91,7 +108,7 @@ impl<'a> Pipeline<'a> {
             let solution = Solution { vertices: counted.vertices.len(), fields: content.collect() };
             write_solution(&layout.solution(cycle), &solution)?;
             names::write(&layout.solution(cycle), &Names::default(), &called)?;
-            let (vertices, tets) = (counted.vertices.len(), counted.tets.len());
+            let (vertices, tets) = (counted.vertices.len(), stack.own_tets(&counted));
             Ok(SolveResult { vertices, tets, fields, functionals: solved.functionals })
         })
     }

@@ -6,7 +6,8 @@ use super::history::History;
 use super::layout::Layout;
 use crate::formats::{self, Dataset, NamedField};
 use crate::geometry::names;
-use crate::mesh::io::{read_mesh, read_solution, write_beside};
+use crate::mesh::io::{read_mesh_and_stack, read_solution, write_beside};
+use crate::tasks::Team;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -64,13 +65,13 @@ fn copy(from: &Path, to: &Path) -> Result<(), Error> {
 
 /// The mesh of a cycle with its names and its solution.
 fn dataset(layout: &Layout, cycle: u32, solved: &SolveResult) -> Result<Dataset, Error> {
-    let mesh = read_mesh(&layout.mesh(cycle))?.content;
+    let (mesh, stack) = read_mesh_and_stack(Team::alone(), &layout.mesh(cycle))?.content;
     let solution = read_solution(&layout.solution(cycle))?.content;
     let fields = solution.fields.into_iter().zip(&solved.fields);
     let fields =
         fields.map(|(field, named)| NamedField { name: named.name.clone(), kind: field.kind, values: field.values });
     let (names, fields) = (names::read(&layout.mesh(cycle))?, fields.collect());
-    Ok(Dataset { mesh, names, fields, ..Dataset::default() })
+    Ok(Dataset { mesh, stack, names, fields })
 }
 
 /// A row a cycle, with the functionals. Without times, so that it is the same file however often the loop was ended; the report has them.

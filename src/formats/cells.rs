@@ -1,4 +1,5 @@
 //! Values of cells to the vertices, and back.
+use super::Dataset;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Rows, Team};
@@ -109,6 +110,25 @@ pub fn vertices_to_cells(team: Team<'_>, mesh: &TetMesh, values: &[f64], width: 
             found.extend((0..width).map(|k| 0.25 * nodes.iter().map(|&v| values[v as usize * width + k]).sum::<f64>()));
         }
     })
+}
+
+impl Dataset {
+    /// The number of cells: the mesh's own tetrahedra, and those of the stack.
+    pub fn cells(&self) -> usize {
+        self.own_tets() + self.stack.cells.len()
+    }
+
+    /// As [`cells_to_vertices`], from values of the mesh's own tetrahedra followed by those of the cells of its stack.
+    pub fn cells_to_vertices(&self, team: Team<'_>, values: Vec<f64>, width: usize) -> Vec<f64> {
+        let values = if self.stack.is_empty() { values } else { self.stack.spread(values, width) };
+        cells_to_vertices(team, &self.mesh, &values, width)
+    }
+
+    /// As [`vertices_to_cells`], to values of the mesh's own tetrahedra followed by those of the cells of its stack.
+    pub fn vertices_to_cells(&self, team: Team<'_>, values: &[f64], width: usize) -> Vec<f64> {
+        let values = vertices_to_cells(team, &self.mesh, values, width);
+        if self.stack.is_empty() { values } else { self.stack.gather(values, width) }
+    }
 }
 
 #[cfg(test)]

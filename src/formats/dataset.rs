@@ -31,7 +31,7 @@ pub struct Dataset {
 
 impl Dataset {
     /// The same without what was cut out of the stack, as a file has it.
-    pub(super) fn as_written(&self) -> Cow<'_, Self> {
+    pub fn as_written(&self) -> Cow<'_, Self> {
         if self.stack.is_empty() {
             return Cow::Borrowed(self);
         }
@@ -42,7 +42,7 @@ impl Dataset {
 
     /// The number of the mesh's tetrahedra that are its own.
     pub(super) fn own_tets(&self) -> usize {
-        if self.stack.is_empty() { self.mesh.tets.len() } else { self.stack.own()[0] }
+        self.stack.own_tets(&self.mesh)
     }
 
     /// The fields without their names, as .sol and .solb carry them.

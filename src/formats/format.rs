@@ -134,7 +134,10 @@ impl Format {
 
     /// Whether prisms, pyramids and hexahedra are read and written.
     pub fn holds_stacks(self) -> bool {
-        matches!(self, Self::Su2 | Self::Vtu | Self::Ugrid(_) | Self::Msh { .. } | Self::Foam)
+        matches!(
+            self,
+            Self::Libmeshb | Self::Su2 | Self::Vtu | Self::Cgns | Self::Ugrid(_) | Self::Msh { .. } | Self::Foam
+        )
     }
 
     /// Whether files of the format hold fields and no mesh.

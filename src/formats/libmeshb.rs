@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 /// Reads a mesh.
 pub(super) fn read(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
-    let Read { content: mesh, notices } = io::mesh_of_bytes(team, path, bytes)?;
-    Ok(Read { content: Dataset { mesh, ..Dataset::default() }, notices })
+    let Read { content: (mesh, stack), notices } = io::mesh_of_bytes(team, path, bytes)?;
+    Ok(Read { content: Dataset { mesh, stack, ..Dataset::default() }, notices })
 }
 
 /// Reads the names and the fields that lie beside a mesh.
@@ -68,7 +68,7 @@ fn named(path: &Path, solution: Solution) -> Result<Vec<NamedField>, Error> {
 
 /// Writes a mesh; its fields and names beside it.
 pub(super) fn write(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
-    io::add_mesh(batch, team, path, &data.mesh)?;
+    io::add_mesh_and_stack(batch, team, path, (&data.mesh, &data.stack))?;
     let mut notices = Vec::new();
     let beside = solution_path(path);
     if !data.fields.is_empty() {

@@ -1,8 +1,8 @@
 //! Prisms, pyramids and hexahedra, and which formats have them.
 use super::format::vtk::{HEXAHEDRON, PRISM, PYRAMID};
 use super::{Format, error};
-use crate::mesh::TetMesh;
 use crate::mesh::io::Error;
+pub(super) use crate::mesh::io::join_stack as join;
 use crate::mesh::stack::{Kind, Stack};
 use std::path::Path;
 
@@ -19,13 +19,6 @@ pub(super) fn number_of(kind: Kind) -> i64 {
     VTK.into_iter().find(|(_, other)| *other == kind).map_or(0, |(number, _)| number)
 }
 
-/// Joins a stack to the mesh that was read with it. A notice may be added.
-pub(super) fn join(path: &Path, mesh: &mut TetMesh, stack: &mut Stack, notices: &mut Vec<String>) -> Result<(), Error> {
-    let told = stack.join(mesh).map_err(|error| error::at(path, error.place(), error.to_string()))?;
-    notices.extend(told.map(|told| format!("{}: {told}", path.display())));
-    Ok(())
-}
-
 /// Refuses to write prisms, pyramids and hexahedra to a file whose format has no place for them.
 ///
 /// # Errors
@@ -36,7 +29,7 @@ pub fn check_stack(path: &Path, stack: &Stack) -> Result<(), Error> {
         return Ok(());
     }
     let message = format!(
-        "the mesh has {}, for which this format is not written: give .su2, .ugrid, .msh, .vtu or a case of OpenFOAM, or split them by \
+        "the mesh has {}, for which this format is not written: give .meshb, .su2, .ugrid, .msh, .vtu, .cgns or a case of OpenFOAM, or split them by \
          `geo-adapt convert --split`",
         stack.told()
     );

@@ -68,7 +68,11 @@ fn file(mixed: &[i32]) -> Vec<u8> {
         node("AtCells", "FlowSolution_t", Data::None, cells),
         node("AtVertices", "FlowSolution_t", Data::None, vertices),
     ];
-    let zone = node("Zone", "Zone_t", Data::Ints(&[5, 2, 0]), zone);
+    whole(node("Zone", "Zone_t", Data::Ints(&[5, 2, 0]), zone))
+}
+
+/// A file of one zone.
+fn whole(zone: GroupBuilder) -> Vec<u8> {
     let base = node("Base", "CGNSBase_t", Data::Ints(&[3, 3]), vec![zone]);
     let mut builder = FileBuilder::new();
     builder.with_libver_bounds(LibVer::Earliest, LibVer::V18);
@@ -103,7 +107,56 @@ fn mixed_sections_that_cannot_be_are_told() {
     let place = Place::new();
     let refusal = |mixed: &[i32]| formats::read(&place.text("a.cgns", file(mixed))).unwrap_err().to_string();
     assert!(refusal(&[10, 1, 2, 3, 4, 10, 1, 3, 2]).contains("the nodes of element 2 end too early"));
-    assert!(refusal(&[10, 1, 2, 3, 4, 17, 1, 2, 3]).contains("elements of type 17"));
+    assert!(refusal(&[10, 1, 2, 3, 4, 18, 1, 2, 3]).contains("elements of type 18"));
     assert!(refusal(&[10, 1, 2, 3, 9]).contains("element 1 has the point 9; they count from 1 to 5"));
     assert!(refusal(&[10, 1, 2, 3, 4]).contains("1 elements, and ElementRange is 1 to 4"));
+}
+
+/// A tetrahedron on a prism, whose quadrilaterals are a condition by vertices.
+fn on_prism(prism: &[i32]) -> Vec<u8> {
+    let axis = |name: &str, values: [f64; 7]| node(name, "DataArray_t", Data::Reals(&values), vec![]);
+    let axes = vec![
+        axis("CoordinateX", [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]),
+        axis("CoordinateY", [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0]),
+        axis("CoordinateZ", [0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 1.5]),
+    ];
+    let points = node("PointList", "IndexArray_t", Data::Ints(&[1, 2, 3, 4, 5, 6]), vec![]);
+    let cells = vec![
+        node("GridLocation", "GridLocation_t", Data::Text("CellCenter"), vec![]),
+        node("q", "DataArray_t", Data::Reals(&[4.0, 1.0]), vec![]),
+    ];
+    let conditions = vec![node("side", "BC_t", Data::Text("BCWall"), vec![points])];
+    let zone = vec![
+        node("GridCoordinates", "GridCoordinates_t", Data::None, axes),
+        section("prisms", 14, [1, 1], prism),
+        section("rest", 20, [2, 3], &[10, 4, 5, 6, 7, 5, 4, 5, 7]),
+        section("quads", 7, [4, 6], &[1, 2, 5, 4, 2, 3, 6, 5, 3, 1, 4, 6]),
+        section("triangles", 5, [7, 9], &[1, 3, 2, 5, 6, 7, 6, 4, 7]),
+        node("ZoneBC", "ZoneBC_t", Data::None, conditions),
+        node("AtCells", "FlowSolution_t", Data::None, cells),
+    ];
+    whole(node("Zone", "Zone_t", Data::Ints(&[7, 2, 0]), zone))
+}
+
+#[test]
+fn prisms_and_quadrilaterals_are_read() {
+    let place = Place::new();
+    let found = formats::read(&place.text("a.cgns", on_prism(&[1, 2, 3, 4, 5, 6]))).unwrap().content;
+    let (mesh, stack, names) = (&found.mesh, &found.stack, &found.names);
+    assert_eq!((stack.cells.len(), stack.cells[0].nodes()), (1, &[0, 1, 2, 3, 4, 5][..]));
+    assert_eq!(mesh.tets.nodes[..stack.own()[0]], [[3, 4, 5, 6]]);
+    assert_eq!(stack.quads.nodes, [[0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]]);
+    let called = |reference: i32| names.triangles[&reference].name.as_deref().unwrap();
+    assert!(stack.quads.refs.iter().all(|&reference| called(reference) == "side"));
+    assert_eq!([0, 1, 2, 3].map(|at| called(mesh.triangles.refs[at])), ["rest", "side", "triangles", "triangles"]);
+    // A section of prisms beside one of tetrahedra makes no regions.
+    assert!(mesh.tets.refs.iter().all(|&reference| reference == 1) && names.tetrahedra.is_empty());
+    // The prism has 4, the tetrahedron 1: as below and at the top.
+    let values = &found.fields[0].values;
+    assert!((values[0] - 4.0).abs() < 1e-12 && (values[6] - 1.0).abs() < 1e-12, "{values:?}");
+    assert!((3..6).all(|v| (1.0..=4.0).contains(&values[v])), "{values:?}");
+    let refusal = |prism: &[i32]| formats::read(&place.text("a.cgns", on_prism(prism))).unwrap_err().to_string();
+    assert!(refusal(&[1, 2, 3, 4, 5]).contains("the nodes of element 1 end too early"));
+    assert!(refusal(&[1, 2, 3, 4, 5, 8]).contains("element 1 has the point 8; they count from 1 to 7"));
+    assert!(refusal(&[1, 2, 3, 4, 5, 5]).contains("it has vertex 5 twice"));
 }

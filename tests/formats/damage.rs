@@ -2,6 +2,7 @@
 //! than the file can hold.
 use crate::sample::{Place, dataset};
 use geo_adapt::formats::{self, Dataset, Format};
+use geo_adapt::mesh::samples::of_all_kinds;
 use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -158,11 +159,22 @@ fn damaged(valid: &[u8], random: &mut TestRng) -> Vec<u8> {
 
 /// Files of a format, by their names.
 fn seeds(names: &[(&str, bool)]) -> Vec<(String, Vec<u8>)> {
-    let place = Place::new();
     let mut data = dataset();
     data.names.triangles.remove(&11);
+    seeds_of(&data, names)
+}
+
+/// The same of a mesh with cells of all kinds.
+fn stacked(names: &[(&str, bool)]) -> Vec<(String, Vec<u8>)> {
+    let (mut mesh, mut stack) = of_all_kinds();
+    stack.join(&mut mesh).unwrap();
+    seeds_of(&Dataset { mesh, stack, ..Dataset::default() }, names)
+}
+
+fn seeds_of(data: &Dataset, names: &[(&str, bool)]) -> Vec<(String, Vec<u8>)> {
+    let place = Place::new();
     let written = names.iter().map(|&(name, text)| {
-        let (path, _) = place.write(name, &data, text);
+        let (path, _) = place.write(name, data, text);
         (name.to_owned(), std::fs::read(path).unwrap())
     });
     written.collect()
@@ -294,7 +306,8 @@ fn no_bytes_make_xdmf_with_its_arrays_panic() {
 
 #[test]
 fn no_bytes_make_cgns_panic() {
-    survive(seeds(&[("a.cgns", false)]), mesh);
+    let names = [("a.cgns", false)];
+    survive([seeds(&names), stacked(&names)].concat(), mesh);
 }
 
 #[test]
@@ -314,7 +327,8 @@ fn no_bytes_make_ugrid_panic() {
 
 #[test]
 fn no_bytes_make_libmeshb_panic() {
-    survive(seeds(&[("a.mesh", false), ("a.meshb", false)]), mesh);
+    let names = [("a.mesh", false), ("a.meshb", false)];
+    survive([seeds(&names), stacked(&names)].concat(), mesh);
 }
 
 #[test]

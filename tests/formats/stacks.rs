@@ -2,12 +2,15 @@
 use crate::sample::{Place, labels, read};
 use geo_adapt::formats::{self, Dataset, NamedField, Options};
 use geo_adapt::mesh::io::FieldKind;
+use geo_adapt::mesh::io::slices::MeshReader;
 use geo_adapt::mesh::samples::{of_all_kinds, on_prisms};
 use geo_adapt::mesh::stack::{Kind, Stack};
 use geo_adapt::tasks::Team;
 
 /// Files that carry them, and whether as text.
 const FILES: &[(&str, bool)] = &[
+    ("a.mesh", false),
+    ("a.meshb", false),
     ("a.su2", false),
     ("a.ugrid", false),
     ("a.b8.ugrid", false),
@@ -18,6 +21,7 @@ const FILES: &[(&str, bool)] = &[
     ("a.msh", true),
     ("a.msh2", false),
     ("a.msh2", true),
+    ("a.cgns", false),
     ("case/", false),
     ("case/", true),
 ];
@@ -103,7 +107,7 @@ fn fields_at_cells_come_to_the_vertices() {
 #[test]
 fn what_cannot_hold_them_says_so_and_what_to_do() {
     let (data, place) = (all_kinds(), Place::new());
-    for name in ["a.meshb", "a.vtk", "a.xdmf", "a.cgns", "a.inp", "a.bdf"] {
+    for name in ["a.vtk", "a.xdmf", "a.inp", "a.bdf"] {
         let path = place.path(name);
         let error = formats::write_on(Team::alone(), &path, &data, Options::default()).unwrap_err().to_string();
         let (told, remedy) =
@@ -116,4 +120,38 @@ fn what_cannot_hold_them_says_so_and_what_to_do() {
         place.write(name, &Dataset { stack: Stack::default(), ..data.clone() }, false);
         assert_eq!(read(&path).mesh.tets.len(), 10 + 2 + 3 + 6, "{name}");
     }
+}
+
+/// A text of libMeshb with cells of all kinds, with one row or more changed.
+fn changed(from: &str, to: &str) -> (Place, String) {
+    let place = Place::new();
+    let (path, _) = place.write("a.mesh", &all_kinds(), false);
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(text.matches(from).count(), 1, "{from}");
+    std::fs::write(&path, text.replace(from, to)).unwrap();
+    let error = formats::read(&path).unwrap_err().to_string();
+    assert!(error.starts_with(&path.display().to_string()), "{error}");
+    (place, error)
+}
+
+#[test]
+fn damage_to_lists_of_libmeshb_is_told_with_its_place() {
+    for (from, to, told) in [
+        ("\nPrisms\n1\n", "\nPrisms\n2\n", "the list ends here, before its count is reached"),
+        ("\nPyramids\n1\n1 2 3 4 9 1", "\nPyramids\n1\n1 2 3 4 99 1", "Pyramids 1 of 1: index 99 is out of range"),
+        ("\nPrisms\n1\n1 14 10 4 15 13 1", "\nPrisms\n1\n1 14 10 4 14 13 1", "it has vertex 14 twice"),
+        ("\nQuadrilaterals\n6\n10 13 12 11", "\nQuadrilaterals\n6\n10 13 12 9", "quadrilateral 1"),
+        ("\nHexahedra\n1\n10 11 12 13 1 2 3 4 1\n", "", "quadrilateral 1"),
+    ] {
+        let (_, error) = changed(from, to);
+        assert!(error.contains(told), "{error}");
+    }
+}
+
+#[test]
+fn what_is_read_by_slices_does_not_lose_them() {
+    let place = Place::new();
+    let (path, _) = place.write("a.meshb", &all_kinds(), false);
+    let error = MeshReader::open(&path).unwrap_err().to_string();
+    assert!(error.contains("Quadrilaterals: there are 6") && error.contains("`geo-adapt convert --split`"), "{error}");
 }

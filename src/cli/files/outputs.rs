@@ -46,7 +46,8 @@ impl Outputs {
             let lost = self.dataset(team, to, data, Options::default())?;
             return Ok(named(to, lost));
         }
-        io::add_mesh(&mut self.batch, team, &to.path, &data.mesh)?;
+        let written = data.as_written();
+        io::add_mesh_and_stack(&mut self.batch, team, &to.path, (&written.mesh, &written.stack))?;
         names::add(&mut self.batch, &to.path, &data.names, &[])?;
         Ok(Vec::new())
     }

@@ -17,8 +17,8 @@ pub fn mesh(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, io::Error> {
     if Format::of_file(path)? != Format::Libmeshb {
         return formats::read_on(team, path);
     }
-    let Read { content: mesh, notices } = io::read_mesh_on(team, path)?;
-    Ok(Read { content: Dataset { mesh, names: names::read(path)?, ..Dataset::default() }, notices })
+    let Read { content: (mesh, stack), notices } = io::read_mesh_and_stack(team, path)?;
+    Ok(Read { content: Dataset { mesh, stack, names: names::read(path)?, ..Dataset::default() }, notices })
 }
 
 /// Opens a volume mesh (.meshb) that is larger than memory, to be read by slices.

@@ -1,7 +1,8 @@
 //! Any program: a command for the shell that is told where the mesh is and where its solution shall go.
 use super::{Job, Solver, handover};
 use crate::cycle::data::{Call, Solved, quoted, text};
-use crate::formats::{Dataset, Format};
+use crate::formats::{self, Dataset, Format};
+use crate::mesh::stack::Stack;
 use regex_lite::Regex;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -136,6 +137,10 @@ impl Solver for Config {
         handover::check_solution_format(&self.adjoint_out)
             .map_err(|error| format!("[solver.command] adjoint_out: {error}"))?;
         Ok(())
+    }
+
+    fn check_stack(&self, stack: &Stack) -> Result<(), String> {
+        formats::check_stack(&self.mesh, stack).map_err(|error| format!("[solver.command] mesh: {error}"))
     }
 
     fn functionals(&self) -> Option<Vec<String>> {

@@ -33,8 +33,8 @@ pub fn write_mesh(path: &Path, data: &Dataset) -> Result<(), String> {
     let carries = matches!(Format::of(path), Ok(Format::Vtu));
     let mesh = TetMesh { association: Association::default(), ..data.mesh.clone() };
     let fields = if carries { data.fields.clone() } else { Vec::new() };
-    let told = formats::write(path, &Dataset { mesh, names: data.names.clone(), fields, ..Dataset::default() });
-    told.map(drop).map_err(|error| error.to_string())
+    let data = Dataset { mesh, stack: data.stack.clone(), names: data.names.clone(), fields };
+    formats::write(path, &data).map(drop).map_err(|error| error.to_string())
 }
 
 /// Writes the fields of the last solution.

@@ -12,7 +12,9 @@ pub use super::data::{Call, FieldName, GoalFlow, Solved};
 use crate::formats::{Dataset, NamedField};
 use crate::geometry::{Names, names};
 use crate::mesh::TetMesh;
-use crate::mesh::io::{read_mesh, read_solution};
+use crate::mesh::io::{read_mesh, read_mesh_and_stack, read_solution};
+use crate::mesh::stack::Stack;
+use crate::tasks::Team;
 use reference::Reference;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -88,6 +90,14 @@ pub trait Solver {
     /// What is missing, and how to get it.
     fn check(&self, base: &Path) -> Result<(), String>;
 
+    /// Refuses before the loop prisms, pyramids and hexahedra of the first mesh that it could not be given.
+    ///
+    /// # Errors
+    /// Why, and what to do.
+    fn check_stack(&self, _stack: &Stack) -> Result<(), String> {
+        Ok(())
+    }
+
     /// Files besides mesh and model that a solve depends on, as far as they are known. `base` is as above.
     fn inputs(&self, _base: &Path) -> Vec<PathBuf> {
         Vec::new()
@@ -157,7 +167,7 @@ pub struct Before<'a> {
 }
 
 impl Job<'_> {
-    /// The mesh alone.
+    /// The mesh alone; what is no tetrahedron is cut into such.
     ///
     /// # Errors
     /// When the file cannot be read.
@@ -165,12 +175,13 @@ impl Job<'_> {
         read_mesh(self.mesh).map(|read| read.content).map_err(|error| error.to_string())
     }
 
-    /// The mesh, the names of its references, and the fields of the solution before.
+    /// The mesh with its stack, the names of its references, and the fields of the solution before.
     ///
     /// # Errors
     /// When a file cannot be read.
     pub fn dataset(&self) -> Result<Dataset, String> {
-        let mesh = self.mesh()?;
+        let read = read_mesh_and_stack(Team::alone(), self.mesh).map_err(|error| error.to_string())?;
+        let (mesh, stack) = read.content;
         let names = names::read(self.mesh).map_err(|error| error.to_string())?;
         let mut fields = Vec::new();
         if let Some(Before { path, fields: named }) = &self.before {
@@ -182,6 +193,6 @@ impl Job<'_> {
                 .map(|(field, named)| NamedField { name: named.name.clone(), kind: field.kind, values: field.values })
                 .collect();
         }
-        Ok(Dataset { mesh, names, fields, ..Dataset::default() })
+        Ok(Dataset { mesh, stack, names, fields })
     }
 }

@@ -1,8 +1,6 @@
 //! Solutions (FlowSolution_t) at vertices and at cells. CGNS has scalars alone: VelocityX, VelocityY and VelocityZ are a vector.
-use super::super::cells::cells_to_vertices;
-use super::super::{NamedField, error};
+use super::super::{Dataset, NamedField, error};
 use super::{Element, Node, Section};
-use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, FieldKind};
 use crate::tasks::Team;
 use std::collections::BTreeMap;
@@ -21,17 +19,18 @@ pub(super) fn ends(kind: FieldKind) -> &'static [&'static str] {
 /// Reads the solutions of all zones.
 pub(super) fn read(
     zones: &[(&Node<'_>, Range<usize>, Vec<Section>)],
-    mesh: &TetMesh,
+    data: &Dataset,
     notices: &mut Vec<String>,
 ) -> Result<Vec<NamedField>, Error> {
     let mut order = Vec::new();
     let mut found: BTreeMap<String, (bool, Vec<f64>)> = BTreeMap::new();
     for (zone, points, sections) in zones {
-        let tets = sections.iter().flat_map(|section| &section.elements).filter_map(|element| match element {
+        let cells = sections.iter().flat_map(|section| &section.elements).filter_map(|element| match element {
             Element::Tet(at) => Some(*at),
+            Element::Cell(at) => Some(data.own_tets() + at),
             _ => None,
         });
-        let tets: Vec<usize> = tets.collect();
+        let cells: Vec<usize> = cells.collect();
         for solution in zone.labelled("FlowSolution_t")? {
             let at_cells = match solution.text_of("GridLocation").as_deref() {
                 None | Some("Vertex") => false,
@@ -40,13 +39,13 @@ pub(super) fn read(
             };
             for array in solution.labelled("DataArray_t")? {
                 let values = array.reals()?;
-                let room = if at_cells { tets.len() } else { points.len() };
+                let room = if at_cells { cells.len() } else { points.len() };
                 if values.len() != room {
                     let name = error::short(&array.name);
                     notices.push(format!("{name} has {} values for {room} places and is left out", values.len()));
                     continue;
                 }
-                let all = if at_cells { mesh.tets.len() } else { mesh.vertices.len() };
+                let all = if at_cells { data.cells() } else { data.mesh.vertices.len() };
                 let new = || (at_cells, vec![f64::NAN; all]);
                 if !found.contains_key(&array.name) {
                     order.push(array.name.clone());
@@ -58,7 +57,7 @@ pub(super) fn read(
                     continue;
                 }
                 if at_cells {
-                    values.iter().zip(&tets).for_each(|(value, &at)| to[at] = *value);
+                    values.iter().zip(&cells).for_each(|(value, &at)| to[at] = *value);
                 } else {
                     to[points.clone()].copy_from_slice(&values);
                 }
@@ -69,7 +68,7 @@ pub(super) fn read(
     for name in &order {
         let Some((at_cells, mut values)) = found.remove(name) else { continue };
         if at_cells {
-            values = cells_to_vertices(Team::alone(), mesh, &values, 1);
+            values = data.cells_to_vertices(Team::alone(), values, 1);
             notices.push(format!("{} was given at cells: their mean about each vertex is taken", error::short(name)));
         }
         at_vertices.insert(name.clone(), values);

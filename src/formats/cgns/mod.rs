@@ -1,5 +1,5 @@
 //! CGNS in its HDF5 form: nodes are groups with the attributes `name`, `label` and `type`, and their numbers are the dataset ` data`
-//! (CGNS/HDF5 File Mapping Manual). Unstructured zones of tetrahedra, triangles and lines are read.
+//! (CGNS/HDF5 File Mapping Manual). Unstructured zones of tetrahedra, pyramids, prisms, hexahedra, triangles, quadrilaterals and lines are read.
 //!
 //! Boundaries are conditions (BC_t), called as their family or themselves; what is in none is called as its section (Elements_t). In our
 //! files each section has the reference in a Descriptor_t.
@@ -11,7 +11,7 @@ mod write;
 pub(super) use write::write;
 
 use super::hdf5::{Hdf5, MAGIC, attribute, damaged};
-use super::{Dataset, error};
+use super::{Dataset, error, stacks};
 use crate::geometry::{Label, Names};
 use crate::mesh::TetMesh;
 use crate::mesh::io::{Error, Read};
@@ -21,11 +21,37 @@ use std::path::Path;
 
 /// What CGNS calls elements.
 pub(super) mod kind {
+    use crate::mesh::stack::Kind;
+
     pub const NODE: i64 = 2;
     pub const BAR_2: i64 = 3;
     pub const TRI_3: i64 = 5;
+    pub const QUAD_4: i64 = 7;
     pub const TETRA_4: i64 = 10;
+    pub const PYRA_5: i64 = 12;
+    pub const PENTA_6: i64 = 14;
+    pub const HEXA_8: i64 = 17;
     pub const MIXED: i64 = 20;
+
+    /// The numbers of cells that are no tetrahedra.
+    pub const OF_STACK: [(i64, Kind); 3] =
+        [(PYRA_5, Kind::Pyramid), (PENTA_6, Kind::Prism), (HEXA_8, Kind::Hexahedron)];
+
+    /// The kind of such cells.
+    pub fn of_stack(number: i64) -> Option<Kind> {
+        OF_STACK.into_iter().find(|(other, _)| *other == number).map(|(_, kind)| kind)
+    }
+
+    /// How many nodes an element has that is read.
+    pub fn nodes(number: i64) -> Option<usize> {
+        match number {
+            TETRA_4 | QUAD_4 => Some(4),
+            TRI_3 => Some(3),
+            BAR_2 => Some(2),
+            NODE => Some(1),
+            _ => of_stack(number).map(Kind::corners),
+        }
+    }
 }
 
 /// The descriptors of our sections.
@@ -111,7 +137,9 @@ struct Section {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Element {
     Tet(usize),
+    Cell(usize),
     Triangle(usize),
+    Quad(usize),
     Edge(usize),
     Other,
 }
@@ -135,8 +163,8 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     for zone in &zones {
         let base = data.mesh.vertices.len();
         coordinates(zone, &mut data.mesh)?;
-        let sections = sections::read(zone, base, &mut data.mesh)?;
-        boundary::refer(zone, base, &sections, &mut data.mesh, &mut labels)?;
+        let sections = sections::read(zone, base, &mut data)?;
+        boundary::refer(zone, base, &sections, &mut data, &mut labels)?;
         parts.push((zone, base..data.mesh.vertices.len(), sections));
     }
     if parts.is_empty() {
@@ -145,7 +173,8 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Read<Dataset>, Error> {
     if parts.len() > 1 {
         notices.push(format!("{}: {} zones; points that they share are not joined", path.display(), parts.len()));
     }
-    data.fields = fields::read(&parts, &data.mesh, &mut notices)?;
+    stacks::join(path, &mut data.mesh, &mut data.stack, &mut notices)?;
+    data.fields = fields::read(&parts, &data, &mut notices)?;
     data.names = labels.names;
     Ok(Read { content: data, notices })
 }

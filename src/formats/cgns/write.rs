@@ -1,8 +1,8 @@
 //! Writing CGNS: one base, one zone, a section for each reference.
-use super::super::sets::{Kind, groups, meaning};
+use super::super::sets::{Kind, meaning};
 use super::super::{Dataset, error};
 use super::fields::ends;
-use super::kind::{BAR_2, TETRA_4, TRI_3};
+use super::kind::{self, BAR_2, OF_STACK, QUAD_4, TETRA_4, TRI_3};
 use super::{NAME, REFERENCE};
 use crate::mesh::io::{Batch, Error};
 use hdf5_pure::{AttrValue, FileBuilder, FinishedGroup, GroupBuilder, LibVer};
@@ -96,7 +96,8 @@ impl Plain {
 /// Writes a mesh.
 pub(in super::super) fn write(batch: &mut Batch, path: &Path, data: &Dataset) -> Result<Vec<String>, Error> {
     let mesh = &data.mesh;
-    let elements = mesh.tets.len() + mesh.triangles.len() + mesh.edges.len();
+    let of_stack = data.stack.cells.len() + data.stack.quads.len();
+    let elements = mesh.tets.len() + mesh.triangles.len() + mesh.edges.len() + of_stack;
     if i32::try_from(mesh.vertices.len().max(elements)).is_err() {
         return Err(error::at(path, "its size", "more than 2^31 - 1 vertices or elements; write .vtu"));
     }
@@ -117,9 +118,9 @@ fn file(data: &Dataset, notices: &mut Vec<String>) -> Result<FileBuilder, hdf5_p
     builder.create_dataset(" hdf5version").with_i8_data(&bytes(&format!("{:\0<33}", "HDF5 Version 1.8")));
     builder.add_group(Node::new("CGNSLibraryVersion", "CGNSLibraryVersion_t", Data::Single(3.4))?.finish());
     let mesh = &data.mesh;
-    let dimension = if mesh.tets.is_empty() { 2 } else { 3 };
+    let dimension = if data.cells() == 0 { 2 } else { 3 };
     let mut base = Node::new("Base", "CGNSBase_t", Data::Int(vec![dimension, 3]))?;
-    let (vertices, cells) = (mesh.vertices.len(), if dimension == 3 { mesh.tets.len() } else { mesh.triangles.len() });
+    let (vertices, cells) = (mesh.vertices.len(), if dimension == 3 { data.cells() } else { mesh.triangles.len() });
     let mut zone = Node::new("Zone", "Zone_t", Data::Shaped(vec![vertices as i32, cells as i32, 0], [3, 1]))?;
     zone.add("ZoneType", "ZoneType_t", Data::Text("Unstructured"))?;
     let mut grid = Node::new("GridCoordinates", "GridCoordinates_t", Data::None)?;
@@ -137,9 +138,26 @@ fn file(data: &Dataset, notices: &mut Vec<String>) -> Result<FileBuilder, hdf5_p
     Ok(builder)
 }
 
-/// A section for each reference, and a boundary condition for each of triangles. Returns the families.
+/// The nodes of the elements by their dimension's place in [`Kind::ALL`], their type and their reference.
+fn parts(data: &Dataset) -> BTreeMap<(usize, i64, i32), Vec<u32>> {
+    let Dataset { mesh, stack, .. } = data;
+    let mut parts: BTreeMap<_, Vec<u32>> = BTreeMap::new();
+    let mut add = |kind: Kind, number: i64, nodes: &[u32], reference: i32| {
+        let at = Kind::ALL.iter().position(|other| *other == kind).unwrap_or(0);
+        parts.entry((at, number, reference)).or_default().extend(nodes);
+    };
+    mesh.tets.iter().for_each(|(nodes, reference)| add(Kind::Tetrahedra, TETRA_4, &nodes, reference));
+    for (number, of) in OF_STACK {
+        stack.cells_of(of).for_each(|cell| add(Kind::Tetrahedra, number, cell.nodes(), cell.reference));
+    }
+    mesh.triangles.iter().for_each(|(nodes, reference)| add(Kind::Triangles, TRI_3, &nodes, reference));
+    stack.quads.iter().for_each(|(nodes, reference)| add(Kind::Triangles, QUAD_4, &nodes, reference));
+    mesh.edges.iter().for_each(|(nodes, reference)| add(Kind::Edges, BAR_2, &nodes, reference));
+    parts
+}
+
+/// A section for each type and reference, and a boundary condition for each of triangles or quadrilaterals. Returns the families.
 fn elements(zone: &mut Node, data: &Dataset) -> Result<Vec<String>, hdf5_pure::Error> {
-    let mesh = &data.mesh;
     let (mut names, mut of_conditions) = (Plain::default(), Plain::default());
     // Names of other nodes of a zone and of a base.
     let taken = ["ZoneType", "GridCoordinates", "ZoneBC", "FlowSolution"];
@@ -148,39 +166,31 @@ fn elements(zone: &mut Node, data: &Dataset) -> Result<Vec<String>, hdf5_pure::E
     let mut families: BTreeMap<String, String> = BTreeMap::new();
     let mut conditions = Node::new("ZoneBC", "ZoneBC_t", Data::None)?;
     let (mut first, mut any) = (1, false);
-    let all = groups(data);
-    for wanted in Kind::ALL {
-        for (&(kind, reference), members) in all.iter().filter(|((kind, _), _)| *kind == wanted) {
-            let (number, nodes): (_, Vec<u32>) = match kind {
-                Kind::Tetrahedra => (TETRA_4, members.iter().flat_map(|&at| mesh.tets.nodes[at as usize]).collect()),
-                Kind::Triangles => (TRI_3, members.iter().flat_map(|&at| mesh.triangles.nodes[at as usize]).collect()),
-                Kind::Edges => (BAR_2, members.iter().flat_map(|&at| mesh.edges.nodes[at as usize]).collect()),
-            };
-            let called = meaning(data, (kind, reference)).name;
-            let shown = called.clone().unwrap_or_else(|| format!("{} {reference}", kind.unnamed()));
-            let last = first + members.len() as i32 - 1;
-            let name = names.name(&shown, LONGEST);
-            let mut section = Node::new(&name, "Elements_t", Data::Int(vec![number as i32, 0]))?;
-            section.add("ElementRange", "IndexRange_t", Data::Int(vec![first, last]))?;
-            let nodes = nodes.iter().map(|&node| node as i32 + 1).collect();
-            section.add("ElementConnectivity", "DataArray_t", Data::Int(nodes))?;
-            section.add(REFERENCE, "Descriptor_t", Data::Text(&reference.to_string()))?;
-            if let Some(called) = &called {
-                section.add(NAME, "Descriptor_t", Data::Text(called))?;
-            }
-            zone.group.add_group(section.finish());
-            if kind == Kind::Triangles {
-                let family = families.entry(shown.clone()).or_insert_with(|| of_families.name(&shown, LONGEST));
-                let mut condition =
-                    Node::new(&of_conditions.name(&shown, LONGEST), "BC_t", Data::Text("FamilySpecified"))?;
-                condition.add("PointRange", "IndexRange_t", Data::Shaped(vec![first, last], [2, 1]))?;
-                condition.add("GridLocation", "GridLocation_t", Data::Text("FaceCenter"))?;
-                condition.add("FamilyName", "FamilyName_t", Data::Text(family))?;
-                conditions.group.add_group(condition.finish());
-                any = true;
-            }
-            first = last + 1;
+    for ((at, number, reference), nodes) in parts(data) {
+        let of = Kind::ALL[at];
+        let called = meaning(data, (of, reference)).name;
+        let shown = called.clone().unwrap_or_else(|| format!("{} {reference}", of.unnamed()));
+        let last = first + (nodes.len() / kind::nodes(number).unwrap_or(1)) as i32 - 1;
+        let name = names.name(&shown, LONGEST);
+        let mut section = Node::new(&name, "Elements_t", Data::Int(vec![number as i32, 0]))?;
+        section.add("ElementRange", "IndexRange_t", Data::Int(vec![first, last]))?;
+        let nodes = nodes.iter().map(|&node| node as i32 + 1).collect();
+        section.add("ElementConnectivity", "DataArray_t", Data::Int(nodes))?;
+        section.add(REFERENCE, "Descriptor_t", Data::Text(&reference.to_string()))?;
+        if let Some(called) = &called {
+            section.add(NAME, "Descriptor_t", Data::Text(called))?;
         }
+        zone.group.add_group(section.finish());
+        if of == Kind::Triangles {
+            let family = families.entry(shown.clone()).or_insert_with(|| of_families.name(&shown, LONGEST));
+            let mut condition = Node::new(&of_conditions.name(&shown, LONGEST), "BC_t", Data::Text("FamilySpecified"))?;
+            condition.add("PointRange", "IndexRange_t", Data::Shaped(vec![first, last], [2, 1]))?;
+            condition.add("GridLocation", "GridLocation_t", Data::Text("FaceCenter"))?;
+            condition.add("FamilyName", "FamilyName_t", Data::Text(family))?;
+            conditions.group.add_group(condition.finish());
+            any = true;
+        }
+        first = last + 1;
     }
     if any {
         zone.group.add_group(conditions.finish());

@@ -18,9 +18,7 @@ pub use field::{
 };
 pub use write::write_poly_mesh;
 
-use super::{Dataset, NamedField, cells_to_vertices, error, vertices_to_cells};
-use crate::geometry::Names;
-use crate::mesh::TetMesh;
+use super::{Dataset, NamedField};
 use crate::mesh::io::{Batch, Error, Read};
 use crate::tasks::Team;
 use poly_mesh::PolyMesh;
@@ -59,17 +57,12 @@ fn case_of(path: &Path) -> PathBuf {
     case.unwrap_or(path).to_owned()
 }
 
-/// Reads a mesh of tetrahedra alone of a case and the names of its references, without fields.
+/// Reads the mesh of a case and the names of its references, without fields.
 ///
 /// # Errors
-/// As [`read`]; and when there are other cells.
-pub fn read_mesh(path: &Path) -> Result<(TetMesh, Names), Error> {
-    let folder = poly_mesh_of(path);
-    let Dataset { mesh, stack, names, .. } = poly_mesh::read(&folder)?.data;
-    if stack.is_empty() {
-        return Ok((mesh, names));
-    }
-    Err(error::at(&folder, "cells", format!("there are {}, and tetrahedra alone are wanted here", stack.told())))
+/// As [`read`].
+pub fn read_mesh(path: &Path) -> Result<Dataset, Error> {
+    Ok(poly_mesh::read(&poly_mesh_of(path))?.data)
 }
 
 /// The cells on both sides of the inner faces of a case, in their order: owner and neighbour.
@@ -106,9 +99,9 @@ pub fn read_on(team: Team<'_>, path: &Path) -> Result<Read<Dataset>, Error> {
                     let width = kind.values();
                     if !data.stack.is_empty() {
                         let rows = cells.iter().flat_map(|&cell| &values[cell as usize * width..][..width]);
-                        values = data.stack.spread(rows.copied().collect(), width);
+                        values = rows.copied().collect();
                     }
-                    let values = cells_to_vertices(team, &data.mesh, &values, width);
+                    let values = data.cells_to_vertices(team, values, width);
                     fields.push(NamedField { name, kind, values });
                 }
                 Err(class) => passed.push(format!("{name} ({class})")),
@@ -220,17 +213,13 @@ pub fn add(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset, text:
     batch.folder(&time)?;
     let entries: Vec<_> = patches.into_iter().map(|patch| (patch.name, "type zeroGradient;".to_owned())).collect();
     for NamedField { name, kind, values } in &data.fields {
-        let mut values = vertices_to_cells(team, mesh, values, kind.values());
-        if !data.stack.is_empty() {
-            values = data.stack.gather(values, kind.values());
-        }
+        let values = data.vertices_to_cells(team, values, kind.values());
         let file = name.replace(|c: char| !c.is_ascii_alphanumeric() && !"_.-".contains(c), "_");
         if file != *name {
             notices.push(format!("the field {name} is called {file} there"));
         }
-        let cells = data.own_tets() + data.stack.cells.len();
         let field = CellField { kind: *kind, values };
-        field::add_cell_field(batch, &time.join(file), &field, cells, &entries, text)?;
+        field::add_cell_field(batch, &time.join(file), &field, data.cells(), &entries, text)?;
     }
     Ok(notices)
 }

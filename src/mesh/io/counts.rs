@@ -3,7 +3,7 @@ use super::keyword::Keyword;
 use super::rows::Slice;
 use crate::mesh::TetMesh;
 
-/// Numbers of the entities of a mesh and of its lists, as a file has them. Sections without rows are left out of a file.
+/// Numbers of the entities of a mesh without a stack and of its lists, as a file has them. Sections without rows are left out of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct MeshCounts {
     /// Vertices, at most `u32::MAX`.
@@ -71,7 +71,11 @@ impl MeshCounts {
             Keyword::OnVertices => self.on_vertices,
             Keyword::OnEdges => self.on_edges,
             Keyword::OnFaces => self.on_faces,
-            Keyword::SolAtVertices => 0,
+            Keyword::Quadrilaterals
+            | Keyword::Pyramids
+            | Keyword::Prisms
+            | Keyword::Hexahedra
+            | Keyword::SolAtVertices => 0,
         }
     }
 }

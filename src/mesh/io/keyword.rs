@@ -1,5 +1,6 @@
 //! The keywords of libMeshb files: name in ASCII, code in binary, values a row.
 //! Source: the enumeration and the format table of libMeshb 7 (Maréchal, INRIA).
+use crate::mesh::stack::Kind;
 
 /// A keyword whose entities are read and written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,7 +8,11 @@ pub(super) enum Keyword {
     Vertices,
     Edges,
     Triangles,
+    Quadrilaterals,
     Tetrahedra,
+    Pyramids,
+    Prisms,
+    Hexahedra,
     Corners,
     Ridges,
     RequiredVertices,
@@ -28,11 +33,15 @@ pub(super) const PRECISION: i32 = 155;
 
 impl Keyword {
     /// All of them, in the order in which they are written.
-    pub(super) const ALL: [Self; 13] = [
+    pub(super) const ALL: [Self; 17] = [
         Self::Vertices,
         Self::Edges,
         Self::Triangles,
+        Self::Quadrilaterals,
         Self::Tetrahedra,
+        Self::Pyramids,
+        Self::Prisms,
+        Self::Hexahedra,
         Self::Corners,
         Self::Ridges,
         Self::RequiredVertices,
@@ -50,7 +59,11 @@ impl Keyword {
             Self::Vertices => (4, "Vertices"),
             Self::Edges => (5, "Edges"),
             Self::Triangles => (6, "Triangles"),
+            Self::Quadrilaterals => (7, "Quadrilaterals"),
             Self::Tetrahedra => (8, "Tetrahedra"),
+            Self::Pyramids => (49, "Pyramids"),
+            Self::Prisms => (9, "Prisms"),
+            Self::Hexahedra => (10, "Hexahedra"),
             Self::Corners => (13, "Corners"),
             Self::Ridges => (14, "Ridges"),
             Self::RequiredVertices => (15, "RequiredVertices"),
@@ -92,13 +105,26 @@ impl Keyword {
         }
     }
 
+    /// The cells of its rows, where they are no tetrahedra.
+    pub(super) fn kind(self) -> Option<Kind> {
+        match self {
+            Self::Pyramids => Some(Kind::Pyramid),
+            Self::Prisms => Some(Kind::Prism),
+            Self::Hexahedra => Some(Kind::Hexahedron),
+            _ => None,
+        }
+    }
+
     /// Numbers of integers and reals in a row; a solution's reals follow from its header.
     pub(super) fn row(self) -> (usize, usize) {
         match self {
             Self::Vertices => (1, 3),
             Self::Edges => (3, 0),
             Self::Triangles => (4, 0),
-            Self::Tetrahedra => (5, 0),
+            Self::Quadrilaterals | Self::Tetrahedra => (5, 0),
+            Self::Pyramids => (6, 0),
+            Self::Prisms => (7, 0),
+            Self::Hexahedra => (9, 0),
             Self::Corners | Self::Ridges | Self::RequiredVertices | Self::RequiredEdges | Self::RequiredTriangles => {
                 (1, 0)
             }
@@ -111,10 +137,7 @@ impl Keyword {
 }
 
 /// Names of keywords that are passed over, for the notice about a binary file, which has only codes.
-const PASSED_OVER: [(i32, &str); 29] = [
-    (7, "Quadrilaterals"),
-    (9, "Prisms"),
-    (10, "Hexahedra"),
+const PASSED_OVER: [(i32, &str); 25] = [
     (18, "RequiredQuadrilaterals"),
     (19, "TangentAtEdgeVertices"),
     (20, "NormalAtVertices"),
@@ -126,7 +149,6 @@ const PASSED_OVER: [(i32, &str); 29] = [
     (30, "TetrahedraP2"),
     (43, "VerticesOnGeometricQuadrilaterals"),
     (44, "EdgesOnGeometricEdges"),
-    (49, "Pyramids"),
     (50, "BoundingBox"),
     (52, "PrivateTable"),
     (55, "TrianglesOnGeometricTriangles"),

@@ -31,10 +31,12 @@ pub use error::Error;
 pub use missing::meant;
 pub use place::{check_writable, follow};
 pub use points::read_points;
+pub use read::join_stack;
 pub use rows::Slice;
 pub use solution::{FieldKind, Solution, SolutionField};
 
 use super::TetMesh;
+use super::stack::Stack;
 use crate::tasks::Team;
 use std::path::Path;
 
@@ -47,7 +49,8 @@ pub struct Read<T> {
     pub notices: Vec<String>,
 }
 
-/// Reads .mesh or .meshb, told apart by the content; every index in range, every coordinate finite.
+/// Reads .mesh or .meshb, told apart by the content; every index in range, every coordinate finite. Prisms, pyramids and hexahedra are cut
+/// into tetrahedra, which come behind the others ([`Stack::join`]).
 ///
 /// # Errors
 /// [`Error::System`] when the file cannot be read, [`Error::Content`] when what it says cannot be true.
@@ -60,14 +63,23 @@ pub fn read_mesh(path: &Path) -> Result<Read<TetMesh>, Error> {
 /// # Errors
 /// As there.
 pub fn read_mesh_on(team: Team<'_>, path: &Path) -> Result<Read<TetMesh>, Error> {
-    read::mesh_from(team, path, &read_file_on(team, path)?)
+    let Read { content: (mesh, _), notices } = read_mesh_and_stack(team, path)?;
+    Ok(Read { content: mesh, notices })
 }
 
-/// As [`read_mesh_on`], from the bytes of such a file; `path` is what errors say.
+/// As [`read_mesh_on`], with the stack that the mesh was joined with.
 ///
 /// # Errors
 /// As there.
-pub fn mesh_of_bytes(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
+pub fn read_mesh_and_stack(team: Team<'_>, path: &Path) -> Result<Read<(TetMesh, Stack)>, Error> {
+    read::mesh_from(team, path, &read_file_on(team, path)?)
+}
+
+/// As [`read_mesh_and_stack`], from the bytes of such a file; `path` is what errors say.
+///
+/// # Errors
+/// As there.
+pub fn mesh_of_bytes(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<(TetMesh, Stack)>, Error> {
     read::mesh_from(team, path, bytes)
 }
 
@@ -96,7 +108,20 @@ pub fn write_mesh(path: &Path, mesh: &TetMesh) -> Result<(), Error> {
 /// # Errors
 /// As there.
 pub fn add_mesh(batch: &mut Batch, team: Team<'_>, path: &Path, mesh: &TetMesh) -> Result<(), Error> {
-    write::mesh_to(batch, team, path, mesh)
+    add_mesh_and_stack(batch, team, path, (mesh, &Stack::default()))
+}
+
+/// As [`add_mesh`], with the stack of a mesh, which is given without what was cut out of it ([`Stack::without`]).
+///
+/// # Errors
+/// As there.
+pub fn add_mesh_and_stack(
+    batch: &mut Batch,
+    team: Team<'_>,
+    path: &Path,
+    both: (&TetMesh, &Stack),
+) -> Result<(), Error> {
+    write::mesh_to(batch, team, path, both)
 }
 
 /// Reads .sol or .solb (fields at vertices), told apart by the content; every value finite.

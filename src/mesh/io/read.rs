@@ -5,20 +5,33 @@ use super::cursor::{Cursor, Fault, columns, room, rows};
 use super::keyword::Keyword;
 use super::source::{Contents, Encoding, Section, Source};
 use super::{Error, Read, Solution, SolutionField};
+use crate::mesh::stack::{Cell, Kind, Stack};
 use crate::mesh::vector::Vec3;
 use crate::mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
 
-/// A mesh from the bytes of a file.
-pub(super) fn mesh_from(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<TetMesh>, Error> {
+/// A mesh from the bytes of a file, with its stack joined to it.
+pub(super) fn mesh_from(team: Team<'_>, path: &Path, bytes: &[u8]) -> Result<Read<(TetMesh, Stack)>, Error> {
     let contents = Contents::of(path, bytes)?;
     check_mesh(&contents)?;
-    let content = match contents.source.encoding {
+    let (mut mesh, mut stack) = match contents.source.encoding {
         Encoding::Ascii => mesh::<AsciiCursor>(team, &contents)?,
         Encoding::Binary(_) => mesh::<BinaryCursor>(team, &contents)?,
     };
-    Ok(Read { content, notices: mesh_notices(contents) })
+    let mut notices = mesh_notices(contents);
+    join_stack(path, &mut mesh, &mut stack, &mut notices)?;
+    Ok(Read { content: (mesh, stack), notices })
+}
+
+/// Joins a stack to the mesh that was read with it. A notice may be added.
+///
+/// # Errors
+/// [`Error::Content`] where they do not fit together.
+pub fn join_stack(path: &Path, mesh: &mut TetMesh, stack: &mut Stack, notices: &mut Vec<String>) -> Result<(), Error> {
+    let told = stack.join(mesh).map_err(|error| Error::content(path, error.place(), error.to_string()))?;
+    notices.extend(told.map(|told| format!("{}: {told}", path.display())));
+    Ok(())
 }
 
 /// A mesh has vertices, and no more than indices can count.
@@ -73,10 +86,10 @@ pub(super) fn solution_notices(contents: Contents<'_>) -> Vec<String> {
     notices
 }
 
-fn mesh<'a, C: Cursor<'a>>(team: Team<'_>, contents: &Contents<'a>) -> Result<TetMesh, Error> {
+fn mesh<'a, C: Cursor<'a>>(team: Team<'_>, contents: &Contents<'a>) -> Result<(TetMesh, Stack), Error> {
     let source = &contents.source;
     let vertices = contents.count(Keyword::Vertices);
-    let mut mesh = TetMesh::default();
+    let (mut mesh, mut stack) = (TetMesh::default(), Stack::default());
     for section in &contents.sections {
         let list = || indices::<C>(source, section, contents.count(section.keyword.target()));
         match section.keyword {
@@ -86,6 +99,14 @@ fn mesh<'a, C: Cursor<'a>>(team: Team<'_>, contents: &Contents<'a>) -> Result<Te
             Keyword::Edges => mesh.edges = elements::<C, 2>(team, source, section, vertices)?,
             Keyword::Triangles => mesh.triangles = elements::<C, 3>(team, source, section, vertices)?,
             Keyword::Tetrahedra => mesh.tets = elements::<C, 4>(team, source, section, vertices)?,
+            Keyword::Quadrilaterals => stack.quads = elements::<C, 4>(team, source, section, vertices)?,
+            Keyword::Pyramids => {
+                push(&mut stack, Kind::Pyramid, elements::<C, 5>(team, source, section, vertices)?);
+            }
+            Keyword::Prisms => push(&mut stack, Kind::Prism, elements::<C, 6>(team, source, section, vertices)?),
+            Keyword::Hexahedra => {
+                push(&mut stack, Kind::Hexahedron, elements::<C, 8>(team, source, section, vertices)?);
+            }
             Keyword::Corners => mesh.corners = list()?,
             Keyword::Ridges => mesh.ridges = list()?,
             Keyword::RequiredVertices => mesh.required_vertices = list()?,
@@ -97,7 +118,12 @@ fn mesh<'a, C: Cursor<'a>>(team: Team<'_>, contents: &Contents<'a>) -> Result<Te
             Keyword::SolAtVertices => {}
         }
     }
-    Ok(mesh)
+    Ok((mesh, stack))
+}
+
+/// Adds cells to a stack.
+fn push<const N: usize>(stack: &mut Stack, kind: Kind, cells: Elements<N>) {
+    stack.cells.extend(cells.iter().map(|(nodes, reference)| Cell::new(kind, &nodes, reference)));
 }
 
 /// A row of Vertices.

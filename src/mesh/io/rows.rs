@@ -3,6 +3,7 @@ use super::Solution;
 use super::keyword::Keyword;
 use super::sink::Sink;
 use super::source::Section;
+use crate::mesh::stack::{Cell, Kind, Stack};
 use crate::mesh::vector::Vec3;
 use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
 use std::ops::Range;
@@ -18,6 +19,10 @@ pub enum Slice<'a> {
     Triangles(&'a [[u32; 3]], &'a [i32]),
     /// Nodes, shape (n, 4), and references, shape (n,), of tetrahedra.
     Tets(&'a [[u32; 4]], &'a [i32]),
+    /// Nodes, shape (n, 4), and references, shape (n,), of quadrilaterals.
+    Quads(&'a [[u32; 4]], &'a [i32]),
+    /// The cells of a kind: the cells of a stack, and the numbers of these among them, shape (n,).
+    Cells(Kind, &'a [Cell], &'a [u32]),
     /// Vertices that are corners, shape (n,).
     Corners(&'a [u32]),
     /// Edges that are ridges, shape (n,).
@@ -57,7 +62,11 @@ impl<'a> Slice<'a> {
             Keyword::OnVertices => Self::OnVertices(&on.vertices),
             Keyword::OnEdges => Self::OnEdges(&on.edges),
             Keyword::OnFaces => Self::OnFaces(&on.faces),
-            Keyword::SolAtVertices => return None,
+            Keyword::Quadrilaterals
+            | Keyword::Pyramids
+            | Keyword::Prisms
+            | Keyword::Hexahedra
+            | Keyword::SolAtVertices => return None,
         })
     }
 
@@ -68,6 +77,10 @@ impl<'a> Slice<'a> {
             Self::Edges(..) => Keyword::Edges,
             Self::Triangles(..) => Keyword::Triangles,
             Self::Tets(..) => Keyword::Tetrahedra,
+            Self::Quads(..) => Keyword::Quadrilaterals,
+            Self::Cells(Kind::Pyramid, ..) => Keyword::Pyramids,
+            Self::Cells(Kind::Prism, ..) => Keyword::Prisms,
+            Self::Cells(Kind::Hexahedron, ..) => Keyword::Hexahedra,
             Self::Corners(_) => Keyword::Corners,
             Self::Ridges(_) => Keyword::Ridges,
             Self::RequiredVertices(_) => Keyword::RequiredVertices,
@@ -86,7 +99,8 @@ impl<'a> Slice<'a> {
             Self::Vertices(points, _) => points.len(),
             Self::Edges(nodes, _) => nodes.len(),
             Self::Triangles(nodes, _) => nodes.len(),
-            Self::Tets(nodes, _) => nodes.len(),
+            Self::Tets(nodes, _) | Self::Quads(nodes, _) => nodes.len(),
+            Self::Cells(_, _, numbers) => numbers.len(),
             Self::Corners(indices)
             | Self::Ridges(indices)
             | Self::RequiredVertices(indices)
@@ -117,7 +131,13 @@ impl<'a> Slice<'a> {
             }
             Self::Edges(nodes, refs) => element_rows(&nodes[rows.clone()], &refs[rows], sink),
             Self::Triangles(nodes, refs) => element_rows(&nodes[rows.clone()], &refs[rows], sink),
-            Self::Tets(nodes, refs) => element_rows(&nodes[rows.clone()], &refs[rows], sink),
+            Self::Tets(nodes, refs) | Self::Quads(nodes, refs) => {
+                element_rows(&nodes[rows.clone()], &refs[rows], sink);
+            }
+            Self::Cells(_, cells, numbers) => {
+                let cells = numbers[rows].iter().map(|&number| &cells[number as usize]);
+                cells.for_each(|cell| element_row(cell.nodes(), cell.reference, sink));
+            }
             Self::Corners(indices)
             | Self::Ridges(indices)
             | Self::RequiredVertices(indices)
@@ -134,9 +154,43 @@ impl<'a> Slice<'a> {
     }
 }
 
+/// A mesh without what was cut out of its stack, and the stack: what a file holds.
+pub(super) struct Whole<'a> {
+    mesh: &'a TetMesh,
+    stack: &'a Stack,
+    /// The numbers of the cells of each kind, in the order of [`Kind::ALL`].
+    numbers: [Vec<u32>; 3],
+}
+
+impl<'a> Whole<'a> {
+    pub(super) fn of(mesh: &'a TetMesh, stack: &'a Stack) -> Self {
+        let of_kind =
+            |kind| (0..).zip(&stack.cells).filter(move |(_, cell)| cell.kind == kind).map(|(number, _)| number);
+        Self { mesh, stack, numbers: Kind::ALL.map(|kind| of_kind(kind).collect()) }
+    }
+
+    /// All rows of a keyword; none of one that a mesh has not.
+    pub(super) fn slice(&self, keyword: Keyword) -> Option<Slice<'_>> {
+        let Stack { cells, quads, .. } = self.stack;
+        match (keyword, keyword.kind()) {
+            (Keyword::Quadrilaterals, _) => Some(Slice::Quads(&quads.nodes, &quads.refs)),
+            (_, None) => Slice::of(self.mesh, keyword),
+            (_, Some(kind)) => {
+                let at = Kind::ALL.iter().position(|other| *other == kind)?;
+                Some(Slice::Cells(kind, cells, &self.numbers[at]))
+            }
+        }
+    }
+
+    /// Its sections, empty ones left out.
+    pub(super) fn sections(&self) -> Vec<Section> {
+        sections(|keyword| self.slice(keyword).map_or(0, |slice| slice.len()))
+    }
+}
+
 /// What is written.
 pub(super) enum Content<'a> {
-    Mesh(&'a TetMesh),
+    Mesh(Whole<'a>),
     Solution(&'a Solution),
 }
 
@@ -144,8 +198,8 @@ impl Content<'_> {
     /// Gives the sink some rows of a keyword.
     pub(super) fn rows(&self, keyword: Keyword, rows: Range<usize>, sink: &mut impl Sink) {
         match self {
-            Content::Mesh(mesh) => {
-                if let Some(slice) = Slice::of(mesh, keyword) {
+            Content::Mesh(whole) => {
+                if let Some(slice) = whole.slice(keyword) {
                     slice.write(rows, sink);
                 }
             }
@@ -155,11 +209,6 @@ impl Content<'_> {
             }
         }
     }
-}
-
-/// The sections of a mesh, empty ones left out.
-pub(super) fn mesh_sections(mesh: &TetMesh) -> Vec<Section> {
-    sections(|keyword| Slice::of(mesh, keyword).map_or(0, |slice| slice.len()))
 }
 
 /// Sections with so many rows, empty ones left out.
@@ -180,11 +229,14 @@ pub(super) fn solution_sections(solution: &Solution) -> Vec<Section> {
 }
 
 fn element_rows<const N: usize>(nodes: &[[u32; N]], refs: &[i32], sink: &mut impl Sink) {
-    for (nodes, &reference) in nodes.iter().zip(refs) {
-        nodes.iter().for_each(|&node| sink.int(i64::from(node) + 1));
-        sink.int(reference.into());
-        sink.end_row();
-    }
+    nodes.iter().zip(refs).for_each(|(nodes, &reference)| element_row(nodes, reference, sink));
+}
+
+#[inline(always)]
+fn element_row(nodes: &[u32], reference: i32, sink: &mut impl Sink) {
+    nodes.iter().for_each(|&node| sink.int(i64::from(node) + 1));
+    sink.int(reference.into());
+    sink.end_row();
 }
 
 fn index_rows(indices: &[u32], sink: &mut impl Sink) {

@@ -1,18 +1,25 @@
 //! From a mesh or a solution to a file.
 use super::keyword::Keyword;
 use super::layout::{Layout, version};
-use super::rows::{Content, Slice, mesh_sections, solution_sections};
+use super::rows::{Content, Slice, Whole, solution_sections};
 use super::{Batch, Error, MeshCounts, Solution, SolutionField};
+use crate::mesh::stack::Stack;
 use crate::mesh::{OnFace, TetMesh};
 use crate::tasks::{GRAIN, Team};
 use std::path::Path;
 
-/// Writes a mesh by the path's extension.
-pub(super) fn mesh_to(batch: &mut Batch, team: Team<'_>, path: &Path, mesh: &TetMesh) -> Result<(), Error> {
+/// Writes a mesh without what was cut out of its stack, and the stack, by the path's extension.
+pub(super) fn mesh_to(
+    batch: &mut Batch,
+    team: Team<'_>,
+    path: &Path,
+    (mesh, stack): (&TetMesh, &Stack),
+) -> Result<(), Error> {
     let binary = is_binary(path, "mesh")?;
-    check_mesh(team, mesh).map_err(|(place, message)| Error::content(path, place, message))?;
-    let sections = mesh_sections(mesh);
-    let layout = Layout::of(binary, version(&sections), &sections, Content::Mesh(mesh));
+    let whole = Whole::of(mesh, stack);
+    check_mesh(team, mesh, &whole).map_err(|(place, message)| Error::content(path, place, message))?;
+    let sections = whole.sections();
+    let layout = Layout::of(binary, version(&sections), &sections, Content::Mesh(whole));
     batch.add_laid_out(path, true, |to| layout.write(team, to))
 }
 
@@ -46,10 +53,10 @@ pub(super) type Fault = (String, String);
 const CHECKED: usize = 4 * GRAIN;
 
 /// What is written must be readable again.
-fn check_mesh(team: Team<'_>, mesh: &TetMesh) -> Result<(), Fault> {
+fn check_mesh(team: Team<'_>, mesh: &TetMesh, whole: &Whole<'_>) -> Result<(), Fault> {
     let counts = MeshCounts::of(mesh);
     check_counts(&counts)?;
-    let mut slices = Keyword::ALL.into_iter().filter_map(|keyword| Slice::of(mesh, keyword));
+    let mut slices = Keyword::ALL.into_iter().filter_map(|keyword| whole.slice(keyword));
     slices.try_for_each(|slice| check_slice(team, &slice, 0, &counts))
 }
 
@@ -72,7 +79,8 @@ pub(super) fn check_slice(team: Team<'_>, slice: &Slice<'_>, start: usize, count
         }
         Slice::Edges(nodes, refs) => rows.are_elements(nodes, refs, limit),
         Slice::Triangles(nodes, refs) => rows.are_elements(nodes, refs, limit),
-        Slice::Tets(nodes, refs) => rows.are_elements(nodes, refs, limit),
+        Slice::Tets(nodes, refs) | Slice::Quads(nodes, refs) => rows.are_elements(nodes, refs, limit),
+        Slice::Cells(_, cells, numbers) => rows.are_below(limit, |k| cells[numbers[k] as usize].nodes()),
         Slice::Corners(indices)
         | Slice::Ridges(indices)
         | Slice::RequiredVertices(indices)
@@ -137,9 +145,9 @@ impl Checked<'_> {
         self.are_below(limit, |k| nodes[k])
     }
 
-    fn are_below<const N: usize>(&self, limit: usize, row: impl Fn(usize) -> [u32; N] + Sync) -> Result<(), Fault> {
+    fn are_below<R: AsRef<[u32]>>(&self, limit: usize, row: impl Fn(usize) -> R + Sync) -> Result<(), Fault> {
         self.none_is(
-            |k| row(k).iter().any(|&index| index as usize >= limit),
+            |k| row(k).as_ref().iter().any(|&index| index as usize >= limit),
             || format!("an index is out of range: {limit} are there, counted from 0; nothing is written"),
         )
     }

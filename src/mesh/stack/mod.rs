@@ -106,6 +106,18 @@ impl Stack {
         self.own
     }
 
+    /// The number of a mesh's tetrahedra that are its own, with a stack or without.
+    pub fn own_tets(&self, mesh: &TetMesh) -> usize {
+        if self.is_empty() { mesh.tets.len() } else { self.own[0] }
+    }
+
+    /// For each tetrahedron of the mesh the number of its cell: of those of its own, behind which those of the stack come.
+    pub fn cells_of_tets(&self, mesh: &TetMesh) -> Vec<u32> {
+        let own = self.own_tets(mesh) as u32;
+        let pieces = (own..).zip(&self.cells).flat_map(|(number, cell)| (0..cell.kind.pieces()).map(move |_| number));
+        (0..own).chain(pieces).collect()
+    }
+
     /// Values of the mesh's own tetrahedra, shape (n, width), followed by those of the cells, as values of all its tetrahedra.
     pub fn spread(&self, mut values: Vec<f64>, width: usize) -> Vec<f64> {
         let of_cells = values.split_off(width * self.own[0]);

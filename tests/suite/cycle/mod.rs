@@ -6,4 +6,5 @@ mod openfoam;
 mod openfoam_adjoint;
 mod openfoam_viscous;
 mod place;
+mod stacks;
 mod su2;

@@ -18,7 +18,7 @@ struct Place {
 }
 
 /// A solver that leaves the flow as it is, and blows up where the Courant number is above 0.15.
-const STAND_IN: &str = r#"#!/bin/bash
+pub const STAND_IN: &str = r#"#!/bin/bash
 value() { sed -n "s/^$1 \(.*\);/\1/p" system/controlDict; }
 echo "stand-in: $(value startTime) to $(value endTime)"
 if [ "$(awk -v c="$(value maxCo)" 'BEGIN { print (c > 0.15) }')" = 1 ]; then echo "sigFpe: the temperature is negative"; exit 136; fi
@@ -49,7 +49,7 @@ cp -r "$(value startTime)" "$end"
 cp ../../swing-$((end / 20 % 2))/p "$end/p"
 "#;
 
-const CONFIG: &str = r#"
+pub const CONFIG: &str = r#"
 threads = 1
 [mesh]
 cube = 3
@@ -97,7 +97,7 @@ impl Place {
     }
 }
 
-const SIDES: &str = "inflow = ['1']\noutflow = ['2']\nwalls = ['3', '4']\nsymmetry = ['5', '6']";
+pub const SIDES: &str = "inflow = ['1']\noutflow = ['2']\nwalls = ['3', '4']\nsymmetry = ['5', '6']";
 
 /// Solves on the cube as the loop would, in this process; the solution before as its fields are.
 fn solve(place: &Place, surfaces: &str, program: &str, before: Option<&Solved>) -> (Solved, Vec<String>) {

@@ -1,8 +1,9 @@
 //! Viscous flow by OpenFOAM, where it is installed: the friction on a flat plate is that of Blasius, and several processes find what one does.
 use geo_adapt::cycle::launch::find_program;
 use geo_adapt::cycle::solver::openfoam::drive::{drive, last_time};
-use geo_adapt::cycle::solver::openfoam::{Config, Walls};
+use geo_adapt::cycle::solver::openfoam::{Cells, Config, Walls};
 use geo_adapt::cycle::solver::{Job, Solver};
+use geo_adapt::formats::Dataset;
 use geo_adapt::formats::foam::read_cell_field;
 use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::io::write_mesh;
@@ -111,7 +112,8 @@ fn solve(processes: u32) -> Found {
     let time = last_time(&case).unwrap();
     let read = |name: &str| read_cell_field(&time.join(name), data.tets.len()).unwrap().unwrap().values;
     let (pressure, velocity) = (read("p"), read("U"));
-    let part = Walls::of(&data, &[8]).coefficients(&config.flow, &pressure, &velocity).drag;
+    let cells = Cells::of(Dataset { mesh: data, ..Dataset::default() });
+    let part = Walls::of(&cells, &[8]).coefficients(&config.flow, &pressure, &velocity).drag;
     eprintln!("{processes} processes: {part} of the part, {}, {} steps", outcome.coefficients.drag, outcome.steps);
     Found { part, drag: solved.functionals["CD"], pressure }
 }

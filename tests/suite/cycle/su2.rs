@@ -5,7 +5,7 @@ use std::os::unix::fs::PermissionsExt;
 
 /// Stands for SU2_CFD: reads its configuration and mesh, writes restart and history as SU2 documents them. The density is 1 + x / 10, of
 /// which a transferred one must be found again; CL is the number of points, CD how far that is off.
-const SU2: &str = r#"#!/bin/sh
+pub const SU2: &str = r#"#!/bin/sh
 value() { sed -n "s/^$1= *//p" "$2" | tail -1; }
 mesh=$(value MESH_FILENAME "$1")
 for tag in $(value MARKER_EULER "$1" | tr -d '(),') $(value MARKER_FAR "$1" | tr -d '(),'); do
@@ -25,7 +25,7 @@ printf '"Time_Iter","Inner_Iter",     "rms[Rho]"    ,       "CL"       ,       "
     "$(($(wc -l < "$points") - 1))" "$off" > "$(value CONV_FILENAME "$1").csv"
 "#;
 
-const CONFIG: &str = r#"
+pub const CONFIG: &str = r#"
 [mesh]
 file = "cube.meshb"
 [solver.su2]

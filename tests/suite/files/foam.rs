@@ -138,7 +138,7 @@ fn a_plain_mesh_has_no_zones_and_an_old_one_leaves_nothing() {
     fs::write(case.join("constant/polyMesh/owner.gz"), "old").unwrap();
     foam::write(&case, &plain, true).unwrap();
     assert!(!case.join("constant/polyMesh/cellZones").exists() && !case.join("constant/polyMesh/owner.gz").exists());
-    let (mesh, names) = foam::read_mesh(&case).unwrap();
+    let Dataset { mesh, names, .. } = foam::read_mesh(&case).unwrap();
     assert_same(&mesh, &plain.mesh);
     assert!(names.is_empty());
 }

@@ -1,6 +1,7 @@
 //! Runs a prepared case, some steps at a time, until it stands still or its steps are used up. What blows up is repeated, to see where, then with
 //! first order there, and if that does not help with smaller steps.
 use super::adjoint;
+use super::cells::Cells;
 use super::dictionaries::{Steps, write_stage};
 use super::first_order::FirstOrderCells;
 use super::flow::Flow;
@@ -11,8 +12,6 @@ use super::programs::{Failure, Program, solve};
 use super::state::{State, field};
 use super::step_control::StepControl;
 use crate::formats::foam;
-use crate::mesh::TetMesh;
-use crate::mesh::vector::volume6;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -94,8 +93,8 @@ pub fn drive(case: &Path, stop: &AtomicBool, tell: &mut dyn FnMut(&str)) -> Resu
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let text = std::fs::read_to_string(&path).map_err(|error| named(&error))?;
     let plan: Plan = serde_json::from_str(&text).map_err(|error| named(&error))?;
-    let (mesh, _) = foam::read_mesh(case).map_err(|error| error.to_string())?;
-    let mut run = Run::new(case, &plan, &mesh, stop)?;
+    let cells = Cells::of(foam::read_mesh(case).map_err(|error| error.to_string())?);
+    let mut run = Run::new(case, &plan, &cells, stop)?;
     let first = Stage { scheme: Scheme::Upwind, ..plan.stage };
     while run.at < plan.start_steps {
         run.block(first, plan.start_steps, tell)?;
@@ -123,7 +122,7 @@ pub fn drive(case: &Path, stop: &AtomicBool, tell: &mut dyn FnMut(&str)) -> Resu
         adjoint: None,
     };
     if let Some(wanted) = &plan.adjoint {
-        let of = (&*outcome.fields(case)?, mesh.tets.len());
+        let of = (&*outcome.fields(case)?, cells.count());
         outcome.adjoint = Some(adjoint::run(case, (&plan.flow, wanted), of, stop, tell)?);
     }
     let text = serde_json::to_string_pretty(&outcome).map_err(|error| error.to_string())?;
@@ -134,10 +133,9 @@ pub fn drive(case: &Path, stop: &AtomicBool, tell: &mut dyn FnMut(&str)) -> Resu
 struct Run<'a> {
     case: &'a Path,
     plan: &'a Plan,
-    mesh: &'a TetMesh,
+    cells: &'a Cells,
     stop: &'a AtomicBool,
     walls: Walls,
-    volumes: Vec<f64>,
     /// The step whose fields are there.
     at: usize,
     state: State,
@@ -150,33 +148,13 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(case: &'a Path, plan: &'a Plan, mesh: &'a TetMesh, stop: &'a AtomicBool) -> Result<Self, String> {
-        let volume = |nodes: &[u32; 4]| {
-            let [a, b, c, d] = nodes.map(|v| mesh.vertices[v as usize]);
-            volume6(a, b, c, d).abs()
-        };
-        let volumes: Vec<f64> = mesh.tets.nodes.iter().map(volume).collect();
-        let state = State::read(&case.join("0"), volumes.len())?;
-        let walls = Walls::of(mesh, &plan.walls);
+    fn new(case: &'a Path, plan: &'a Plan, cells: &'a Cells, stop: &'a AtomicBool) -> Result<Self, String> {
+        let state = State::read(&case.join("0"), cells.count())?;
+        let walls = Walls::of(cells, &plan.walls);
         let (coefficients, change) = (Coefficients::default(), f64::INFINITY);
-        let (pace, marks) = (StepControl::default(), FirstOrderCells::none(volumes.len()));
+        let (pace, marks) = (StepControl::default(), FirstOrderCells::none(cells.count()));
         let mean = Mean::from(plan.start_steps + plan.steps.div_ceil(2));
-        Ok(Self {
-            case,
-            plan,
-            mesh,
-            stop,
-            walls,
-            volumes,
-            at: 0,
-            state,
-            coefficients,
-            change,
-            pace,
-            repeated: 0,
-            marks,
-            mean,
-        })
+        Ok(Self { case, plan, cells, stop, walls, at: 0, state, coefficients, change, pace, repeated: 0, marks, mean })
     }
 
     /// Makes the next block of steps, at most to step `end`; whether the flow stood still over it.
@@ -235,9 +213,9 @@ impl<'a> Run<'a> {
     /// Marks cells where the block that blew up has failed, as its last fields show it; how many cells, which had no mark before.
     fn mark(&mut self) -> usize {
         let Ok(last) = last_time(self.case) else { return 0 };
-        let (cells, before) = (self.volumes.len(), &self.state);
+        let (cells, before) = (self.cells.count(), &self.state);
         let (Ok(pressure), Ok(temperature)) = (field(&last, "p", cells), field(&last, "T", cells)) else { return 0 };
-        self.marks.add(self.mesh, [&before.pressure, &before.temperature], [&pressure, &temperature])
+        self.marks.add(self.cells, [&before.pressure, &before.temperature], [&pressure, &temperature])
     }
 
     /// Removes what the steps after the last good one have left.
@@ -253,7 +231,7 @@ impl<'a> Run<'a> {
         let log = self.case.join(format!("log.{end}"));
         solve(self.case, &self.plan.program, &log, self.stop)?;
         let _ = std::fs::remove_file(&log); // of no use any more
-        State::read(&self.case.join(end.to_string()), self.volumes.len()).map_err(Failure::BlewUp)
+        State::read(&self.case.join(end.to_string()), self.cells.count()).map_err(Failure::BlewUp)
     }
 
     /// Takes over a block that ended well, and drops the one before.
@@ -280,7 +258,8 @@ impl<'a> Run<'a> {
 
     /// Root of the integral of the square: the noise of a large far field must not outweigh the body's surroundings.
     fn size(&self, of: impl Fn(usize) -> f64) -> f64 {
-        (0..self.volumes.len()).map(|cell| self.volumes[cell] * of(cell).powi(2)).sum::<f64>().sqrt()
+        let volumes = self.cells.volumes.iter().enumerate();
+        volumes.map(|(cell, volume)| volume * of(cell).powi(2)).sum::<f64>().sqrt()
     }
 
     /// The size of what two fields differ by.

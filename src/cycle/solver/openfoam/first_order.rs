@@ -2,9 +2,9 @@
 //!
 //! The order is lowered where a step has failed, and nowhere else, as in the MOOD method (Clain, Diot and Loubere, Journal of Computational
 //! Physics 230, 2011): at a sharp edge that a flow goes around it has next to no pressure, and a limiter's slopes can overshoot.
+use super::cells::Cells;
 use super::dictionaries::central::{AT_FACES, factor};
 use crate::formats::foam;
-use crate::mesh::TetMesh;
 use std::path::Path;
 
 /// A cell has failed where the pressure has fallen to less than this share of that at the beginning of the block,
@@ -28,19 +28,20 @@ impl FirstOrderCells {
 
     /// Marks the cells that have failed since (pressure, temperature) were as `before`, and those that have a vertex in common with one; how many
     /// failed ones had no mark.
-    pub fn add(&mut self, mesh: &TetMesh, before: [&[f64]; 2], after: [&[f64]; 2]) -> usize {
+    pub fn add(&mut self, cells: &Cells, before: [&[f64]; 2], after: [&[f64]; 2]) -> usize {
         let fell = |which: usize, cell: usize, share: f64| after[which][cell] < share * before[which][cell];
-        let tets = &mesh.tets.nodes;
-        let failed: Vec<usize> = (0..tets.len())
-            .filter(|&cell| !self.marked[cell] && (fell(0, cell, OF_PRESSURE) || fell(1, cell, OF_TEMPERATURE)))
+        let failed: Vec<bool> = (0..cells.count())
+            .map(|cell| !self.marked[cell] && (fell(0, cell, OF_PRESSURE) || fell(1, cell, OF_TEMPERATURE)))
             .collect();
-        let mut touched = vec![false; mesh.vertices.len()];
-        failed.iter().flat_map(|&cell| tets[cell]).for_each(|v| touched[v as usize] = true);
-        for (marked, nodes) in self.marked.iter_mut().zip(tets) {
-            *marked |= nodes.iter().any(|&v| touched[v as usize]);
+        let mut touched = vec![false; cells.mesh.vertices.len()];
+        let tets = || cells.mesh.tets.nodes.iter().zip(&cells.of).map(|(nodes, &cell)| (nodes, cell as usize));
+        let of_failed = tets().filter(|(_, cell)| failed[*cell]);
+        of_failed.for_each(|(nodes, _)| nodes.iter().for_each(|&v| touched[v as usize] = true));
+        for (nodes, cell) in tets() {
+            self.marked[cell] |= nodes.iter().any(|&v| touched[v as usize]);
         }
         self.count = self.marked.iter().filter(|&&marked| marked).count();
-        failed.len()
+        failed.iter().filter(|&&failed| failed).count()
     }
 
     /// Writes the blending factors to a time folder: 0 at the faces of marked cells, 1 at the others. `symmetry`: the patches of that type.
@@ -70,23 +71,24 @@ impl FirstOrderCells {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::Dataset;
     use crate::mesh::samples::cube;
 
     #[test]
     fn what_fell_is_marked_with_what_is_around_it() {
-        let mesh = cube(4);
-        let cells = mesh.tets.len();
+        let all = Cells::of(Dataset { mesh: cube(4), ..Dataset::default() });
+        let (mesh, cells) = (&all.mesh, all.count());
         let (p, t) = (vec![1.0; cells], vec![1.0; cells]);
         let mut marks = FirstOrderCells::none(cells);
-        assert_eq!((marks.add(&mesh, [&p, &t], [&p, &t]), marks.count), (0, 0));
+        assert_eq!((marks.add(&all, [&p, &t], [&p, &t]), marks.count), (0, 0));
         let mut fallen = p.clone();
         fallen[7] = -0.1;
-        assert_eq!(marks.add(&mesh, [&p, &t], [&fallen, &t]), 1);
+        assert_eq!(marks.add(&all, [&p, &t], [&fallen, &t]), 1);
         let near = |cell: usize| mesh.tets.nodes[cell].iter().any(|v| mesh.tets.nodes[7].contains(v));
         assert!((0..cells).all(|cell| marks.marked[cell] == near(cell)));
         assert_eq!(marks.count, (0..cells).filter(|&cell| near(cell)).count());
-        assert_eq!(marks.add(&mesh, [&p, &t], [&fallen, &t]), 0, "it has its mark");
+        assert_eq!(marks.add(&all, [&p, &t], [&fallen, &t]), 0, "it has its mark");
         fallen[cells - 1] = 0.6;
-        assert_eq!(marks.add(&mesh, [&p, &t], [&t, &fallen]), 1, "as a temperature 0.6 is too little");
+        assert_eq!(marks.add(&all, [&p, &t], [&t, &fallen]), 1, "as a temperature 0.6 is too little");
     }
 }

@@ -3,8 +3,9 @@
 //! `flow` says what holds where, `method` which program solves it (rhoCentralFoam with local time steps, or rhoSimpleFoam where the flow is
 //! slow and viscous), `dictionaries` how; `drive` runs the case (a process of its own, `geo-adapt openfoam CASE`) through
 //! `programs`, as fast as `step_control` lets it, to first order in the cells of `first_order`, until it stands still or else to its `mean`, and `forces` sums up what
-//! acts on the walls. `adjoint` solves the adjoint of lift or drag then, where it is wanted. OpenFOAM v1912 (Debian's package `openfoam`).
+//! acts on the walls, over `cells`, which need not be tetrahedra. `adjoint` solves the adjoint of lift or drag then, where it is wanted. OpenFOAM v1912 (Debian's package `openfoam`).
 pub mod adjoint;
+mod cells;
 mod dictionaries;
 pub mod drive;
 mod first_order;
@@ -16,6 +17,7 @@ mod programs;
 mod state;
 mod step_control;
 
+pub use cells::Cells;
 pub use flow::{Flow, Kind};
 pub use forces::{Coefficients, Walls};
 pub use method::{Method, Scheme, Stage};
@@ -25,7 +27,6 @@ use crate::cycle::data::{Call, GoalFlow, Solved};
 use crate::cycle::launch::{self, find_program};
 use crate::formats::foam::{self, CellField};
 use crate::formats::{self, Dataset, NamedField};
-use crate::mesh::TetMesh;
 use crate::mesh::io::FieldKind;
 use crate::tasks::Team;
 use drive::{Outcome, PLAN, Plan, RESULT};
@@ -161,7 +162,7 @@ impl Config {
         let cells = |name: &str, kind: FieldKind| {
             let field = data.fields.iter().find(|field| field.name == name && field.kind == kind);
             let field = field.ok_or_else(|| format!("the solution before has no field {name}: begin the loop anew"))?;
-            let values = formats::vertices_to_cells(team, &data.mesh, &field.values, kind.values());
+            let values = data.vertices_to_cells(team, &field.values, kind.values());
             Ok::<_, String>(CellField { kind, values })
         };
         let (mut p, mut t) = (cells("p", FieldKind::Scalar)?, cells("T", FieldKind::Scalar)?);
@@ -288,17 +289,15 @@ impl Solver for Config {
         for (name, field) in ["p", "T", "U"].into_iter().zip(&initial) {
             let entries = |patch: &foam::Patch| (patch.name.clone(), self.flow.entries(name, kinds[&patch.reference]));
             let entries: Vec<_> = patches.iter().map(entries).collect();
-            foam::write_cell_field(&time.join(name), field, data.mesh.tets.len(), &entries, false)
+            foam::write_cell_field(&time.join(name), field, data.cells(), &entries, false)
                 .map_err(|error| error.to_string())?;
         }
         let patches: Vec<_> = patches.iter().map(|patch| (patch.name.clone(), kinds[&patch.reference])).collect();
         if self.adjoint.is_some() {
             for (name, kind) in adjoint::FIELDS {
                 let before = data.fields.iter().find(|field| field.name == name && field.kind == kind);
-                let cells = |field: &NamedField| {
-                    formats::vertices_to_cells(Team::alone(), &data.mesh, &field.values, kind.values())
-                };
-                adjoint::begin(&case, data.mesh.tets.len(), &patches, (name, kind), before.map(cells))?;
+                let cells = |field: &NamedField| data.vertices_to_cells(Team::alone(), &field.values, kind.values());
+                adjoint::begin(&case, data.cells(), &patches, (name, kind), before.map(cells))?;
             }
         }
         dictionaries::write_constant(&case, &self.flow, self.method())?;
@@ -318,11 +317,11 @@ impl Solver for Config {
         let outcome: Outcome = serde_json::from_str(&text).map_err(|error| named(&error))?;
         let data = job.dataset()?;
         let still = if self.flow.reynolds.is_some() { self.walls(&data)? } else { Vec::new() };
-        let mut fields = fields(&self.flow, &data.mesh, &still, &outcome.fields(&case)?)?;
+        let mut fields = fields(&self.flow, &data, &still, &outcome.fields(&case)?)?;
         if self.adjoint.is_some() {
             let time = adjoint::fields(&case)?;
             for (name, _) in adjoint::FIELDS {
-                fields.push(at_vertices(&data.mesh, &time, name)?);
+                fields.push(at_vertices(&data, &time, name)?);
             }
         }
         let Coefficients { lift, drag } = outcome.coefficients;
@@ -335,19 +334,19 @@ impl Solver for Config {
 }
 
 /// A field of the cells, at the vertices.
-fn at_vertices(mesh: &TetMesh, time: &Path, name: &str) -> Result<NamedField, String> {
+fn at_vertices(data: &Dataset, time: &Path, name: &str) -> Result<NamedField, String> {
     let path = time.join(name);
-    let read = foam::read_cell_field(&path, mesh.tets.len()).map_err(|error| error.to_string())?;
+    let read = foam::read_cell_field(&path, data.cells()).map_err(|error| error.to_string())?;
     let CellField { kind, values } = read.map_err(|class| format!("{}: a {class}", path.display()))?;
-    let values = formats::cells_to_vertices(Team::alone(), mesh, &values, kind.values());
+    let values = data.cells_to_vertices(Team::alone(), values, kind.values());
     Ok(NamedField { name: name.to_owned(), kind, values })
 }
 
 /// Pressure, temperature, velocity, density and Mach number at the vertices; on surfaces of the references `still` nothing moves.
-fn fields(flow: &Flow, mesh: &TetMesh, still: &[i32], time: &Path) -> Result<Vec<NamedField>, String> {
-    let read = |name: &str| at_vertices(mesh, time, name);
+fn fields(flow: &Flow, data: &Dataset, still: &[i32], time: &Path) -> Result<Vec<NamedField>, String> {
+    let read = |name: &str| at_vertices(data, time, name);
     let (p, t, mut u) = (read("p")?, read("T")?, read("U")?);
-    for (nodes, _) in mesh.triangles.iter().filter(|(_, reference)| still.contains(reference)) {
+    for (nodes, _) in data.mesh.triangles.iter().filter(|(_, reference)| still.contains(reference)) {
         nodes.into_iter().for_each(|v| u.values[3 * v as usize..][..3].fill(0.0));
     }
     let scalar = |name: &str, values| NamedField { name: name.to_owned(), kind: FieldKind::Scalar, values };

@@ -1,13 +1,15 @@
 use super::super::keyword::Keyword;
 use super::super::read::{mesh_from, solution_from};
-use super::super::rows::{mesh_sections, solution_sections};
+use super::super::rows::{Whole, solution_sections};
 use super::super::{FieldKind, Solution, SolutionField};
 use super::*;
 use crate::mesh::samples::cube;
+use crate::mesh::stack::Stack;
 use crate::mesh::{OnEdge, OnFace, OnVertex, TetMesh};
 use crate::tasks::{Plan, Pool};
 use std::fs::File;
 use std::path::Path;
+use std::sync::LazyLock;
 
 fn section(keyword: Keyword, count: usize) -> Section {
     Section { keyword, count, body: 0..0, kinds: Vec::new() }
@@ -25,6 +27,12 @@ fn the_version_follows_from_the_size() {
     assert_eq!(version(&[section(Keyword::Corners, i32::MAX as usize + 1)]), 4);
 }
 
+/// A mesh without a stack.
+fn whole(mesh: &TetMesh) -> Whole<'_> {
+    static NONE: LazyLock<Stack> = LazyLock::new(Stack::default);
+    Whole::of(mesh, &NONE)
+}
+
 fn streamed(team: Team<'_>, layout: &Layout) -> Vec<u8> {
     let mut bytes = Vec::new();
     layout.write(team, To::Stream(&mut bytes)).unwrap();
@@ -38,12 +46,12 @@ fn every_version_that_is_written_reads_back() {
     mesh.tets.push([3, 1, 0, 2], i32::MIN);
     mesh.association.faces.push(OnFace { vertex: 3, id: 2, uv: [0.5, 0.25], r: 1.0 });
     let solution = Solution::metric(&[[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]; 3]);
-    let (of_mesh, of_solution) = (mesh_sections(&mesh), solution_sections(&solution));
+    let (of_mesh, of_solution) = (whole(&mesh).sections(), solution_sections(&solution));
     for (version, position, int) in [(2, 4, 4), (3, 8, 4), (4, 8, 8)] {
-        let bytes = streamed(Team::alone(), &Layout::of(true, version, &of_mesh, Content::Mesh(&mesh)));
+        let bytes = streamed(Team::alone(), &Layout::of(true, version, &of_mesh, Content::Mesh(whole(&mesh))));
         let rows = 4 * (24 + int) + 5 * int + 2 * int + 24;
         assert_eq!(bytes.len(), 8 + 5 * (4 + position) + 4 + 3 * int + rows, "version {version}");
-        assert_eq!(mesh_from(Team::alone(), Path::new("m"), &bytes).unwrap().content, mesh);
+        assert_eq!(mesh_from(Team::alone(), Path::new("m"), &bytes).unwrap().content.0, mesh);
         let layout = Layout::of(true, version, &of_solution, Content::Solution(&solution));
         let bytes = streamed(Team::alone(), &layout);
         assert_eq!(solution_from(Team::alone(), Path::new("s"), &bytes).unwrap().content, solution);
@@ -72,7 +80,7 @@ fn the_bytes_do_not_depend_on_the_threads() {
     let vectors = SolutionField { kind: FieldKind::Vector, values: [0.0, 0.1, -1e9].map(scalars).concat() };
     let fields = vec![SolutionField { kind: FieldKind::Scalar, values: scalars(1.0) }, vectors];
     let solution = Solution { vertices: mesh.vertices.len(), fields };
-    let (of_mesh, of_solution) = (mesh_sections(&mesh), solution_sections(&solution));
+    let (of_mesh, of_solution) = (whole(&mesh).sections(), solution_sections(&solution));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("file");
     let in_file = |team: Team<'_>, layout: &Layout| {
@@ -82,7 +90,7 @@ fn the_bytes_do_not_depend_on_the_threads() {
     for (binary, version) in [(false, 2), (true, 2), (true, 3), (true, 4)] {
         for is_mesh in [true, false] {
             let (sections, content) = match is_mesh {
-                true => (&of_mesh, Content::Mesh(&mesh)),
+                true => (&of_mesh, Content::Mesh(whole(&mesh))),
                 false => (&of_solution, Content::Solution(&solution)),
             };
             let layout = Layout::of(binary, version, sections, content);
@@ -94,7 +102,7 @@ fn the_bytes_do_not_depend_on_the_threads() {
                 assert!(in_file(team, &layout) == alone && streamed(team, &layout) == alone, "{threads} threads");
             }
             if is_mesh {
-                assert!(mesh_from(Team::alone(), &path, &alone).unwrap().content == mesh);
+                assert!(mesh_from(Team::alone(), &path, &alone).unwrap().content.0 == mesh);
             } else {
                 assert!(solution_from(Team::alone(), &path, &alone).unwrap().content == solution);
             }
@@ -108,8 +116,8 @@ fn a_small_file_has_these_bytes() {
     let mut mesh = TetMesh { vertices: vec![[0.5, 0.0, -2.0]], vertex_refs: vec![3], ..Default::default() };
     mesh.edges.push([0, 0], -1);
     mesh.association.edges.push(OnEdge { vertex: 0, id: 9, t: 0.25, r: 1e300 });
-    let sections = mesh_sections(&mesh);
-    let text = streamed(Team::alone(), &Layout::of(false, 2, &sections, Content::Mesh(&mesh)));
+    let sections = whole(&mesh).sections();
+    let text = streamed(Team::alone(), &Layout::of(false, 2, &sections, Content::Mesh(whole(&mesh))));
     let expected = "MeshVersionFormatted 2\n\nDimension 3\n\nVertices\n1\n0.5 0.0 -2.0 3\n\nEdges\n1\n1 1 -1\n\n\
                     VerticesOnGeometricEdges\n1\n1 9 0.25 1e300\n\nEnd\n";
     assert_eq!(String::from_utf8(text).unwrap(), expected);
@@ -130,8 +138,8 @@ fn a_small_file_has_these_bytes() {
 #[test]
 fn a_full_disk_is_told_by_every_way() {
     let (mesh, pool) = (mesh(), Pool::new(3).unwrap());
-    let sections = mesh_sections(&mesh);
-    let layout = Layout::of(true, 2, &sections, Content::Mesh(&mesh));
+    let sections = whole(&mesh).sections();
+    let layout = Layout::of(true, 2, &sections, Content::Mesh(whole(&mesh)));
     let mut full = File::options().write(true).open("/dev/full").unwrap();
     for team in [Team::alone(), Team::new(&pool, Plan::default())] {
         for error in [layout.write(team, To::File(&full)), layout.write(team, To::Stream(&mut full))] {

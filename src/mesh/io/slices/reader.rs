@@ -30,11 +30,12 @@ impl MeshReader {
     /// Reads the heads of the sections, no rows.
     ///
     /// # Errors
-    /// [`Error::System`] when the file cannot be read, [`Error::Content`] when it is a text, has no vertices, or what its heads say cannot
-    /// be true.
+    /// [`Error::System`] when the file cannot be read, [`Error::Content`] when it is a text, has no vertices, has cells that are no tetrahedra, or
+    /// what its heads say cannot be true.
     pub fn open(path: &Path) -> Result<Self, Error> {
         Reader::open(path, |contents| {
             check_mesh(&contents)?;
+            refuse_stack(&contents)?;
             let counts = MeshCounts::from_each(|keyword| contents.count(keyword));
             Ok((counts, mesh_notices(contents)))
         })
@@ -159,6 +160,20 @@ impl MeshReader {
         let limit = self.counts.rows(keyword.target());
         let list = self.reader.whole(keyword, |source, section| indices::<BinaryCursor>(source, section, limit))?;
         Ok(list.unwrap_or_default())
+    }
+}
+
+/// Cells that are no tetrahedra would be lost.
+fn refuse_stack(contents: &Contents<'_>) -> Result<(), Error> {
+    let is_of_stack = |keyword: Keyword| keyword == Keyword::Quadrilaterals || keyword.kind().is_some();
+    match contents.sections.iter().find(|section| section.count > 0 && is_of_stack(section.keyword)) {
+        None => Ok(()),
+        Some(Section { keyword, count, body, .. }) => {
+            let message = format!(
+                "there are {count}, which are not read by slices; split them by `geo-adapt convert --split` first"
+            );
+            Err(contents.source.error(body.start, keyword.name(), message))
+        }
     }
 }
 
