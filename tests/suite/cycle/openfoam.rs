@@ -97,7 +97,7 @@ impl Place {
     }
 }
 
-pub const SIDES: &str = "inflow = ['1']\noutflow = ['2']\nwalls = ['3', '4']\nsymmetry = ['5', '6']";
+const SIDES: &str = "inflow = ['1']\noutflow = ['2']\nwalls = ['3', '4']\nsymmetry = ['5', '6']";
 
 /// Solves on the cube as the loop would, in this process; the solution before as its fields are.
 fn solve(place: &Place, surfaces: &str, program: &str, before: Option<&Solved>) -> (Solved, Vec<String>) {

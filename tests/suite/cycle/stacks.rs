@@ -65,7 +65,8 @@ fn openfoam_has_values_in_them() {
     let config = openfoam::CONFIG
         .replace("cube = 3", "file = \"layer.su2\"")
         .replace("PROGRAM", "./stand-in")
-        .replace("WALLS", openfoam::SIDES);
+        .replace("mach = 2.0", "mach = 0.3\nreynolds = 50.0")
+        .replace("WALLS", "walls = ['5']\nfarfield = ['1', '2', '3', '4', '6']");
     let place = place(&config, "stand-in", openfoam::STAND_IN);
     formats::write(&place.path("layer.su2"), &layer()).unwrap();
     place.run(&[]);
@@ -78,12 +79,15 @@ fn openfoam_has_values_in_them() {
             cells
         };
         assert_eq!(sorted(&data), sorted(&layer()), "{name}");
-        let velocity = data.fields.iter().find(|field| field.name == "U").unwrap();
-        // Mach 2 along x at a speed of sound of 1.
-        let is_stream = |u: &[f64]| (u[0] - 2.0).abs() < 1e-9 && u[2].abs() < 1e-9;
-        assert!(velocity.values.chunks(3).all(is_stream), "{name}");
+        let field = |name: &str| &data.fields.iter().find(|field| field.name == name).unwrap().values;
+        assert!(field("p").iter().all(|p| (p - 1.0).abs() < 1e-9), "{name}");
+        // The stream has the velocity 0.3, and nothing moves at the wall, which is below the prisms.
+        let at = |z: f64| (0..data.mesh.vertices.len()).filter(move |&v| data.mesh.vertices[v][2] == z);
+        assert!(at(1.0).all(|v| (field("U")[3 * v] - 0.3).abs() < 0.05), "{name}");
+        assert!(at(-0.1).all(|v| field("U")[3 * v] < 0.2), "{name}");
     }
-    assert!(place.report()["cycles"][1]["functionals"]["CD"].as_f64().unwrap().abs() < 1e-9);
+    // Friction.
+    assert!(place.report()["cycles"][1]["functionals"]["CD"].as_f64().unwrap() > 0.0);
 }
 
 /// The program hands the file back: in the first cycle one that is there.
