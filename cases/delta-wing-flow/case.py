@@ -34,8 +34,8 @@ def main():
     if not loops.has_solver(options):
         return 0
     # SU2 takes numbers in its list of walls for temperatures: the faces need names.
-    model = loops.named(options.program, MODEL, OUT / "model", NAMES) if loops.by_su2(options) else MODEL
-    folder, loop = loops.ran(options, HERE, OUT, SHORTER, {"MODEL": model})
+    values = {"MODEL": loops.named(options.program, MODEL, OUT / "model", NAMES)} if loops.by_su2(options) else {}
+    folder, loop = loops.ran(options, HERE, OUT, SHORTER, values)
     for step in loop:
         found = step["functionals"]
         shown = "  ".join(f"{key} {found[key]:.6f} ({found[key] / value - 1:+.2%})" for key, value in PUBLISHED.items())
