@@ -154,7 +154,7 @@ mod tests {
     fn arguments(folder: &Path, output: &str) -> Arguments {
         let [input, output] = ["in.meshb", output].map(|name| folder.join(name));
         let (fields, names, scale, translate) = (None, None, None, None);
-        Arguments { input, output, fields, names, text: false, plain: false, scale, translate }
+        Arguments { input, output, fields, names, text: false, plain: false, split: false, scale, translate }
     }
 
     /// A cube with a metric and a name.
