@@ -19,7 +19,7 @@ pub(super) fn check(stack: &Stack, mesh: &TetMesh) -> Result<Vec<bool>, Error> {
     for (at, cell) in stack.cells.iter().enumerate() {
         let volume = cell.volume(&mesh.vertices);
         // Neither positive nor negative where a coordinate is no number.
-        if !(volume > 0.0 || volume < 0.0) {
+        if volume == 0.0 || volume.is_nan() {
             return Err(Error::Flat { of: of_cell(at) });
         }
         turned.push(volume < 0.0);
