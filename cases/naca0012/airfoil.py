@@ -1,6 +1,7 @@
 """The NACA 0012 of NASA's Turbulence Modeling Resource, and the coarse first mesh of a slab of space about it; model.py has its model.
 
-Chord 1 along x, z up, y across the slab. The profile ends sharp at x = 1 (turbmodels.larc.nasa.gov/naca0012_val.html): z = T (A √x + B x + C x² + D x³ + E x⁴). In s = √x it is a
+Chord 1 along x, z up, y across the slab. The profile ends sharp at x = 1 (turbmodels.larc.nasa.gov/naca0012_val.html): z = T (A √x + B x + C x² + D x³ + E x⁴).
+In s = √x it is a
 polynomial of degree eight, so that one Bézier curve is the whole upper side, exactly.
 """
 
