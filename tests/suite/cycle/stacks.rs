@@ -82,7 +82,8 @@ fn openfoam_has_values_in_them() {
         let field = |name: &str| &data.fields.iter().find(|field| field.name == name).unwrap().values;
         assert!(field("p").iter().all(|p| (p - 1.0).abs() < 1e-9), "{name}");
         // The stream has the velocity 0.3, and nothing moves at the wall, which is below the prisms.
-        let at = |z: f64| (0..data.mesh.vertices.len()).filter(move |&v| data.mesh.vertices[v][2] == z);
+        let vertices = &data.mesh.vertices;
+        let at = |z: f64| (0..vertices.len()).filter(move |&v| vertices[v][2] == z);
         assert!(at(1.0).all(|v| (field("U")[3 * v] - 0.3).abs() < 0.05), "{name}");
         assert!(at(-0.1).all(|v| field("U")[3 * v] < 0.2), "{name}");
     }
