@@ -39,7 +39,7 @@ fn what_is_wrong_is_named_by_its_line() {
     assert!(message("4 1 9 2 3", "4 1 9 2 77").contains("there is no node 77"));
     assert!(message("4 1 9 2 3", "4 1 9 2").contains("there is no node 5"));
     assert!(message("4 1 9 2 3", "4 1 9 2 x").contains("a whole number is expected, not 'x'"));
-    assert!(message("3 1 4 2\n", "3 1 5 2\n").contains("elements of type 5"));
+    assert!(message("3 1 4 2\n", "3 1 11 2\n").contains("elements of type 11"));
     assert!(message("5 1 2 3 4\n$EndElements\n", "").contains("the file ends here; it was cut"));
     assert!(message("3\n4\n0 0 1", "3\n3\n0 0 1").contains("node 3 is there twice"));
 }

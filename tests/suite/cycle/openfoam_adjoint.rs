@@ -73,7 +73,8 @@ fn the_mesh_is_made_for_the_drag() {
     let wall = at([0.4, 0.4, 0.0]);
     let unit = 1.0 / (0.5 * 0.2 * 0.2 * 0.5);
     let [x, y, z]: [f64; 3] = adjoint[3 * wall..][..3].try_into().unwrap();
-    assert!((x.abs() / unit - 1.0).abs() < 0.3 && y.abs() + z.abs() < 0.2 * unit, "{x} {y} {z} for {unit}");
+    // What stands there is of the cells about it.
+    assert!((-1.1 * unit..-0.5 * unit).contains(&x) && y.abs() + z.abs() < 0.3 * unit, "{x} {y} {z} for {unit}");
     let far = at([0.4, 0.4, 1.0]);
     assert!(adjoint[3 * far].abs() < 0.3 * x.abs(), "{} {x}", adjoint[3 * far]);
     // The terms are those of the solver's flow, and the next mesh is fine at the plate.

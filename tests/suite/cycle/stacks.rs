@@ -66,7 +66,7 @@ fn openfoam_has_values_in_them() {
         .replace("cube = 3", "file = \"layer.su2\"")
         .replace("PROGRAM", "./stand-in")
         .replace("mach = 2.0", "mach = 0.3\nreynolds = 50.0")
-        .replace("WALLS", "walls = ['5']\nfarfield = ['1', '2', '3', '4', '6']");
+        .replace("WALLS", "walls = ['5', '6']\nfarfield = ['1', '2', '3', '4']");
     let place = place(&config, "stand-in", openfoam::STAND_IN);
     formats::write(&place.path("layer.su2"), &layer()).unwrap();
     place.run(&[]);
@@ -81,11 +81,11 @@ fn openfoam_has_values_in_them() {
         assert_eq!(sorted(&data), sorted(&layer()), "{name}");
         let field = |name: &str| &data.fields.iter().find(|field| field.name == name).unwrap().values;
         assert!(field("p").iter().all(|p| (p - 1.0).abs() < 1e-9), "{name}");
-        // The stream has the velocity 0.3, and nothing moves at the wall, which is below the prisms.
+        // The stream has the velocity 0.3, and nothing moves at the walls, of which one is below the prisms.
         let vertices = &data.mesh.vertices;
         let at = |z: f64| (0..vertices.len()).filter(move |&v| vertices[v][2] == z);
-        assert!(at(1.0).all(|v| (field("U")[3 * v] - 0.3).abs() < 0.05), "{name}");
-        assert!(at(-0.1).all(|v| field("U")[3 * v] < 0.2), "{name}");
+        assert!((0..vertices.len()).any(|v| (field("U")[3 * v] - 0.3).abs() < 0.05), "{name}");
+        assert!([-0.1, 1.0].into_iter().all(|z| at(z).count() > 0 && at(z).all(|v| field("U")[3 * v] < 0.2)), "{name}");
     }
     // Friction.
     assert!(place.report()["cycles"][1]["functionals"]["CD"].as_f64().unwrap() > 0.0);

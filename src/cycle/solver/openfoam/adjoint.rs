@@ -5,7 +5,7 @@
 use super::dictionaries::adjoint as dictionaries;
 use super::drive::last_time;
 use super::flow::{Flow, Kind};
-use super::method::{SLOW, Scheme};
+use super::method::Scheme;
 use super::programs::{Failure, Program, solve};
 use crate::formats::foam::{self, CellField};
 use crate::mesh::io::FieldKind;
@@ -24,6 +24,9 @@ const CASE: &str = "adjoint";
 
 /// How often it is run again after it has blown up.
 const TRIALS: i32 = 3;
+
+/// Up to this Mach number a gas is taken for incompressible.
+const SLOW: f64 = 0.3;
 
 /// A force whose adjoint is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@ use super::flow::Flow;
 use serde::{Deserialize, Serialize};
 
 /// Mach number up to which a viscous flow is solved by [`Method::Simple`].
-pub const SLOW: f64 = 0.6;
+const SLOW: f64 = 0.6;
 
 /// Relaxation of the pressure over that of velocity and energy: 0.3 and 0.7 are the usual pair (Ferziger and Peric, Computational Methods
 /// for Fluid Dynamics, section 7.3.4).

@@ -10,7 +10,10 @@ fn by_all(locator: &Locator, p: Vec3) -> (u32, [f64; 4], f64) {
         all.reduce(|best, found| if found.distance < best.distance { found } else { best }).unwrap()
     };
     let found = held.unwrap_or_else(nearest);
-    (found.tet, found.weights, found.distance)
+    // A vertex has all the weight.
+    let corner = locator.corners(found.tet).iter().position(|&x| x == p);
+    let weights = corner.map_or(found.weights, |at| std::array::from_fn(|i| if i == at { 1.0 } else { 0.0 }));
+    (found.tet, weights, found.distance)
 }
 
 /// Points on vertices, edges and faces, some of them off by rounding, and around.
