@@ -81,6 +81,20 @@ fn list(names: &[String]) -> String {
 }
 
 impl Conditions {
+    /// Refuses what SU2 would not bear: in lists of walls with a value it takes names that are numbers for values, and crashes.
+    ///
+    /// # Errors
+    /// Which name, and the remedy.
+    pub fn check(&self) -> Result<(), String> {
+        let number = self.walls.iter().find(|name| name.parse::<f64>().is_ok());
+        number.filter(|_| self.model != Model::Euler).map_or(Ok(()), |name| {
+            Err(format!(
+                "[solver.su2.flow] walls: SU2 takes the name {name} for a value where walls have viscosity: give the surface a name that is no \
+                 number (geo-adapt model MODEL --name wing={name})"
+            ))
+        })
+    }
+
     /// The configuration.
     pub fn cfg(&self) -> Cfg {
         let mut cfg = Cfg::default();
@@ -153,6 +167,10 @@ mod tests {
         assert!(!text.contains("MARKER_SYM") && !text.contains("REYNOLDS"), "{text}");
         flow.model = Model::Turbulent;
         flow.symmetry = vec!["symmetry".into()];
+        assert_eq!(flow.check(), Ok(()));
+        let numbered = Conditions { walls: vec!["wing".into(), "7".into()], ..flow.clone() };
+        assert!(numbered.check().unwrap_err().contains("takes the name 7 for a value"));
+        assert_eq!(Conditions { model: Model::Euler, ..numbered }.check(), Ok(()));
         let text = flow.cfg().text();
         assert!(
             text.contains("KIND_TURB_MODEL= SA\n") && text.contains("MARKER_HEATFLUX= ( wing, 0.0, tip, 0.0 )\n"),

@@ -169,6 +169,7 @@ impl Config {
 impl Solver for Config {
     fn check(&self, base: &Path) -> Result<(), String> {
         self.cfg(base, false)?;
+        self.flow.as_ref().map_or(Ok(()), Conditions::check)?;
         if self.change.is_some_and(|change| !(change.is_finite() && change > 0.0)) {
             return Err("[solver.su2] change: give a positive number, such as 1e-6".into());
         }
