@@ -139,7 +139,7 @@ fn a_flow_of_constant_density_has_four_equations() {
     let (work, mesh, path) = prepared();
     let bump = |[x, y, z]: Vec3| 0.2 * (-20.0 * ((x - 0.5).powi(2) + (y - 0.5).powi(2) + (z - 0.5).powi(2))).exp();
     let flow = write(&work, "flow.solb", &mesh, |p| [0.5 - bump(p), 0.1, 0.0, 2.0 + bump(p)]);
-    let adjoint = write(&work, "adjoint.solb", &mesh, |[x, y, z]| [y * y, z * z, x * y, x - y * y]);
+    let adjoint = write(&work, "adjoint.solb", &mesh, |[x, y, z]| [x * x + y * y, z * z, x * y, x - y * y]);
     let words = ["--incompressible", &flow, "--adjoint", &adjoint, "--complexity", "1000"];
     let of = |more: &[&str]| made(&work, &path, &[&words[..], more].concat()).metrics;
     let near = |a: &[geo_adapt::metric::Sym3], b: &[geo_adapt::metric::Sym3]| {
