@@ -93,7 +93,7 @@ pub const VELOCITY: [i32; 4] = [0, 1, -1, 0];
 pub const KINEMATIC_PRESSURE: [i32; 4] = [0, 2, -2, 0];
 
 /// Exponents of mass, length, time and temperature, as OpenFOAM wants them of the fields that its solvers read; else none.
-fn dimensions(path: &Path) -> [i32; 4] {
+pub(super) fn dimensions(path: &Path) -> [i32; 4] {
     match path.file_name().unwrap_or_default().to_string_lossy().as_ref() {
         "p" => [1, -1, -2, 0],
         "T" => [0, 0, 0, 1],
@@ -130,23 +130,12 @@ pub fn write_cell_field_of(
     dimensions: [i32; 4],
 ) -> Result<(), Error> {
     let mut batch = Batch::new();
-    add_dimensioned(&mut batch, path, field, cells, patches, text, dimensions)?;
+    add_cell_field(&mut batch, path, field, cells, patches, text, dimensions)?;
     batch.commit()
 }
 
-/// Adds what [`write_cell_field`] writes to files that belong together.
+/// Adds what [`write_cell_field_of`] writes to files that belong together.
 pub(super) fn add_cell_field(
-    batch: &mut Batch,
-    path: &Path,
-    field: &CellField,
-    cells: usize,
-    patches: &[(String, String)],
-    text: bool,
-) -> Result<(), Error> {
-    add_dimensioned(batch, path, field, cells, patches, text, dimensions(path))
-}
-
-fn add_dimensioned(
     batch: &mut Batch,
     path: &Path,
     field: &CellField,

@@ -219,7 +219,8 @@ pub fn add(batch: &mut Batch, team: Team<'_>, path: &Path, data: &Dataset, text:
             notices.push(format!("the field {name} is called {file} there"));
         }
         let field = CellField { kind: *kind, values };
-        field::add_cell_field(batch, &time.join(file), &field, data.cells(), &entries, text)?;
+        let (path, cells) = (time.join(file), data.cells());
+        field::add_cell_field(batch, &path, &field, cells, &entries, text, field::dimensions(&path))?;
     }
     Ok(notices)
 }
