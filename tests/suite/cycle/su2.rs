@@ -126,7 +126,27 @@ fn what_always_diverges_and_what_is_refused_is_told() {
     place.write("SU2_CFD", &refused);
     let said = refusal(&["--restart"]);
     assert!(said.contains("invalid option name") && !said.contains("however slow"), "{said}");
+    // A crash before the first iteration is no divergence.
+    place.write("SU2_CFD", &SU2.replacen("mesh=$(", "kill -SEGV $$\nmesh=$(", 1));
+    let said = refusal(&["--restart"]);
+    assert!(said.contains("signal 11") && !said.contains("however slow"), "{said}");
     assert!(!place.path("out/cycle-01/solve/first.csv").exists());
+}
+
+/// SU2 goes on to its last iteration with residuals that grow: it is ended, and run again.
+#[test]
+fn what_grows_without_end_is_not_waited_for() {
+    let grows = r#"
+if [ "$(value SOLUTION_FILENAME "$1")" != first ] && [ "$(value MUSCL_FLOW "$1")" = YES ]; then
+    printf '"Inner_Iter", "rms[Rho]", "CL", "CD"\n0, -5.0, 0, 0\n1, 2.0, 9, 9\n' > "$(value CONV_FILENAME "$1").csv"
+    exec sleep 600
+fi
+"#;
+    let at = "mesh=$(value MESH_FILENAME";
+    let place = place(CONFIG, &SU2.replacen(at, &format!("{grows}{at}"), 1));
+    place.run(&[]);
+    let log = std::fs::read_to_string(place.path("out/cycle-01/solve/log.txt")).unwrap();
+    assert!(log.contains("diverged: again from the same start, with a Courant number of 0.5"), "{log}");
 }
 
 /// SU2 8 itself, where it is on the PATH: Euler about a cube's corner, its binary files both ways, an end by functionals.

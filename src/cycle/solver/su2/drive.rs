@@ -6,7 +6,8 @@ use crate::process::{Log, Outcome as Ended, Runner, Tie, errors_or_last_lines};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::process::Command;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// The file of the plan in the folder of the step.
 pub const PLAN: &str = "plan.json";
@@ -26,6 +27,10 @@ const SLOWER: f64 = 4.0;
 
 /// How often a solve is run again.
 const AGAIN: u32 = 3;
+
+/// How often the history of a run is looked at, and how often it is looked at whether the run shall end.
+const LOOK: Duration = Duration::from_secs(5);
+const TICK: Duration = Duration::from_millis(20);
 
 /// Schemes that are centred: to first order they are Lax and Friedrichs'.
 const CENTRED: [&str; 4] = ["JST", "JST_KE", "JST_MAT", "LAX-FRIEDRICH"];
@@ -143,7 +148,13 @@ fn run(folder: &Path, plan: &Plan, cfg: &Cfg, stop: &AtomicBool) -> Result<(), F
     command.args(before).arg(RUN).current_dir(folder);
     command.envs(plan.environment.iter().map(|(name, value)| (name, value)));
     // In the group that the loop gave us, which ends as one.
-    let ended = Runner { tie: Tie::Shared, limit: None, stop, log: Some(&said) }.run(&mut command, |_| ());
+    let run = |stop: &AtomicBool| {
+        Runner { tie: Tie::Shared, limit: None, stop, log: Some(&said) }.run(&mut command, |_| ())
+    };
+    let (ended, diverged) = watched(&history, stop, run);
+    if let Some(error) = diverged {
+        return Err(Failure::Diverged(error));
+    }
     let ended = ended
         .map_err(|error| Failure::Stopped(format!("{program} could not be started ({error}): is it installed?")))?;
     let told = || {
@@ -156,11 +167,44 @@ fn run(folder: &Path, plan: &Plan, cfg: &Cfg, stop: &AtomicBool) -> Result<(), F
     };
     let has_diverged = || std::fs::read(&log).is_ok_and(|text| String::from_utf8_lossy(&text).contains("diverged"));
     match ended {
-        Ended::Done => history::is_finite(&history).map_err(Failure::Diverged),
-        Ended::Crashed(_) => Err(Failure::Diverged(told())),
+        Ended::Done => history::check(&history).map_err(Failure::Diverged),
+        // Before the first iteration nothing can diverge: it does not understand what it is given.
+        Ended::Crashed(_) if history::rows(&history) > 0 => Err(Failure::Diverged(told())),
         Ended::Code(_) if has_diverged() => Err(Failure::Diverged(told())),
         _ => Err(Failure::Stopped(told())),
     }
+}
+
+/// Runs SU2 by `run`, which ends it where the flag that it is given is set: as `stop` is, or once its history tells that it has diverged; what that
+/// tells too.
+fn watched<T>(history: &Path, stop: &AtomicBool, run: impl FnOnce(&AtomicBool) -> T) -> (T, Option<String>) {
+    let [shall_end, has_ended] = [false, false].map(AtomicBool::new);
+    let watch = || {
+        let mut looked = Instant::now();
+        while !has_ended.load(Ordering::SeqCst) {
+            std::thread::sleep(TICK);
+            if stop.load(Ordering::SeqCst) {
+                shall_end.store(true, Ordering::SeqCst);
+            }
+            if looked.elapsed() > LOOK {
+                looked = Instant::now();
+                // There is none before its first iteration.
+                if history.exists()
+                    && let Err(error) = history::check(history)
+                {
+                    shall_end.store(true, Ordering::SeqCst);
+                    return Some(error);
+                }
+            }
+        }
+        None
+    };
+    std::thread::scope(|scope| {
+        let watching = scope.spawn(watch);
+        let ended = run(&shall_end);
+        has_ended.store(true, Ordering::SeqCst);
+        (ended, watching.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })
 }
 
 #[cfg(test)]

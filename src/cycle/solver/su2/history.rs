@@ -2,11 +2,15 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// By how many orders of magnitude the first residual, that of the density, may grow beyond that of the first iteration.
+const GROWN: f64 = 3.0;
+
 /// The table, as far as it is looked at.
 struct Table {
     /// Names of the columns.
     head: Vec<String>,
-    /// The last row; empty where there is none.
+    /// The first row and the last; empty where there is none.
+    first: Vec<String>,
     last: Vec<String>,
     /// Rows, without the head.
     rows: u64,
@@ -17,10 +21,14 @@ impl Table {
         let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
         let clean = |word: &str| word.trim().trim_matches('"').trim().to_owned();
         let words = |line: &str| line.split(',').map(clean).collect();
-        let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+        // SU2 may be at work: a line without its end is not a row yet.
+        let whole = &text[..text.rfind('\n').map_or(0, |at| at + 1)];
+        let mut lines = whole.lines().filter(|line| !line.trim().is_empty());
         let head = lines.next().map_or_else(Vec::new, words);
-        let (rows, last) = lines.fold((0, None), |(rows, _), line| (rows + 1, Some(line)));
-        Ok(Self { head, last: last.map_or_else(Vec::new, words), rows })
+        let first = lines.next();
+        let (rows, last) = lines.fold((u64::from(first.is_some()), first), |(rows, _), line| (rows + 1, Some(line)));
+        let [first, last] = [first, last].map(|row| row.map_or_else(Vec::new, words));
+        Ok(Self { head, first, last, rows })
     }
 }
 
@@ -29,17 +37,27 @@ pub fn rows(path: &Path) -> u64 {
     Table::read(path).map_or(0, |table| table.rows)
 }
 
-/// Refuses a table whose residuals end in what is no number. Other columns may: SU2 divides by what is 0.
+/// Refuses a table whose residuals end in what is no number, or have grown by [`GROWN`] orders of magnitude: SU2 itself goes on to the end then. Other
+/// columns may: SU2 divides by what is 0.
 ///
 /// # Errors
 /// What is wrong, or that it is not there.
-pub fn is_finite(path: &Path) -> Result<(), String> {
-    let Table { head, last, .. } = Table::read(path)?;
-    let residuals = head.iter().zip(&last).filter(|(name, _)| name.starts_with("rms"));
-    let wrong = residuals.map(|(_, word)| word).find(|word| !word.parse::<f64>().is_ok_and(f64::is_finite));
-    wrong.map_or(Ok(()), |word| {
-        Err(format!("{}: {word} in the last row is no number: SU2 has diverged", path.display()))
-    })
+pub fn check(path: &Path) -> Result<(), String> {
+    let Table { head, first, last, .. } = Table::read(path)?;
+    let diverged = |what: &str| Err(format!("{}: {what}: SU2 has diverged", path.display()));
+    let value = |word: &str| word.parse::<f64>().ok().filter(|value| value.is_finite());
+    let of = |row: &[String], at: usize| row.get(at).and_then(|word| value(word));
+    let mut residuals = (0..head.len().min(last.len())).filter(|&at| head[at].starts_with("rms")).peekable();
+    if let Some(&at) = residuals.peek()
+        && let Some((from, to)) = of(&first, at).zip(of(&last, at))
+        && to > from + GROWN
+    {
+        return diverged(&format!("{} has grown from {from} to {to} (logarithms)", head[at]));
+    }
+    match residuals.find(|&at| value(&last[at]).is_none()) {
+        Some(at) => diverged(&format!("{} in the last row is no number", last[at])),
+        None => Ok(()),
+    }
 }
 
 /// The values of some columns in the last row.
@@ -48,7 +66,7 @@ pub fn is_finite(path: &Path) -> Result<(), String> {
 /// When the file or a column is not there, or a value is no number.
 pub fn last(path: &Path, wanted: &[String]) -> Result<BTreeMap<String, f64>, String> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let Table { head, last, rows } = Table::read(path)?;
+    let Table { head, last, rows, .. } = Table::read(path)?;
     if rows == 0 {
         return Err(named(&"no row: SU2 made no iteration"));
     }
@@ -84,8 +102,15 @@ mod tests {
         );
         std::fs::write(&path, text.replace("0.288", "-nan")).unwrap();
         assert!(last(&path, &["CL".into()]).unwrap_err().contains("diverge"));
-        assert_eq!((is_finite(&path), rows(&path)), (Ok(()), 2));
+        assert_eq!((check(&path), rows(&path)), (Ok(()), 2));
         std::fs::write(&path, text.replace("-3.1", "nan")).unwrap();
-        assert!(is_finite(&path).unwrap_err().contains("nan in the last row is no number"));
+        assert!(check(&path).unwrap_err().contains("nan in the last row is no number"));
+        std::fs::write(&path, text.replace("-3.1", "0.8")).unwrap();
+        assert_eq!(check(&path), Ok(()));
+        std::fs::write(&path, text.replace("-3.1", "1.2")).unwrap();
+        assert!(check(&path).unwrap_err().contains("rms[Rho] has grown from -2.1 to 1.2"));
+        // A row that SU2 has not written to its end.
+        std::fs::write(&path, format!("{text}          0,          2,     -")).unwrap();
+        assert_eq!((check(&path), rows(&path)), (Ok(()), 2));
     }
 }
