@@ -13,6 +13,8 @@ use std::sync::PoisonError;
 pub struct OcctEvaluator<'a> {
     pub(super) model: &'a OcctModel,
     pub(super) occt: UniquePtr<ffi::Evaluator>,
+    /// Points of a hull, allocated once.
+    pub(super) points: Vec<Vec3>,
 }
 
 /// Below this sine, or this share of the longer side, Su × Sv gives no normal.
@@ -25,7 +27,7 @@ impl<'a> OcctEvaluator<'a> {
         let idle = model.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         // A new one only reserves memory: the adaptors are made when first asked for.
         let occt = idle.unwrap_or_else(|| ffi::new_evaluator(&model.occt).expect("memory for an evaluator"));
-        Self { model, occt }
+        Self { model, occt, points: Vec::new() }
     }
 
     /// The distance that OCCT's own search (BRepExtrema) finds from a face or an edge: slow, the oracle of the tests.

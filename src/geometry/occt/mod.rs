@@ -2,6 +2,7 @@
 //! projections are too; what has no copy (offset surfaces, for one) is evaluated over the bridge.
 mod basis;
 mod bridge;
+mod chord;
 mod copy;
 mod curve;
 mod entities;

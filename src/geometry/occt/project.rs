@@ -1,5 +1,6 @@
 //! Closest points of faces: by closed forms where there are any, else by a descent from the guess, with a tree of pieces to rule out the
 //! rest.
+use super::chord::Curves;
 use super::evaluator::OcctEvaluator;
 use super::hull;
 use super::newton::{self, SurfacePoint};
@@ -126,7 +127,8 @@ fn is_within(on: &mut OcctEvaluator, face: u32, uv: [f64; 2]) -> bool {
 /// Whether the parameters, which lie in the face's range, lie in the trimmed face.
 fn inside(on: &mut OcctEvaluator, face: u32, uv: [f64; 2]) -> bool {
     let trim = trim_of(on, face);
-    trim.known(&on.model.topology.faces[face as usize], uv).unwrap_or_else(|| on.inside_by_occt(face, uv))
+    let curves = Curves { model: on.model, face, points: &mut on.points };
+    trim.known(curves, uv).unwrap_or_else(|| on.inside_by_occt(face, uv))
 }
 
 /// The trimming of a face, made when first asked for.

@@ -4,6 +4,7 @@ use super::curve::Curve;
 use super::evaluator::OcctEvaluator;
 use super::hull::{self, as_jet};
 use super::pieces::cuts;
+use super::chord::{Curves, Source};
 use super::side::{Piece, Sides};
 use crate::geometry::{EdgeUse, FaceEntity, Topology, Use};
 use crate::mesh::vector::Vec3;
@@ -40,9 +41,10 @@ pub enum Place {
 }
 
 impl Trim {
-    /// Whether the parameters lie in the face, if that is known without asking OCCT. They lie in the face's range.
+    /// Whether the parameters lie in the face that is looked at, if that is known without asking OCCT. They lie in the face's range.
     #[inline]
-    pub fn known(&self, face: &FaceEntity, uv: [f64; 2]) -> Option<bool> {
+    pub fn known(&self, mut curves: Curves<'_>, uv: [f64; 2]) -> Option<bool> {
+        let face = &curves.model.topology.faces[curves.face as usize];
         let (grid, sides) = match self {
             Self::Whole => return uv.iter().all(|x| x.is_finite()).then_some(true),
             Self::Grid(grid, sides) => (grid, sides),
@@ -67,7 +69,7 @@ impl Trim {
                     let beside = |k: usize| [own.checked_sub(k), (own + k < CELLS).then_some(own + k)];
                     let known = (1..CELLS).flat_map(beside).flatten().find(|&k| place(k) != Place::Crossed)?;
                     let middle = (known as f64 + 0.5) / CELLS as f64;
-                    sides.is_inside(along, cell, [s, r], (middle, place(known) == Place::Inside))
+                    sides.is_inside(&mut curves, along, cell, [s, r], (middle, place(known) == Place::Inside))
                 })
             }
         }
@@ -108,12 +110,12 @@ pub fn build(on: &mut OcctEvaluator, index: u32) -> Trim {
         if seam && pcurve.other.is_none() {
             return Trim::Unknown;
         }
-        for curve in std::iter::once(&pcurve.curve).chain(&pcurve.other) {
+        for (is_other, curve) in std::iter::once(&pcurve.curve).chain(&pcurve.other).enumerate() {
             if matches!(curve, Curve::General) {
                 return Trim::Unknown;
             }
             let (first, mut last) = (boxes.len(), [f64::NAN; 2]);
-            pieces(topology, edge, curve, |piece| {
+            pieces(topology, (edge, is_other == 1), curve, |piece| {
                 boxes.push(piece.bounds());
                 all.add(piece, face.range, face.period);
                 if boxes.len() == first + 1 {
@@ -140,7 +142,7 @@ pub fn build(on: &mut OcctEvaluator, index: u32) -> Trim {
 }
 
 /// Tells the pieces of a p-curve.
-fn pieces(topology: &Topology, edge: u32, curve: &Curve, mut tell: impl FnMut(&Piece<'_>)) {
+fn pieces(topology: &Topology, (edge, is_other): (u32, bool), curve: &Curve, mut tell: impl FnMut(&Piece<'_>)) {
     let mut points: Vec<Vec3> = Vec::new();
     let ends = cuts(topology.edges[edge as usize].range, None, curve.breaks(), 1);
     let parts = PIECES.div_ceil(ends.len() - 1).max(2);
@@ -151,14 +153,16 @@ fn pieces(topology: &Topology, edge: u32, curve: &Curve, mut tell: impl FnMut(&P
                 |k: usize| if k == parts { span[1] } else { span[0] + (span[1] - span[0]) * k as f64 / parts as f64 };
             points.clear();
             let mut jet = |uv: [f64; 2]| curve.frame(uv[0]).map_or_else(nowhere, as_jet);
-            let margin = hull::of_curve(curve, &mut jet, [at(k), at(k + 1)], &mut points);
-            tell(&Piece { ends: [at(k), at(k + 1)].map(place), points: &points, margin });
+            let range = [at(k), at(k + 1)];
+            let margin = hull::of_curve(curve, &mut jet, range, &mut points);
+            let source = Source { edge, is_other, range };
+            tell(&Piece { source, ends: range.map(place), points: &points, margin });
         }
     }
 }
 
 /// A general curve has been sent away before.
-fn nowhere() -> super::surface::Jet {
+pub fn nowhere() -> super::surface::Jet {
     as_jet(crate::geometry::CurveFrame { point: [f64::NAN; 3], d1: [0.0; 3], d2: [0.0; 3] })
 }
 
