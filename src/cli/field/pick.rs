@@ -94,8 +94,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let picked = Solution { vertices: solution.vertices, fields };
     let mut outputs = Outputs::new();
     let found = Fields { solution: picked, names: called, mesh: None };
-    let on = mesh.as_ref().map(|(mesh, names)| (mesh, names));
-    outputs.fields(Team::alone(), &target, found, on)?.iter().for_each(crate::cli::note);
+    outputs.fields(Team::alone(), &target, found, mesh.as_ref())?.iter().for_each(crate::cli::note);
     outputs.commit()?;
     say(&format!(
         "{}: {} scalars at {} vertices\n",

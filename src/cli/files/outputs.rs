@@ -19,8 +19,8 @@ use std::path::Path;
 type Failure = Box<dyn std::error::Error>;
 type Done = Result<(), Failure>;
 
-/// The mesh that fields are of, with its names, where the command has it.
-pub type On<'m> = Option<(&'m TetMesh, &'m Names)>;
+/// The mesh that fields are of, with its stack and names, where the command has it.
+pub type On<'m> = Option<&'m Dataset>;
 
 /// Notices with the file that they are of.
 fn named(to: &Target, notices: Vec<String>) -> Vec<String> {
@@ -128,13 +128,13 @@ impl Outputs {
             io::add_solution(&mut self.batch, team, &to.path, &fields.solution)?;
             return Ok(Vec::new());
         }
-        let Some((mesh, names)) = on else {
+        let Some(Dataset { mesh, stack, names, .. }) = on else {
             let path = to.path.display();
             return Err(format!("{path}: a mesh is wanted for this format; give .sol or .solb").into());
         };
         // What is written is all owned; only formats of other programs come here.
-        let data =
-            Dataset { mesh: mesh.clone(), names: names.clone(), fields: fields.into_named(), ..Dataset::default() };
+        let (mesh, stack, names) = (mesh.clone(), stack.clone(), names.clone());
+        let data = Dataset { mesh, stack, names, fields: fields.into_named() };
         let notices = self.dataset(team, to, &data, Options::default())?;
         Ok(if format.is_fields() { Vec::new() } else { named(to, notices) })
     }

@@ -1,7 +1,6 @@
 //! Reading the meshes and fields of a command, in whatever format they come: nothing else in `cli` reads them.
 use crate::formats::{self, Dataset, Format, NamedField};
-use crate::geometry::{Names, names};
-use crate::mesh::TetMesh;
+use crate::geometry::names;
 use crate::mesh::io::slices::MeshReader;
 use crate::mesh::io::{self, FieldKind, Read, Solution, SolutionField};
 use crate::mesh::vector::Vec3;
@@ -54,9 +53,6 @@ impl<'m> Carrier<'m> {
     }
 }
 
-/// A mesh with its names.
-type Named = (TetMesh, Names);
-
 /// Fields as they were read.
 #[derive(Debug, Default)]
 pub struct Fields {
@@ -64,8 +60,8 @@ pub struct Fields {
     pub solution: Solution,
     /// What they are called; none where the file does not say.
     pub names: Vec<String>,
-    /// The mesh that their file holds too, with its names.
-    pub mesh: Option<Named>,
+    /// The mesh that their file holds too, without its fields.
+    pub mesh: Option<Dataset>,
 }
 
 impl Fields {
@@ -126,13 +122,13 @@ pub fn fields(team: Team<'_>, asked: &Path, carrier: Carrier<'_>) -> Result<Read
             Ok(Read { content: Fields::named(data.fields, carrier.vertices.len()), notices })
         }
         _ => {
-            let Read { content: Dataset { mesh, names, fields, .. }, notices } = formats::read_on(team, asked)?;
+            let Read { content: Dataset { mesh, stack, names, fields }, notices } = formats::read_on(team, asked)?;
             if fields.is_empty() {
                 let message = "no field at the vertices; give a file of fields, or a mesh with fields in its file";
                 return Err(format!("{}: {message}", asked.display()).into());
             }
             let mut found = Fields::named(fields, mesh.vertices.len());
-            found.mesh = Some((mesh, names));
+            found.mesh = Some(Dataset { mesh, stack, names, fields: Vec::new() });
             Ok(Read { content: found, notices })
         }
     }
@@ -179,7 +175,7 @@ pub fn logs(
     asked: &Path,
     carrier: Carrier<'_>,
     vertices: Option<usize>,
-) -> Result<(Read<Vec<Sym3>>, Option<Named>), Failure> {
+) -> Result<(Read<Vec<Sym3>>, Option<Dataset>), Failure> {
     let Read { content: found, mut notices } = metric(team, asked, carrier)?;
     let logs = Field::logs_of_solution(team, asked, &found.solution, vertices)?;
     notices.extend(logs.notices);

@@ -96,7 +96,7 @@ pub fn write_logs(run: &RunArguments, team: Team<'_>, to: &Target, logs: &[Sym3]
 
 /// A mesh that fields or metrics are written with.
 pub fn on(data: &Dataset) -> On<'_> {
-    Some((&data.mesh, &data.names))
+    Some(data)
 }
 
 /// How much the metric is to ask for.
@@ -261,7 +261,7 @@ pub fn all_logs(
     let none = Carrier { path: asked, vertices: &[], fields: &[] };
     let (Read { content, notices }, mesh) = reading::logs(team, asked, none, vertices)?;
     run.note(&notices);
-    Ok((content, mesh.map(|(mesh, names)| Dataset { mesh, names, ..Dataset::default() })))
+    Ok((content, mesh))
 }
 
 /// The complexity of ln M on a mesh (`path` is for the error): positive.

@@ -88,6 +88,21 @@ fn a_second_cycle_goes_on_from_the_first() {
 }
 
 #[test]
+fn a_file_of_mesh_and_fields_has_them_too() {
+    let work = Workplace::new();
+    let before = on_a_layer(&work, 3, 0.1);
+    let (field, picked) = (work.path("field.vtu"), work.path("picked.vtu"));
+    let run = |words: &[&str], files: [&Path; 2]| {
+        let run = program().args(words).arg(files[0]).arg("-o").arg(files[1]).output().unwrap();
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        let found = read(files[1]);
+        assert_eq!((bits(&found), found.fields.len()), (bits(&before), 1));
+    };
+    run(&["field", "evaluate", "--function", "tanh3"], [&work.path("in.su2"), &field]);
+    run(&["field", "pick", "--take", "1"], [&field, &picked]);
+}
+
+#[test]
 fn what_does_not_keep_them_says_so() {
     let work = Workplace::new();
     on_a_layer(&work, 2, 0.1);
