@@ -104,7 +104,8 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Enters the cavity's boundary faces and the declared ones into the face map.
     fn enter_old_faces(&mut self) -> Result<(), Refusal> {
         let state = &mut *self.state;
-        state.face_map.clear();
+        // Each face of a new tetrahedron is that of another one or of the boundary, which has about twice as many faces as old tetrahedra.
+        state.face_map.clear(2 * (state.replacement.old.len() + state.replacement.new.len()) + 2);
         state.set.clear();
         for &t in &state.replacement.old {
             state.set.insert(t.0);

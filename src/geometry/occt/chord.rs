@@ -96,10 +96,12 @@ impl Line {
             return None;
         }
         let has_sides = (p[across] > r) != (q[across] > r);
-        Some(has_sides && {
-            let crossing = p[along] + (r - p[across]) * ((q[along] - p[along]) / (q[across] - p[across]));
-            (from..to).contains(&crossing)
-        })
+        Some(
+            has_sides && {
+                let crossing = p[along] + (r - p[across]) * ((q[along] - p[along]) / (q[across] - p[across]));
+                (from..to).contains(&crossing)
+            },
+        )
     }
 }
 

@@ -257,7 +257,8 @@ mod tests {
                     let length = along[0].hypot(along[1]);
                     // Beyond what OCCT takes for the edge itself.
                     let off = 1e-5 / length;
-                    let beside = |off: f64| [here[0] - off * along[1] * extent[0], here[1] + off * along[0] * extent[1]];
+                    let beside =
+                        |off: f64| [here[0] - off * along[1] * extent[0], here[1] + off * along[0] * extent[1]];
                     for uv in [beside(off), beside(-off)] {
                         if !(0..2).all(|k| (face.range[k][0]..=face.range[k][1]).contains(&uv[k])) {
                             continue;
@@ -266,7 +267,13 @@ mod tests {
                         let curves = Curves { model: &model, face: index as u32, points: &mut Vec::new() };
                         let Some(told) = trim.known(curves, uv) else { continue };
                         counts[1] += 1;
-                        assert_eq!(told, on.inside_by_occt(index as u32, uv), "{name} face {} edge {} at {s}: {uv:?}", index + 1, edge + 1);
+                        assert_eq!(
+                            told,
+                            on.inside_by_occt(index as u32, uv),
+                            "{name} face {} edge {} at {s}: {uv:?}",
+                            index + 1,
+                            edge + 1
+                        );
                     }
                 }
             }
@@ -276,7 +283,14 @@ mod tests {
 
     #[test]
     fn beside_edges_it_is_as_occt_tells() {
-        let names = ["aircraft/transport-half.step", "cube-cylinder.step", "wing.step", "zoo/screw.step", "zoo/cusps.step", "zoo/three-tori.step"];
+        let names = [
+            "aircraft/transport-half.step",
+            "cube-cylinder.step",
+            "wing.step",
+            "zoo/screw.step",
+            "zoo/cusps.step",
+            "zoo/three-tori.step",
+        ];
         let counts = names.map(beside_edges);
         let [all, told] = [0, 1].map(|k: usize| counts.iter().map(|count| count[k]).sum::<usize>());
         assert!(all > 1000 && 100 * told >= 95 * all, "{told} of {all}");

@@ -1,10 +1,10 @@
 //! Which parameters lie in a trimmed face: told at once by a grid over its range, and in the cells that an edge crosses by what a line to another
 //! cell crosses. Where that does not tell, OCCT's classifier is asked.
+use super::chord::{Curves, Source};
 use super::curve::Curve;
 use super::evaluator::OcctEvaluator;
 use super::hull::{self, as_jet};
 use super::pieces::cuts;
-use super::chord::{Curves, Source};
 use super::side::{Piece, Sides};
 use crate::geometry::{EdgeUse, FaceEntity, Topology, Use};
 use crate::mesh::vector::Vec3;

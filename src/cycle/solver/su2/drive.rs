@@ -148,9 +148,8 @@ fn run(folder: &Path, plan: &Plan, cfg: &Cfg, stop: &AtomicBool) -> Result<(), F
     command.args(before).arg(RUN).current_dir(folder);
     command.envs(plan.environment.iter().map(|(name, value)| (name, value)));
     // In the group that the loop gave us, which ends as one.
-    let run = |stop: &AtomicBool| {
-        Runner { tie: Tie::Shared, limit: None, stop, log: Some(&said) }.run(&mut command, |_| ())
-    };
+    let run =
+        |stop: &AtomicBool| Runner { tie: Tie::Shared, limit: None, stop, log: Some(&said) }.run(&mut command, |_| ());
     let (ended, diverged) = watched(&history, stop, run);
     if let Some(error) = diverged {
         return Err(Failure::Diverged(error));
