@@ -2,8 +2,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// By how many orders of magnitude the first residual, that of the density, may grow beyond that of the first iteration.
-const GROWN: f64 = 3.0;
+/// By how many orders of magnitude the first residual, that of the density, may grow beyond that of the first iteration. From the free stream it
+/// grows by one or so (NACA 0012, Spalart and Allmaras).
+const GROWN: f64 = 4.0;
 
 /// The table, as far as it is looked at.
 struct Table {
@@ -105,10 +106,10 @@ mod tests {
         assert_eq!((check(&path), rows(&path)), (Ok(()), 2));
         std::fs::write(&path, text.replace("-3.1", "nan")).unwrap();
         assert!(check(&path).unwrap_err().contains("nan in the last row is no number"));
-        std::fs::write(&path, text.replace("-3.1", "0.8")).unwrap();
+        std::fs::write(&path, text.replace("-3.1", "1.8")).unwrap();
         assert_eq!(check(&path), Ok(()));
-        std::fs::write(&path, text.replace("-3.1", "1.2")).unwrap();
-        assert!(check(&path).unwrap_err().contains("rms[Rho] has grown from -2.1 to 1.2"));
+        std::fs::write(&path, text.replace("-3.1", "2.2")).unwrap();
+        assert!(check(&path).unwrap_err().contains("rms[Rho] has grown from -2.1 to 2.2"));
         // A row that SU2 has not written to its end.
         std::fs::write(&path, format!("{text}          0,          2,     -")).unwrap();
         assert_eq!((check(&path), rows(&path)), (Ok(()), 2));
