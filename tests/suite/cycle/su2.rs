@@ -82,6 +82,19 @@ fn su2_restarts_from_the_transferred_solution() {
     assert!(place.refusal(&[]).contains("./none is not there: install SU2"));
 }
 
+#[test]
+fn functionals_are_means_of_the_last_iterations() {
+    let place = place(&CONFIG.replace("binary = false", "binary = false\nmean = 2"), SU2);
+    place.run(&[]);
+    let report = place.report();
+    let first = &report["cycles"][0]["functionals"];
+    // The history has 0 and then the number of points.
+    assert_eq!((first["CL"].as_f64(), first["CD"].as_f64()), (Some(32.0), Some(4.5)));
+    let none = Place::new(&CONFIG.replace("binary = false", "mean = 0"));
+    none.write("cube.meshb", "");
+    assert!(none.refusal(&[]).contains("mean: give 1 for the last iteration alone"));
+}
+
 /// The same, but it diverges to second order with a Courant number above 0.5, unless it begins where first order has ended.
 fn diverging() -> String {
     let check = r#"

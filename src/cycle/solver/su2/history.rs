@@ -6,36 +6,43 @@ use std::path::Path;
 /// grows by one or so (NACA 0012, Spalart and Allmaras).
 const GROWN: f64 = 4.0;
 
-/// The table, as far as it is looked at.
+/// The table.
 struct Table {
     /// Names of the columns.
     head: Vec<String>,
-    /// The first row and the last; empty where there is none.
-    first: Vec<String>,
-    last: Vec<String>,
-    /// Rows, without the head.
-    rows: u64,
+    /// The rows below them, lines of text.
+    rows: Vec<String>,
+}
+
+/// The words of a line.
+fn words(line: &str) -> Vec<String> {
+    line.split(',').map(|word| word.trim().trim_matches('"').trim().to_owned()).collect()
+}
+
+/// A finite number.
+fn number(word: &str) -> Option<f64> {
+    word.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
 impl Table {
     fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let clean = |word: &str| word.trim().trim_matches('"').trim().to_owned();
-        let words = |line: &str| line.split(',').map(clean).collect();
         // SU2 may be at work: a line without its end is not a row yet.
         let whole = &text[..text.rfind('\n').map_or(0, |at| at + 1)];
         let mut lines = whole.lines().filter(|line| !line.trim().is_empty());
         let head = lines.next().map_or_else(Vec::new, words);
-        let first = lines.next();
-        let (rows, last) = lines.fold((u64::from(first.is_some()), first), |(rows, _), line| (rows + 1, Some(line)));
-        let [first, last] = [first, last].map(|row| row.map_or_else(Vec::new, words));
-        Ok(Self { head, first, last, rows })
+        Ok(Self { head, rows: lines.map(str::to_owned).collect() })
+    }
+
+    /// So many rows at the end, or as many as there are.
+    fn end(&self, count: usize) -> Vec<Vec<String>> {
+        self.rows[self.rows.len() - count.min(self.rows.len())..].iter().map(|row| words(row)).collect()
     }
 }
 
 /// Rows of the table, without its head.
 pub fn rows(path: &Path) -> u64 {
-    Table::read(path).map_or(0, |table| table.rows)
+    Table::read(path).map_or(0, |table| table.rows.len() as u64)
 }
 
 /// Refuses a table whose residuals end in what is no number, or have grown by [`GROWN`] orders of magnitude: SU2 itself goes on to the end then. Other
@@ -44,10 +51,11 @@ pub fn rows(path: &Path) -> u64 {
 /// # Errors
 /// What is wrong, or that it is not there.
 pub fn check(path: &Path) -> Result<(), String> {
-    let Table { head, first, last, .. } = Table::read(path)?;
+    let table = Table::read(path)?;
+    let head = &table.head;
     let diverged = |what: &str| Err(format!("{}: {what}: SU2 has diverged", path.display()));
-    let value = |word: &str| word.parse::<f64>().ok().filter(|value| value.is_finite());
-    let of = |row: &[String], at: usize| row.get(at).and_then(|word| value(word));
+    let [first, last] = [table.rows.first(), table.rows.last()].map(|row| row.map_or_else(Vec::new, |row| words(row)));
+    let of = |row: &[String], at: usize| row.get(at).and_then(|word| number(word));
     let mut residuals = (0..head.len().min(last.len())).filter(|&at| head[at].starts_with("rms")).peekable();
     if let Some(&at) = residuals.peek()
         && let Some((from, to)) = of(&first, at).zip(of(&last, at))
@@ -55,33 +63,37 @@ pub fn check(path: &Path) -> Result<(), String> {
     {
         return diverged(&format!("{} has grown from {from} to {to} (logarithms)", head[at]));
     }
-    match residuals.find(|&at| value(&last[at]).is_none()) {
+    match residuals.find(|&at| number(&last[at]).is_none()) {
         Some(at) => diverged(&format!("{} in the last row is no number", last[at])),
         None => Ok(()),
     }
 }
 
-/// The values of some columns in the last row.
+/// The means of some columns over so many rows at the end, or as many as there are.
 ///
 /// # Errors
 /// When the file or a column is not there, or a value is no number.
-pub fn last(path: &Path, wanted: &[String]) -> Result<BTreeMap<String, f64>, String> {
+pub fn means(path: &Path, wanted: &[String], over: usize) -> Result<BTreeMap<String, f64>, String> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let Table { head, last, rows, .. } = Table::read(path)?;
-    if rows == 0 {
+    let table = Table::read(path)?;
+    let rows = table.end(over);
+    if rows.is_empty() {
         return Err(named(&"no row: SU2 made no iteration"));
     }
     let find = |name: &String| {
-        let at = head.iter().position(|column| column == name).ok_or_else(|| {
+        let at = table.head.iter().position(|column| column == name).ok_or_else(|| {
             named(&format!(
                 "no column '{name}': mend [solver.su2] functionals or HISTORY_OUTPUT; there are {}",
-                head.join(", ")
+                table.head.join(", ")
             ))
         })?;
-        let value = last.get(at).and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
-        let value = value
-            .ok_or_else(|| named(&format!("{name} is no number in the last row: did SU2 diverge? Its log tells")))?;
-        Ok((name.clone(), value))
+        let values = rows.iter().map(|row| row.get(at).and_then(|word| number(word)));
+        let sum: Option<f64> = values.sum();
+        let sum = sum.ok_or_else(|| {
+            let rows = if over > 1 { format!("all of the last {} rows", rows.len()) } else { "the last row".into() };
+            named(&format!("{name} is no number in {rows}: did SU2 diverge? Its log tells"))
+        })?;
+        Ok((name.clone(), sum / rows.len() as f64))
     };
     wanted.iter().map(find).collect()
 }
@@ -91,18 +103,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_row_by_the_names_of_columns() {
+    fn rows_at_the_end_by_the_names_of_columns() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
         let text = "\"Time_Iter\",\"Inner_Iter\",     \"rms[Rho]\"    ,        \"CL\"       ,        \"CD\"       \n          0,          0,     -2.1,  0.1, 0.02\n          0,          1,     -3.1,  0.288, 1.5e-02\n";
         std::fs::write(&path, text).unwrap();
-        let found = last(&path, &["CL".into(), "CD".into()]).unwrap();
-        assert_eq!(found, BTreeMap::from([("CL".into(), 0.288), ("CD".into(), 0.015)]));
+        let found = |over| means(&path, &["CL".into(), "CD".into()], over).unwrap();
+        assert_eq!(found(1), BTreeMap::from([("CL".into(), 0.288), ("CD".into(), 0.015)]));
+        assert_eq!(found(2), BTreeMap::from([("CL".into(), 0.194), ("CD".into(), 0.0175)]));
+        assert_eq!(found(9), found(2));
         assert!(
-            last(&path, &["CMz".into()]).unwrap_err().contains("there are Time_Iter, Inner_Iter, rms[Rho], CL, CD")
+            means(&path, &["CMz".into()], 1).unwrap_err().contains("there are Time_Iter, Inner_Iter, rms[Rho], CL, CD")
         );
         std::fs::write(&path, text.replace("0.288", "-nan")).unwrap();
-        assert!(last(&path, &["CL".into()]).unwrap_err().contains("diverge"));
+        assert!(
+            means(&path, &["CL".into()], 2)
+                .unwrap_err()
+                .contains("CL is no number in all of the last 2 rows: did SU2 diverge")
+        );
         assert_eq!((check(&path), rows(&path)), (Ok(()), 2));
         std::fs::write(&path, text.replace("-3.1", "nan")).unwrap();
         assert!(check(&path).unwrap_err().contains("nan in the last row is no number"));

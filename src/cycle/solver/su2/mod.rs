@@ -48,6 +48,9 @@ pub struct Config {
     /// Whether solutions are handed over in SU2's binary files, or else as text.
     #[serde(default = "yes")]
     pub binary: bool,
+    /// Functionals are the means of so many iterations at the end of a solve: about these goes a flow that does not come to rest.
+    #[serde(default = "one")]
+    pub mean: u32,
     /// Columns of the history that are functionals.
     #[serde(default = "coefficients")]
     pub functionals: Vec<String>,
@@ -173,6 +176,9 @@ impl Solver for Config {
         if self.change.is_some_and(|change| !(change.is_finite() && change > 0.0)) {
             return Err("[solver.su2] change: give a positive number, such as 1e-6".into());
         }
+        if self.mean == 0 {
+            return Err("[solver.su2] mean: give 1 for the last iteration alone, or more".into());
+        }
         let remedy = "install SU2 (https://su2code.github.io) and put its bin folder on the PATH, or give [solver.su2] program with its folder";
         if find_program(&self.program, base).is_none() {
             return Err(format!("[solver.su2] {} is not there: {remedy}", self.program));
@@ -214,7 +220,8 @@ impl Solver for Config {
 
     fn collect(&self, job: &Job<'_>) -> Result<Solved, String> {
         let fields = handover::read_fields(&self.solution(job.folder, RESTART), job, &[])?;
-        let mut functionals = history::last(&job.folder.join(HISTORY).with_extension("csv"), &self.functionals)?;
+        let mut functionals =
+            history::means(&job.folder.join(HISTORY).with_extension("csv"), &self.functionals, self.mean as usize)?;
         let path = job.folder.join(RESULT);
         let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let outcome = std::fs::read(&path).map_err(|error| named(&error))?;
