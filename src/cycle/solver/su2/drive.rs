@@ -28,7 +28,7 @@ const SLOWER: f64 = 4.0;
 /// How often a solve is run again.
 const AGAIN: u32 = 3;
 
-/// How often the history of a run is looked at, and how often it is looked at whether the run shall end.
+/// The time between two looks at the history of a run, and between two looks at whether the run shall end.
 const LOOK: Duration = Duration::from_secs(5);
 const TICK: Duration = Duration::from_millis(20);
 
@@ -167,15 +167,15 @@ fn run(folder: &Path, plan: &Plan, cfg: &Cfg, stop: &AtomicBool) -> Result<(), F
     let has_diverged = || std::fs::read(&log).is_ok_and(|text| String::from_utf8_lossy(&text).contains("diverged"));
     match ended {
         Ended::Done => history::check(&history).map_err(Failure::Diverged),
-        // Before the first iteration nothing can diverge: it does not understand what it is given.
+        // A crash before the first iteration is no divergence.
         Ended::Crashed(_) if history::rows(&history) > 0 => Err(Failure::Diverged(told())),
         Ended::Code(_) if has_diverged() => Err(Failure::Diverged(told())),
         _ => Err(Failure::Stopped(told())),
     }
 }
 
-/// Runs SU2 by `run`, which ends it where the flag that it is given is set: as `stop` is, or once its history tells that it has diverged; what that
-/// tells too.
+/// Runs SU2 by `run`, which must end it when the flag that it gets is set: when `stop` is, or when the history tells of divergence. Returns what `run`
+/// does, and what the history told.
 fn watched<T>(history: &Path, stop: &AtomicBool, run: impl FnOnce(&AtomicBool) -> T) -> (T, Option<String>) {
     let [shall_end, has_ended] = [false, false].map(AtomicBool::new);
     let watch = || {
@@ -187,7 +187,7 @@ fn watched<T>(history: &Path, stop: &AtomicBool, run: impl FnOnce(&AtomicBool) -
             }
             if looked.elapsed() > LOOK {
                 looked = Instant::now();
-                // There is none before its first iteration.
+                // There is no history before the first iteration.
                 if history.exists()
                     && let Err(error) = history::check(history)
                 {

@@ -48,7 +48,7 @@ pub struct Config {
     /// Whether solutions are handed over in SU2's binary files, or else as text.
     #[serde(default = "yes")]
     pub binary: bool,
-    /// Functionals are the means of so many iterations at the end of a solve: about these goes a flow that does not come to rest.
+    /// Functionals are the means of the last so many iterations of a solve, for a flow that does not come to rest; 1 is the last one alone.
     #[serde(default = "one")]
     pub mean: u32,
     /// Columns of the history that are functionals.
