@@ -268,10 +268,10 @@ impl<A: Access> Worker<'_, '_, A> {
         if replacement.new.is_empty() { Err(Refusal::Topology) } else { Ok(worst) }
     }
 
-    /// Least and greatest metric length from the apex to the vertices that it will be joined to.
-    pub fn star_lengths(&self, apex: VertexId) -> (f64, f64) {
-        let lengths = self.state.star.link.iter().map(|&v| self.length(apex, v));
-        lengths.fold((f64::INFINITY, 0.0), |(least, greatest), l| (l.min(least), l.max(greatest)))
+    /// The least length from the apex of the star that was built to its vertices, but for one of them.
+    pub fn shortest_of_star(&self, apex: VertexId, but: VertexId) -> f64 {
+        let others = self.state.star.link.iter().filter(|&&v| v != but);
+        others.map(|&v| self.length(apex, v)).fold(f64::INFINITY, f64::min)
     }
 
     /// Worst kept mean ratio of the tetrahedra that would go.

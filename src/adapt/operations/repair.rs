@@ -7,7 +7,6 @@ use crate::adapt::core::star::{Bounds, Seed};
 use crate::adapt::core::worker::Worker;
 use crate::adapt::operations::collapse::onto_end::CollapseScratch;
 use crate::adapt::schedule::Operation;
-use crate::mesh::vector::{Vec3, dot, lerp, sub};
 use std::ops::RangeInclusive;
 
 /// The worst mean ratio of a larger cavity must grow by this factor.
@@ -73,7 +72,10 @@ impl<A: Access> Worker<'_, '_, A> {
         for (_, i, j) in edges {
             for x in (0..4).filter(|&x| x != i && x != j) {
                 let (a, b) = (vertices[i].min(vertices[j]), vertices[i].max(vertices[j]));
-                let Some(opposite) = self.opposite_point(vertices[x], a, b) else { continue };
+                let (share, opposite) = self.closest_between(vertices[x], a, b);
+                if !BETWEEN.contains(&share) {
+                    continue;
+                }
                 match self.split_at(EdgeItem { a, b, tet: t }, opposite) {
                     Err(Refusal::Conflict) => return Err(Refusal::Conflict),
                     Err(_) => {}
@@ -82,15 +84,6 @@ impl<A: Access> Worker<'_, '_, A> {
             }
         }
         Err(Refusal::Shape)
-    }
-
-    /// The point of the line a–b closest to x in the metric, where it is well between them.
-    fn opposite_point(&self, x: VertexId, a: VertexId, b: VertexId) -> Option<Vec3> {
-        let [p, q, r] = [a, b, x].map(|v| self.store.position(v));
-        let (along, off) = (sub(q, p), sub(r, p));
-        let metric = self.store.metric(x);
-        let share = dot(metric.apply(off), along) / metric.quadratic(along);
-        BETWEEN.contains(&share).then(|| lerp(p, q, share))
     }
 
     /// Makes the ball of a vertex a star over a cavity that grows where tetrahedra would be bad.

@@ -78,6 +78,26 @@ fn lengths(mesh: &TetMesh, reference: i32) -> impl Iterator<Item = f64> + '_ {
     mesh.edges.iter().filter(move |edge| edge.1 == reference).map(move |edge| length(edge.0))
 }
 
+/// A wedge with a blunt edge at x = 1: a strip between two ridges, a fifth of the sizes wide.
+#[test]
+fn ridges_side_by_side_are_split_to_unit_length() {
+    let work = Workplace::new();
+    let mut mesh = one(1);
+    mesh.vertices.iter_mut().for_each(|p| *p = [p[0], 3.0 * p[1], 0.5 + (p[2] - 0.5) * (1.0 - 0.98 * p[0])]);
+    let metric = work.metric(&mesh, |_| isotropic(0.1));
+    let found = work.adapt(&work.mesh(&mesh), &["--metric", &metric]);
+    let at_the_end = |nodes: [u32; 2]| nodes.map(|v| found.mesh.vertices[v as usize]);
+    let along: Vec<f64> = (found.mesh.edges.iter().map(|(nodes, _)| at_the_end(nodes)))
+        .filter(|ends| ends.iter().all(|p| p[0] == 1.0) && (ends[0][1] - ends[1][1]).abs() > 1e-9)
+        .map(|[a, b]| distance(a, b) / 0.1)
+        .collect();
+    assert!((along.iter().sum::<f64>() - 60.0).abs() < 1e-9, "the two ridges: {along:?}");
+    // Where points near the other ridge were refused, edges of twice the size stayed.
+    assert!(along.iter().all(|&length| length < 1.6), "{along:?}");
+    let least = found.report["statistics"]["mean_ratios"]["min"].as_f64().unwrap();
+    assert!(least > 0.34, "{least}");
+}
+
 #[test]
 fn a_fine_cube_is_coarsened() {
     let work = Workplace::new();

@@ -203,10 +203,10 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Length);
         }
         let placed = self.place(entity, point, around);
-        let result = self.insert(seed, seeds, placed, around[0]);
+        let result = self.insert(seed, seeds, placed, (around[0], VertexId::NONE));
         if matches!(result, Err(Refusal::Inverted | Refusal::Topology)) && placed.point != point {
             // As in split_at: there is no room on the model yet.
-            let v = self.insert(seed, seeds, Placed { point, ..placed }, around[0])?;
+            let v = self.insert(seed, seeds, Placed { point, ..placed }, (around[0], VertexId::NONE))?;
             self.state.unprojected.push(v);
             return Ok(());
         }

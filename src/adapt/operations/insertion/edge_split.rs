@@ -8,8 +8,9 @@ use crate::adapt::core::vertex_moves::Placed;
 use crate::adapt::core::worker::Worker;
 use crate::adapt::schedule::Operation;
 use crate::geometry::Entity;
-use crate::mesh::vector::{Vec3, lerp, sub};
+use crate::mesh::vector::{Vec3, dot, lerp, sub};
 use crate::metric::quality::mean_length;
+use std::ops::RangeInclusive;
 
 /// The place on a–b up to which the length in the metric is this share of the whole, where sizes change geometrically along it. la and
 /// lb are the lengths of the whole edge in the metrics of its ends.
@@ -23,6 +24,9 @@ fn at_share(share: f64, la: f64, lb: f64) -> f64 {
 fn cut_off(length: f64) -> f64 {
     if length * length > 6.0 && length * length < 18.0 { 1.0 / 3.0 } else { 0.5 }
 }
+
+/// Where along a ridge it may be split opposite to a vertex of another.
+const FACING: RangeInclusive<f64> = 0.25..=0.75;
 
 /// Splits edges that are too long.
 pub struct Split;
@@ -56,29 +60,38 @@ impl<A: Access> Worker<'_, '_, A> {
         if length <= self.context.limits.long {
             return Err(Refusal::Stale);
         }
+        self.gather_shell(a, b, tet)?;
         if self.context.limits.waits {
-            self.gather_shell(a, b, tet)?;
             let now = self.store.clock();
             if self.state.shell.tets.iter().any(|&t| self.store.stamp(t) == now) {
                 return Err(Refusal::Stale);
             }
         }
-        self.split_at(EdgeItem { a, b, tet }, self.cut(a, b))
+        match self.facing_vertex([a, b]) {
+            Some((x, point)) => self.split_shell([a, b], point, x),
+            None => self.split_shell([a, b], self.cut(a, b), VertexId::NONE),
+        }
     }
 
     /// Splits an edge whose vertices are claimed, at a point of its straight line, on its entity of the model.
     pub fn split_at(&mut self, EdgeItem { a, b, tet }: EdgeItem, straight: Vec3) -> Result<(), Refusal> {
         self.gather_shell(a, b, tet)?;
+        self.split_shell([a, b], straight, VertexId::NONE)
+    }
+
+    /// Splits the edge whose shell is gathered, at a point of its straight line, on its entity of the model. The new edge to `facing` may be
+    /// as short as it is.
+    fn split_shell(&mut self, [a, b]: [VertexId; 2], straight: Vec3, facing: VertexId) -> Result<(), Refusal> {
         if self.state.shell.is_shared() {
             return Err(Refusal::Geometry);
         }
         let entity = self.entity_of_edge(a, b);
         let placed = self.place(entity, straight, &[a, b]);
         let seeds = std::mem::take(&mut self.state.shell.tets);
-        let mut result = self.insert(Seed::Edge(a, b), &seeds, placed, a);
+        let mut result = self.insert(Seed::Edge(a, b), &seeds, placed, (a, facing));
         if matches!(result, Err(Refusal::Inverted | Refusal::Topology)) && placed.point != straight {
             // No room on the model: until there is, the vertex stays on the straight edge (projection.rs).
-            result = self.insert(Seed::Edge(a, b), &seeds, Placed { point: straight, ..placed }, a);
+            result = self.insert(Seed::Edge(a, b), &seeds, Placed { point: straight, ..placed }, (a, facing));
             if let Ok(v) = result {
                 self.state.unprojected.push(v);
             }
@@ -89,6 +102,35 @@ impl<A: Access> Worker<'_, '_, A> {
             self.split_ridge([a, b], v);
         }
         Ok(())
+    }
+
+    /// The nearest vertex of another edge of the model, nearer than new edges may be short, that lies opposite to the ridge a–b, whose shell
+    /// is gathered; and the point of a–b that it faces. Where two edges of the model run side by side, nearer than the metric's sizes (a
+    /// blunt trailing edge), each point of one is too near to the other: if that counted, the ridges would stay too long
+    /// (docs/decisions/surface.md).
+    fn facing_vertex(&self, [a, b]: [VertexId; 2]) -> Option<(VertexId, Vec3)> {
+        let curve = self.store.ridge_curve(a, b)?;
+        let is_on_another = |x: VertexId| match self.store.entity(x) {
+            Entity::Edge(other) => other != curve,
+            Entity::Vertex(_) => true,
+            Entity::Face(_) | Entity::Interior => false,
+        };
+        let near = self.context.limits.shortest_new.powi(2);
+        let found = self.state.shell.ring.iter().copied().filter(|&x| is_on_another(x)).filter_map(|x| {
+            let (share, point) = self.closest_between(x, a, b);
+            let off = self.store.metric(x).quadratic(sub(self.store.position(x), point));
+            (FACING.contains(&share) && off < near).then_some((off, x, point))
+        });
+        found.min_by(|x, y| x.0.total_cmp(&y.0)).map(|(_, x, point)| (x, point))
+    }
+
+    /// The point of the line a–b closest to x in the metric there, and its share of the way from a to b.
+    pub fn closest_between(&self, x: VertexId, a: VertexId, b: VertexId) -> (f64, Vec3) {
+        let [p, q, r] = [a, b, x].map(|v| self.store.position(v));
+        let (along, off) = (sub(q, p), sub(r, p));
+        let metric = self.store.metric(x);
+        let share = dot(metric.apply(off), along) / metric.quadratic(along);
+        (share, lerp(p, q, share))
     }
 
     /// The point of the straight edge where it is cut.

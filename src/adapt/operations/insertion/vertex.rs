@@ -15,12 +15,18 @@ const SHORT_FOR_LONG: f64 = 0.7;
 const NEARLY_MET: f64 = 0.5;
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Inserts a vertex into the star over `seeds`; returns it.
+    /// Inserts a vertex into the star over `seeds`; returns it. `near` is a vertex beside it; the edge to `facing` may be as short as it is.
     ///
     /// # Errors
     /// Besides those of the star: `Length` when an edge would be too short, `Shape` when a tetrahedron would
     /// be worse than the floor and than what stood there, `Normal` on the surface.
-    pub fn insert(&mut self, seed: Seed, seeds: &[TetId], placed: Placed, near: VertexId) -> Result<VertexId, Refusal> {
+    pub fn insert(
+        &mut self,
+        seed: Seed,
+        seeds: &[TetId],
+        placed: Placed,
+        (near, facing): (VertexId, VertexId),
+    ) -> Result<VertexId, Refusal> {
         let limits = &self.context.limits;
         // A much too long edge may be split at the price of a bad tetrahedron or a short edge, which later operations repair.
         let excess = match seed {
@@ -30,25 +36,27 @@ impl<A: Access> Worker<'_, '_, A> {
         let shortest_new = limits.shortest_new * excess.powf(SHORT_FOR_LONG);
         if let Seed::Edge(a, b) = seed
             && excess > NEARLY_MET
-            && self.is_near_ring([a, b], placed.point, shortest_new)
+            && self.is_near_ring([a, b], placed.point, shortest_new, facing)
         {
             return Err(Refusal::Length);
         }
         let state = self.state_at(placed, self.store.hint(near));
         self.with_new_vertex(&state, |worker, v| {
-            worker.try_insert(seed, seeds, v, (excess, shortest_new))?;
+            worker.try_insert(seed, seeds, (v, facing), (excess, shortest_new))?;
             worker.commit()
         })
     }
 
     /// Whether a point on an edge is too near to a vertex of the edge's ring, in the metrics of that vertex and of both ends. Where sizes are nearly
     /// met, the metric at the point lies between these, and need not be asked.
-    fn is_near_ring(&self, ends: [VertexId; 2], point: Vec3, limit: f64) -> bool {
+    fn is_near_ring(&self, ends: [VertexId; 2], point: Vec3, limit: f64, facing: VertexId) -> bool {
         let square = limit * limit;
         let ends = ends.map(|v| self.store.metric(v));
         self.state.shell.ring.iter().any(|&x| {
             let way = sub(self.store.position(x), point);
-            self.store.metric(x).quadratic(way) < square && ends.iter().all(|m| m.quadratic(way) < square)
+            x != facing
+                && self.store.metric(x).quadratic(way) < square
+                && ends.iter().all(|m| m.quadratic(way) < square)
         })
     }
 
@@ -56,12 +64,12 @@ impl<A: Access> Worker<'_, '_, A> {
         &mut self,
         seed: Seed,
         seeds: &[TetId],
-        v: VertexId,
+        (v, facing): (VertexId, VertexId),
         (excess, shortest_new): (f64, f64),
     ) -> Result<(), Refusal> {
         let limits = self.context.limits;
         if let Seed::Edge(..) = seed
-            && self.state.shell.ring.iter().any(|&x| self.is_shorter(v, x, shortest_new))
+            && self.state.shell.ring.iter().any(|&x| x != facing && self.is_shorter(v, x, shortest_new))
         {
             // The vertex is joined to the ring in any case.
             return Err(Refusal::Length);
@@ -74,8 +82,7 @@ impl<A: Access> Worker<'_, '_, A> {
                 return Err(Refusal::Shape);
             }
         }
-        let (shortest, _) = self.star_lengths(v);
-        if shortest < shortest_new {
+        if self.shortest_of_star(v, facing) < shortest_new {
             return Err(Refusal::Length);
         }
         // Where triangles stand across a round edge that the mesh does not resolve, the model's normal near their centroids means little.
