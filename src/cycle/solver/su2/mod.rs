@@ -38,6 +38,12 @@ pub struct Config {
     /// Further options of SU2, which win over all others: { CFL_NUMBER = "5" }.
     #[serde(default)]
     pub set: BTreeMap<String, String>,
+    /// Options of SU2 in the first solves alone, which win over `set`: a scheme that is steadier on a coarse mesh, from the free stream.
+    #[serde(default)]
+    pub first: BTreeMap<String, String>,
+    /// How many solves these are.
+    #[serde(default = "one")]
+    pub first_solves: u32,
     /// Iterations of first order before a solve that has diverged is run again, slower.
     #[serde(default = "first_order")]
     pub first_order: u32,
@@ -104,8 +110,8 @@ const CONFIG: &str = "su2.cfg";
 const ITERATIONS: &str = "iterations";
 
 impl Config {
-    /// The configuration of a solve.
-    fn cfg(&self, base: &Path, restarts: bool) -> Result<Cfg, String> {
+    /// The configuration of the solve of a cycle, from 1.
+    fn cfg(&self, base: &Path, cycle: u32, restarts: bool) -> Result<Cfg, String> {
         let mut cfg = match (&self.config, &self.flow) {
             (Some(path), None) => Cfg::read(&base.join(path))?,
             (None, Some(flow)) => flow.cfg(),
@@ -131,7 +137,8 @@ impl Config {
             cfg.set("ITER", &iterations.to_string());
         }
         self.until(&mut cfg);
-        self.set.iter().for_each(|(key, value)| cfg.set(key, value));
+        let first = (cycle <= self.first_solves).then_some(&self.first);
+        self.set.iter().chain(first.into_iter().flatten()).for_each(|(key, value)| cfg.set(key, value));
         Ok(cfg)
     }
 }
@@ -171,7 +178,7 @@ impl Config {
 
 impl Solver for Config {
     fn check(&self, base: &Path) -> Result<(), String> {
-        self.cfg(base, false)?;
+        self.cfg(base, 1, false)?;
         self.flow.as_ref().map_or(Ok(()), Conditions::check)?;
         if self.change.is_some_and(|change| !(change.is_finite() && change > 0.0)) {
             return Err("[solver.su2] change: give a positive number, such as 1e-6".into());
@@ -207,7 +214,7 @@ impl Solver for Config {
         if job.before.is_some() {
             handover::write_fields(&self.solution(job.folder, BEFORE), &data)?;
         }
-        self.cfg(job.base, job.before.is_some())?.write(&job.folder.join(CONFIG))?;
+        self.cfg(job.base, job.cycle, job.before.is_some())?.write(&job.folder.join(CONFIG))?;
         let environment = launch::environment(self.processes);
         let plan = Plan { words: self.words(job.base), environment, first_order: self.first_order };
         let path = job.folder.join(PLAN);
@@ -245,7 +252,7 @@ mod tests {
         let text = "% mine\nMACH_NUMBER= 0.84 % transonic\nMESH_FILENAME= old.su2\nRESTART_SOL=YES\nMARKER_FAR= ( far, \\\n  away )\nVOLUME_OUTPUT= (COORDINATES, SOLUTION)\nITER= 9\n";
         std::fs::write(folder.path().join("mine.cfg"), text).unwrap();
         let config = config("config = 'mine.cfg'\nset = { CFL_NUMBER = '5' }");
-        let written = config.cfg(folder.path(), false).unwrap().text();
+        let written = config.cfg(folder.path(), 1, false).unwrap().text();
         for line in [
             "MESH_FILENAME= mesh.su2",
             "RESTART_SOL= NO",
@@ -257,7 +264,16 @@ mod tests {
             assert_eq!(written.lines().filter(|found| *found == line).count(), 1, "{line}\n{written}");
         }
         assert!(written.contains("MARKER_FAR= ( far, \\\n  away )") && !written.contains("old.su2"), "{written}");
-        assert!(config.cfg(folder.path(), true).unwrap().text().contains("RESTART_SOL= YES"));
+        assert!(config.cfg(folder.path(), 2, true).unwrap().text().contains("RESTART_SOL= YES"));
+    }
+
+    #[test]
+    fn the_first_solves_have_options_of_their_own() {
+        let flow = "flow = { mach = 0.5, walls = ['w'], farfield = ['f'] }";
+        let config =
+            config(&format!("{flow}\nset = {{ CFL_NUMBER = '50' }}\nfirst = {{ CFL_NUMBER = '2' }}\nfirst_solves = 2"));
+        let courant = |cycle: u32| config.cfg(Path::new("/"), cycle, cycle > 1).unwrap().get("CFL_NUMBER").unwrap();
+        assert_eq!([1, 2, 3].map(courant), ["2", "2", "50"]);
     }
 
     #[test]
