@@ -30,11 +30,13 @@ WALL = f"upper+lower:yplus=1,re=6e6,length=0.5,growth=1.25,chord=1,side0:h={1.2 
 FIRST, HMAX = 6, 100
 # Lift and drag of TMR (CFL3D on 897 x 257 points, far field at 500 chords) by angle.
 PUBLISHED = {10: {"CL": 1.091, "CD": 0.0123}, 0: {"CD": 0.00819}}
+# How many solves are by JST; the others are by Roe's scheme, which has less dissipation in layers, and more drag at 10°.
+JST = {10: 9, 0: 2}
 # Where the profile of velocities is taken, on the upper side.
 AT = 0.5
 # (target, floor of today), by angle.
 COMMON = [Bound("least ratio", "≥", 0.05, 0.05), Bound("adaptation", "≤", 0.05, 0.05), Bound("greatest ratio at the wall", "≥", 1000, 1000)]
-BOUNDS = {10: [Bound("lift, error", "≤", 0.02, 0.02), Bound("drag, error", "≤", 0.05, 0.05), *COMMON], 0: [Bound("drag, error", "≤", 0.03, 0.2), *COMMON]}
+BOUNDS = {10: [Bound("lift, error", "≤", 0.02, 0.02), Bound("drag, error", "≤", 0.05, 0.05), *COMMON], 0: [Bound("drag, error", "≤", 0.03, 0.03), *COMMON]}
 SHORT = [Bound("lift, error", "≤", 0.02, 0.1), *COMMON]
 
 
@@ -101,7 +103,7 @@ def flown(options, angle, cad, mesh):
     """Runs the loop at an angle; the exit code."""
     name = f"short-{angle}" if options.short else f"loop-{angle}"
     folder = OUT / name
-    values = {"MESH": mesh, "MODEL": cad, "FLOW": HERE / "flow.cfg", "ANGLE": str(angle), "WALLS": WALL, "FOLDER": folder}
+    values = {"MESH": mesh, "MODEL": cad, "FLOW": HERE / "flow.cfg", "ANGLE": str(angle), "SOLVES": JST[angle], "WALLS": WALL, "FOLDER": folder}
     text = loops.filled((HERE / "loop.toml").read_text(), values)
     config = folder.parent / f"{name}.toml"
     config.write_text(loops.replaced(text, {"complexity": 4500, "max_complexity": 4500, "iterations": 400} if options.short else {}))
