@@ -3,11 +3,9 @@
 use crate::adapt::core::access::{Access, Exclusive};
 use crate::adapt::core::ball::Ball;
 use crate::adapt::core::context::Context;
-use crate::adapt::core::edge_list;
-use crate::adapt::core::edge_list::EdgeItem;
+use crate::adapt::core::edge_list::{self, EdgeItem, Wanted};
 use crate::adapt::core::fill::{self, Filled};
 use crate::adapt::core::ids::{EDGE, TetId, VertexId};
-use crate::adapt::core::measure::{is_longer, is_shorter};
 use crate::adapt::core::refusal::{Counts, Refusal};
 use crate::adapt::core::star::{Bounds, Seed};
 use crate::adapt::core::worker::{State, Worker};
@@ -166,14 +164,14 @@ impl<'m> Workbench<'m> {
     /// The edges that are too long, long ones first.
     pub fn long_edges(&self) -> Vec<EdgeItem> {
         let limit = self.context.limits.long;
-        let found = edge_list::listed(Team::alone(), &self.context.store, 0, |a, b| is_longer(a, b, limit));
+        let found = edge_list::listed(Team::alone(), &self.context.store, 0, Wanted::Longer(limit));
         edge_list::in_order(Team::alone(), &found, |edge| edge_list::CLASSES - 1 - u32::from(edge.class))
     }
 
     /// The edges that are too short, short ones first.
     pub fn short_edges(&self) -> Vec<EdgeItem> {
         let limit = self.context.limits.short;
-        let found = edge_list::listed(Team::alone(), &self.context.store, 0, |a, b| is_shorter(a, b, limit));
+        let found = edge_list::listed(Team::alone(), &self.context.store, 0, Wanted::Shorter(limit));
         edge_list::in_order(Team::alone(), &found, |edge| u32::from(edge.class))
     }
 

@@ -118,6 +118,9 @@ pub fn unique_edges(tets: &[[u32; 4]]) -> Vec<[u32; 2]> {
     found
 }
 
+/// Edges that were met last are kept to be known again.
+const MET: usize = 1 << 10;
+
 /// The edges of tetrahedra, known by their lower nodes.
 pub struct Edges<'t> {
     tets: &'t [[u32; 4]],
@@ -146,14 +149,30 @@ impl<'t> Edges<'t> {
 
     /// Calls `f` with the edges whose lower node is in the range, each once, in the order of their nodes.
     pub fn for_each(&self, range: Range<usize>, mut f: impl FnMut([u32; 2])) {
-        let mut upper = Vec::new();
+        let mut upper: Vec<u32> = Vec::new();
+        let mut met = [u64::MAX; MET];
         for low in range {
-            let tets = self.at.row(low).iter().flat_map(|&entry| self.tets[entry as usize / 4]);
+            let row = self.at.row(low);
             upper.clear();
-            upper.extend(tets.filter(|&v| v as usize > low));
+            upper.resize(4 * row.len(), 0);
+            // What is greater and what is met again comes in no order: all is written, and the place taken back if it is not new.
+            let mut count = 0;
+            for &entry in row {
+                for high in self.tets[entry as usize / 4] {
+                    let (edge, known) = ((low as u64) << 32 | u64::from(high), &mut met[high as usize % MET]);
+                    upper[count] = high;
+                    count += usize::from((high as usize > low) & (*known != edge));
+                    *known = edge;
+                }
+            }
+            let upper = &mut upper[..count];
             upper.sort_unstable();
-            upper.dedup();
-            upper.iter().for_each(|&high| f([low as u32, high]));
+            // Two nodes with one place among those that were met last come again.
+            for (at, &high) in upper.iter().enumerate() {
+                if at == 0 || upper[at - 1] != high {
+                    f([low as u32, high]);
+                }
+            }
         }
     }
 }

@@ -27,10 +27,13 @@ impl TetLanes {
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn squared_lengths(tets: &TetLanes) -> [[Lanes; 2]; 6] {
-    EDGES.map(|[i, j]| {
+    // A plain loop: closures are not compiled for the features of this function.
+    let mut lengths = [[Lanes::ZERO; 2]; 6];
+    for (lengths, [i, j]) in lengths.iter_mut().zip(EDGES) {
         let v = sub(&tets.points[j], &tets.points[i]);
-        [i, j].map(|k| quadratic(&tets.metrics[k], &v))
-    })
+        *lengths = [quadratic(&tets.metrics[i], &v), quadratic(&tets.metrics[j], &v)];
+    }
+    lengths
 }
 
 /// vᵀMv, to the bit as [`Sym3::quadratic`](super::Sym3::quadratic).

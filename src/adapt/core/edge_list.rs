@@ -1,9 +1,10 @@
 //! The edges of the mesh that are too long or too short: what is to be split and collapsed.
 use super::ids::{TetId, VertexId};
+use super::measure::{is_longer, is_shorter};
 use super::store::Store;
 use crate::mesh::adjacency::EDGES;
 use crate::metric::edges::TetLanes;
-use crate::metric::lanes::LANES;
+use crate::metric::lanes::{LANES, Lanes};
 use crate::tasks::Team;
 use std::ops::Range;
 
@@ -25,6 +26,35 @@ pub struct Classed {
     pub item: EdgeItem,
     /// Less than [`CLASSES`]: the longer the greater.
     pub class: u16,
+}
+
+/// Which edges are listed.
+#[derive(Clone, Copy)]
+pub enum Wanted {
+    /// Those longer than this.
+    Longer(f64),
+    /// Those shorter than this.
+    Shorter(f64),
+}
+
+impl Wanted {
+    /// Whether an edge is, by its squared lengths in the metrics of both ends.
+    #[inline(always)]
+    fn is(self, a: f64, b: f64) -> bool {
+        match self {
+            Self::Longer(limit) => is_longer(a, b, limit),
+            Self::Shorter(limit) => is_shorter(a, b, limit),
+        }
+    }
+
+    /// Whether one of several edges may be: its length lies between those in both metrics.
+    #[inline(always)]
+    fn may_be(self, a: Lanes, b: Lanes) -> bool {
+        match self {
+            Self::Longer(limit) => a.max(b).any_above(limit * limit),
+            Self::Shorter(limit) => a.min(b).any_below(limit * limit),
+        }
+    }
 }
 
 /// Number of classes of lengths.
@@ -81,11 +111,10 @@ const PART: usize = 1 << 14;
 /// Most parts of the tetrahedra, and most ranges of the vertices.
 const PARTS: usize = 256;
 
-/// The edges of tetrahedra that changed at or after a time and that are `wanted`, by their squared lengths in the metrics of both ends.
-/// They come in the order of their vertices. Between sweeps only.
-pub fn listed(team: Team<'_>, store: &Store, since: u32, wanted: impl Fn(f64, f64) -> bool + Sync) -> Vec<Classed> {
+/// The edges of tetrahedra that changed at or after a time and that are `wanted`, in the order of their vertices. Between sweeps only.
+pub fn listed(team: Team<'_>, store: &Store, since: u32, wanted: Wanted) -> Vec<Classed> {
     let [tets, vertices] = [store.tet_bound(), store.vertex_bound()];
-    let mut parts = team.chunks(PART.max(tets.div_ceil(PARTS)), tets, |range| listed_in(store, range, since, &wanted));
+    let mut parts = team.chunks(PART.max(tets.div_ceil(PARTS)), tets, |range| listed_in(store, range, since, wanted));
     if parts.len() < 2 {
         return parts.pop().unwrap_or_default();
     }
@@ -95,9 +124,20 @@ pub fn listed(team: Team<'_>, store: &Store, since: u32, wanted: impl Fn(f64, f6
     team.join(merged)
 }
 
+/// Places of edges that were found last, to know them again: most that are met twice are met soon.
+const RECENT: usize = 1 << 10;
+
+/// Where an edge is among those, by Knuth's multiplicative hashing.
+#[inline(always)]
+fn place_of([a, b]: [VertexId; 2]) -> usize {
+    let mixed = (u64::from(a.0) << 32 | u64::from(b.0)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    (mixed >> (u64::BITS - RECENT.ilog2())) as usize
+}
+
 /// The wanted edges of some tetrahedra, in the order of their vertices.
-fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: impl Fn(f64, f64) -> bool) -> Vec<Classed> {
+fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: Wanted) -> Vec<Classed> {
     let mut found: Vec<Classed> = Vec::new();
+    let mut recent = [u32::MAX; RECENT];
     let mut changed = store.live_tets_in(tets).filter(|&t| store.stamp(t) >= since).fuse();
     let mut lanes = TetLanes::default();
     let mut some = [TetId::NONE; LANES];
@@ -115,12 +155,22 @@ fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: impl Fn(f64,
         }
         // Lanes beyond the count hold tetrahedra of before.
         for ([i, j], [at_i, at_j]) in EDGES.into_iter().zip(lanes.squared_lengths()) {
+            if !wanted.may_be(at_i, at_j) {
+                continue;
+            }
             for (lane, &t) in some[..count].iter().enumerate() {
                 let (at_i, at_j) = (at_i.0[lane], at_j.0[lane]);
-                if wanted(at_i, at_j) {
+                if wanted.is(at_i, at_j) {
                     let v = store.vertices(t);
-                    let item = EdgeItem { a: v[i].min(v[j]), b: v[i].max(v[j]), tet: t };
-                    found.push(Classed { item, class: class(at_i * at_j) });
+                    let (a, b) = (v[i].min(v[j]), v[i].max(v[j]));
+                    let known = &mut recent[place_of([a, b])];
+                    match found.get_mut(*known as usize) {
+                        Some(Classed { item, .. }) if (item.a, item.b) == (a, b) => item.tet = item.tet.min(t),
+                        _ => {
+                            *known = found.len() as u32;
+                            found.push(Classed { item: EdgeItem { a, b, tet: t }, class: class(at_i * at_j) });
+                        }
+                    }
                 }
             }
         }
@@ -183,7 +233,6 @@ mod tests {
             let (a, b) = (ids[a as usize], ids[b as usize]);
             [a.min(b), a.max(b)]
         };
-        let is_short = |a: f64, b: f64| a < 0.16 && b < 0.16;
         let all: BTreeSet<_> = unique_edges(&mesh.tets.nodes).into_iter().map(ends).collect();
         let length = |[a, b]: [VertexId; 2]| crate::mesh::vector::distance(store.position(a), store.position(b));
         let before = store.clock() + 1;
@@ -195,7 +244,7 @@ mod tests {
                 store.live_tets().filter(|&t| store.stamp(t) >= since).any(|t| holds(&t))
             };
             let expected: BTreeSet<_> = all.iter().filter(touched).copied().filter(|&e| length(e) < 0.4).collect();
-            let found = listed(Team::alone(), &store, since, is_short);
+            let found = listed(Team::alone(), &store, since, Wanted::Shorter(0.4));
             assert_eq!(found.len(), expected.len());
             assert_eq!(found.iter().map(|edge| ends_of(&edge.item)).collect::<BTreeSet<_>>(), expected);
             for Classed { item, class: of } in &found {

@@ -14,9 +14,8 @@ pub use growth::GrowthEnd;
 
 use crate::adapt::core::context::{Context, Limits};
 use crate::adapt::core::edge_list;
-use crate::adapt::core::edge_list::EdgeItem;
+use crate::adapt::core::edge_list::{EdgeItem, Wanted};
 use crate::adapt::core::ids::{TetId, VertexId};
-use crate::adapt::core::measure::is_shorter;
 use crate::adapt::core::refusal::{Counts, Refusal};
 use crate::adapt::core::store::Store;
 use crate::adapt::core::worker::State;
@@ -437,7 +436,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     fn short_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Collapse);
         let (store, limit) = (&self.context.store, self.context.limits.short);
-        let found = edge_list::listed(self.team(), store, since, |a, b| is_shorter(a, b, limit));
+        let found = edge_list::listed(self.team(), store, since, Wanted::Shorter(limit));
         edge_list::in_order(self.team(), &found, |edge| u32::from(edge.class))
     }
 }

@@ -10,7 +10,6 @@ use crate::adapt::core::ball::Ball;
 use crate::adapt::core::context::Context;
 use crate::adapt::core::edge_list;
 use crate::adapt::core::ids::{FACE, TetId, VertexId};
-use crate::adapt::core::measure::is_longer;
 use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::star::Seed;
 use crate::adapt::core::worker::Worker;
@@ -26,7 +25,7 @@ pub const FAR: f64 = 2.0;
 /// The vertices of edges that are too long: those on the model first.
 pub fn active_vertices(team: Team<'_>, context: &Context<'_>) -> Vec<VertexId> {
     let (store, limit) = (&context.store, context.limits.long);
-    let found = edge_list::listed(team, store, 0, |a, b| is_longer(a, b, limit));
+    let found = edge_list::listed(team, store, 0, edge_list::Wanted::Longer(limit));
     let mut vertices: Vec<VertexId> = found.iter().flat_map(|edge| [edge.item.a, edge.item.b]).collect();
     vertices.sort_unstable_by_key(|&v| (store.dimension(v), v));
     vertices.dedup();

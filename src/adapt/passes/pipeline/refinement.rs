@@ -1,8 +1,7 @@
 //! Refinement: long edges are split, or points are created in another way, as long as the mesh may grow.
 use super::{OUT_OF_ORDER, Pipeline};
 use crate::adapt::core::edge_list;
-use crate::adapt::core::edge_list::EdgeItem;
-use crate::adapt::core::measure::is_longer;
+use crate::adapt::core::edge_list::{EdgeItem, Wanted};
 use crate::adapt::operations::insertion::centroid::InsertCentroids;
 use crate::adapt::operations::insertion::centroid::{self, PointCreation};
 use crate::adapt::operations::insertion::edge_split::Split;
@@ -86,7 +85,7 @@ impl Pipeline<'_, '_> {
     fn long_edges(&mut self) -> Vec<EdgeItem> {
         let since = self.begin(Kind::Split);
         let (store, limit) = (&self.context.store, self.context.limits.long);
-        let found = edge_list::listed(self.team(), store, since, |a, b| is_longer(a, b, limit));
+        let found = edge_list::listed(self.team(), store, since, Wanted::Longer(limit));
         let dimension = |item: &EdgeItem| store.dimension(item.a).max(store.dimension(item.b));
         edge_list::in_order(self.team(), &found, |edge| {
             (dimension(&edge.item) + 1) * edge_list::CLASSES - 1 - u32::from(edge.class)
