@@ -11,11 +11,11 @@ use crate::tasks::{GRAIN, Team};
 
 /// Complexity of a metric on the mesh as it is: Σ √det M̄ |k| over the tetrahedra, M̄ the log-Euclidean mean of their vertices; `trace` is that of
 /// ln M at a vertex. Only each `step`-th tetrahedron is asked, for all.
-pub fn complexity(team: Team<'_>, store: &Store, step: u32, trace: impl Fn(VertexId) -> f64 + Sync) -> f64 {
-    f64::from(step)
+pub fn complexity(team: Team<'_>, store: &Store, step: usize, trace: impl Fn(VertexId) -> f64 + Sync) -> f64 {
+    step as f64
         * team.sum(GRAIN, store.tet_bound(), |range| {
             // Several at a time: the exponential function takes most of the time.
-            let (mut tets, mut sum) = (store.live_tets_in(range).filter(|t| t.0 % step == 0).fuse(), 0.0);
+            let (mut tets, mut sum) = (store.live_tets_each(range, step).fuse(), 0.0);
             loop {
                 let (mut logs, mut volumes) = (Lanes::ZERO, Lanes::ZERO);
                 let mut count = 0;

@@ -302,6 +302,12 @@ impl Store {
         (ids.start as u32..ids.end as u32).map(TetId).filter(|&t| self.is_tet(t))
     }
 
+    /// Of these ids each `step`-th, of live tetrahedra.
+    pub fn live_tets_each(&self, ids: std::ops::Range<usize>, step: usize) -> impl Iterator<Item = TetId> + '_ {
+        let asked = (ids.start.next_multiple_of(step)..ids.end).step_by(step);
+        asked.map(|id| TetId(id as u32)).filter(|&t| self.is_tet(t))
+    }
+
     /// Ids of live tetrahedra. Between sweeps only.
     #[cfg(any(test, feature = "internals"))]
     pub fn live_tets(&self) -> impl Iterator<Item = TetId> + '_ {

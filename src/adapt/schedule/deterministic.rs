@@ -43,6 +43,9 @@ const SHARE: usize = 1 << 14;
 /// The parts of so many vertices are found together.
 const AT_ONCE: usize = 8;
 
+/// To look at so many tetrahedra is cheaper than to begin an item that meets another part.
+const TETS_AN_ITEM: usize = if cfg!(test) { 12 } else { 64 };
+
 /// Instead of the part of an item: it waits for another round, or is gone.
 const WAITS: u32 = u32::MAX;
 const GONE: u32 = u32::MAX - 1;
@@ -178,7 +181,9 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     /// For each item the part in which it can be done.
     fn parts_of_items(&self) -> Vec<u32> {
         let store = &self.context.store;
-        let between = if O::WHOLE_BALLS { self.between() } else { Vec::new() };
+        // Where few items are left, they find out by themselves.
+        let is_worth = O::WHOLE_BALLS && self.left.len() * TETS_AN_ITEM > store.tet_bound();
+        let between = if is_worth { self.between() } else { Vec::new() };
         let part_of = |number: &u32| {
             let vertices = self.item(*number).vertices(store);
             if vertices.iter().any(|&v| !v.is_some() || owner(store, v) == 0) {

@@ -16,7 +16,7 @@ const SHAPES: f64 = 0.5;
 /// So many places of the boundary are asked, at the least.
 const SAMPLES: f64 = 10_000.0;
 
-/// For the complexity about so many tetrahedra are asked at most.
+/// About so many tetrahedra are asked at most.
 const MOST_ASKED: usize = 100_000;
 
 /// Chords of a coarse mesh cut through layers along a curved face. There the area is at most so many times that in the two greatest sizes.
@@ -45,20 +45,26 @@ impl Pipeline<'_, '_> {
 
     /// How many vertices are expected: the mesh as it is shows more and more of the metric.
     fn expect(&mut self) {
-        let step = (self.context.store.tet_bound() / MOST_ASKED).max(1) as u32;
-        self.expected = vertices(self.complexity_given.max(self.complexity(step)), self.area_in_metric());
+        self.expected = vertices(self.complexity_given.max(self.complexity(self.asked_each())), self.area_in_metric());
+    }
+
+    /// One tetrahedron in so many is asked where that is enough.
+    fn asked_each(&self) -> usize {
+        (self.context.store.tet_bound() / MOST_ASKED).max(1)
     }
 
     /// Area of the boundary and of interfaces in the metric. On a coarse mesh the source is asked between its vertices.
     fn area_in_metric(&self) -> f64 {
         let store = &self.context.store;
-        let tagged = |range: Range<usize>, step: u32| {
+        let tagged = |range: Range<usize>, step: usize| {
             let faces = |t: TetId| (0..4).filter(move |&i| store.is_surface(t, i)).map(move |i| (t, i));
-            store.live_tets_in(range).filter(move |t| t.0 % step == 0).flat_map(faces)
+            store.live_tets_each(range, step).flat_map(faces)
         };
-        let all = self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, 1).count() as f64);
-        // Of a fine mesh only one tetrahedron in `step` is asked, for all.
-        let step = (all / SAMPLES).max(1.0) as u32;
+        // Of a fine mesh only one tetrahedron in so many is asked, for all.
+        let counted = self.asked_each();
+        let all =
+            counted as f64 * self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, counted).count() as f64);
+        let step = (all / SAMPLES).max(1.0) as usize;
         let cuts = (SAMPLES / all.max(1.0)).sqrt().clamp(1.0, MOST_CUTS) as usize;
         let of = |(t, i): (TetId, usize)| {
             let corners = FACE[i].map(|k| store.vertices(t)[k]);
@@ -88,7 +94,7 @@ impl Pipeline<'_, '_> {
             let sum: f64 = centres.map(|x| area(&self.context.source.log_at(x, &mut hint))).sum();
             sides * sum / (cuts * cuts) as f64
         };
-        f64::from(step) * self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, step).map(of).sum())
+        step as f64 * self.team().sum(GRAIN, store.tet_bound(), |range| tagged(range, step).map(of).sum())
     }
 
     /// Says how much is done after a pass for the sizes: as much as there is of the way from the vertices that were given to those expected.

@@ -55,7 +55,7 @@ pub enum GrowthEnd {
 
 impl Pipeline<'_, '_> {
     /// Complexity of the metric on the mesh as it is, by each so many-th tetrahedron.
-    pub(super) fn complexity(&self, step: u32) -> f64 {
+    pub(super) fn complexity(&self, step: usize) -> f64 {
         let store = &self.context.store;
         measure::complexity(self.team(), store, step, |v| store.log(v).trace())
     }
