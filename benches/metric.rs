@@ -8,7 +8,8 @@ use geo_adapt::mesh::TetMesh;
 use geo_adapt::mesh::samples::cube;
 use geo_adapt::mesh::vector::{Vec3, cross, unit};
 use geo_adapt::metric::batch::{Batch, IncidentEdges};
-use geo_adapt::metric::lanes::LANES;
+use geo_adapt::metric::energy::Energy;
+use geo_adapt::metric::lanes::{LANES, Lanes, everywhere_tensor};
 use geo_adapt::metric::quality::{edge_length, mean_ratio, mean_ratio_in};
 use geo_adapt::metric::{Background, Sym3};
 use std::hint::black_box;
@@ -108,7 +109,13 @@ fn quality(c: &mut Criterion) {
         .collect();
     over(c, "mean_ratio, eight at once", &batches, |(batch, p, log)| batch.shapes(*p, log).mean_ratios());
     over(c, "mean_ratio, eight at once, cubed", &batches, |(batch, p, log)| batch.shapes(*p, log));
-    over(c, "quadratic model, eight at once", &batches, |(batch, p, log)| batch.quadratic_model(*p, log, LANES));
+    let with_metric: Vec<(Batch, Vec3, Sym3)> =
+        batches.iter().map(|(batch, p, log)| (batch.clone(), *p, log.exp())).collect();
+    over(c, "quadratic model, eight at once", &with_metric, |(batch, p, metric)| {
+        let mut energy = Energy::at(*p, metric);
+        energy.add_tets(batch, &everywhere_tensor(metric), &Lanes::all(1.0));
+        energy.model()
+    });
     over(c, "batch prepared", &batches, |(batch, ..)| {
         let mut batch = batch.clone();
         batch.prepare();

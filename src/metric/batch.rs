@@ -14,7 +14,7 @@ use crate::mesh::vector::Vec3;
 use multiversion::multiversion;
 
 /// (36/3^(1/3))³ (1/6)²: the factor of the cubed mean ratio when six times the volume is used.
-const FACTOR: f64 = 432.0;
+pub(super) const FACTOR: f64 = 432.0;
 
 /// Error bound of the sign of six times a volume, in the product of the edges' greatest components: thrice the forward
 /// error of the 3×3 determinant of rounded differences.
@@ -23,13 +23,13 @@ const UNCERTAIN: f64 = 4e-14;
 /// Triangles (a, b, c), one a lane, each to be joined to an apex p such that (a, b, c, p) is positive.
 #[derive(Clone)]
 pub struct Batch {
-    corners: [LaneVec3; 3],
+    pub(super) corners: [LaneVec3; 3],
     /// Normal of twice the area.
-    area: LaneVec3,
+    pub(super) area: LaneVec3,
     /// Error bound of the volume, in the apex's greatest component from a.
     uncertain: Lanes,
     /// Σ vvᵀ over the triangle's edges.
-    dyads: LaneSym3,
+    pub(super) dyads: LaneSym3,
     /// Σ ln M over the triangle's vertices.
     log_sum: LaneSym3,
 }
@@ -105,41 +105,6 @@ impl Batch {
     pub fn shapes_each(&self, apex: &LaneVec3, log: &LaneSym3) -> Shapes {
         Shapes { cubes: cubes(self, apex, log) }
     }
-
-    /// Σ 1/Q³ over the first `count` tetrahedra with its gradient and Hessian in a common apex p, the mean metrics held; `None`
-    /// where one of them is not positive (in floating point).
-    #[inline]
-    pub fn quadratic_model(&self, p: Vec3, log: &Sym3, count: usize) -> Option<QuadraticModel> {
-        let lanes = quadratic_model(self, &everywhere(p), &everywhere_tensor(log));
-        if lanes.volume.0.iter().take(count).any(|&volume| volume <= 0.0) {
-            return None;
-        }
-        let sum = |x: &Lanes| x.0.iter().take(count).sum::<f64>();
-        let [g, h] = [&lanes.gradient[..], &lanes.hessian[..]];
-        Some(QuadraticModel {
-            energy: sum(&lanes.energy),
-            gradient: std::array::from_fn(|i| sum(&g[i])),
-            hessian: Sym3(std::array::from_fn(|i| sum(&h[i]))),
-        })
-    }
-}
-
-/// A function of a point near p to second order: E(p) + g·d + dᵀHd/2.
-#[derive(Clone, Copy, Debug)]
-pub struct QuadraticModel {
-    /// Value.
-    pub energy: f64,
-    /// Gradient.
-    pub gradient: Vec3,
-    /// Hessian, positive definite.
-    pub hessian: Sym3,
-}
-
-struct LaneQuadratic {
-    volume: Lanes,
-    energy: Lanes,
-    gradient: LaneVec3,
-    hessian: LaneSym3,
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
@@ -252,44 +217,10 @@ fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> Lanes {
     surely.above(0.0, cubes, Lanes::ZERO)
 }
 
-/// 1/Q³ = S³/(432 V²), with S the sum of the squared edges in the mean metric and V six times the volume (METHOD.md §2.4). With
-/// v = ∇V/V and s = ∇S/S the gradient is (3s − 2v)/Q³ and the Hessian (6 (v − s)(v − s)ᵀ + 18 M̄/S)/Q³, which is positive
-/// definite: each tetrahedron's part is convex.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn quadratic_model(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> LaneQuadratic {
-    let [a, b, c] = &batch.corners;
-    let (pa, pb, pc) = (sub(apex, a), sub(apex, b), sub(apex, c));
-    let volume = dot(&batch.area, &pa);
-    let mut dyads = batch.dyads;
-    for v in [pa, pb, pc] {
-        add_dyad(&mut dyads, &v);
-    }
-    let s = deviator(batch, log);
-    let s2 = squared(&s);
-    let Exponential { a: [a0, a1, a2], .. } = exponential(&s, &s2);
-    let mut mean: LaneSym3 = std::array::from_fn(|i| a1 * s[i] + a2 * s2[i]);
-    for i in [0, 2, 5] {
-        mean[i] = mean[i] + a0;
-    }
-    let sum = contract(&dyads, &mean);
-    let energy = sum * sum * sum / (volume * volume) * (1.0 / FACTOR);
-    let (of_volume, of_sum) = (Lanes::all(1.0) / volume, Lanes::all(1.0) / sum);
-    let out: LaneVec3 = std::array::from_fn(|i| pa[i] + pb[i] + pc[i]);
-    let turned = apply(&mean, &out);
-    let v: LaneVec3 = std::array::from_fn(|i| batch.area[i] * of_volume);
-    let s: LaneVec3 = std::array::from_fn(|i| turned[i] * of_sum * 2.0);
-    let gradient = std::array::from_fn(|i| (s[i] * 3.0 - v[i] * 2.0) * energy);
-    let mut hessian = [Lanes::ZERO; 6];
-    add_dyad(&mut hessian, &sub(&v, &s));
-    let stiffness = of_sum * 3.0;
-    let hessian = std::array::from_fn(|i| (hessian[i] + mean[i] * stiffness) * energy * 6.0);
-    LaneQuadratic { volume, energy, gradient, hessian }
-}
-
 /// Edges at one vertex, one a lane, by their other ends.
 #[derive(Clone, Copy)]
 pub struct IncidentEdges {
-    ends: LaneVec3,
+    pub(super) ends: LaneVec3,
     metrics: LaneSym3,
 }
 
@@ -325,8 +256,9 @@ impl IncidentEdges {
     }
 }
 
+/// The lengths of the edges to p, with the metric there.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn lengths(edges: &IncidentEdges, p: &LaneVec3, metric: &LaneSym3) -> Lanes {
+pub(super) fn lengths(edges: &IncidentEdges, p: &LaneVec3, metric: &LaneSym3) -> Lanes {
     let v = sub(&edges.ends, p);
     let here = dot(&v, &apply(metric, &v)).max(Lanes::all(f64::MIN_POSITIVE)).sqrt();
     let there = dot(&v, &apply(&edges.metrics, &v)).max(Lanes::all(f64::MIN_POSITIVE)).sqrt();
@@ -369,34 +301,6 @@ mod tests {
                 let wanted = mean_ratio(one, logs.each_ref()).max(0.0);
                 prop_assert!((found - wanted).abs() <= 1e-9 * wanted, "lane {lane}: {found} {wanted}");
             }
-        }
-
-        /// Gradient and Hessian are those of Σ 1/Q³, found here by differences.
-        #[test]
-        fn the_quadratic_model_fits(x in points(), m in prop::array::uniform4(spd(2.0)), d in prop::array::uniform3(-1.0..1.0f64)) {
-            let logs = m.map(|m| m.ln());
-            let batch = batch(&x, &logs);
-            let q = batch.shapes(x[6], &logs[3]).mean_ratios();
-            if q[0] < 0.05 || q[1] < 0.05 {
-                return Ok(());
-            }
-            let at = |step: f64| {
-                let p: Vec3 = std::array::from_fn(|i| x[6][i] + step * d[i]);
-                batch.quadratic_model(p, &logs[3], 2)
-            };
-            let model = at(0.0).unwrap();
-            let exact: f64 = q[..2].iter().map(|q| 1.0 / q.powi(3)).sum();
-            prop_assert!((model.energy / exact - 1.0).abs() < 1e-9);
-            // A step that changes the energy by about 1e-10 of it: small to the third derivative, large to the rounding.
-            let curvature = model.hessian.quadratic(d);
-            let step = 1e-5 * (model.energy / curvature).sqrt();
-            let (Some(ahead), Some(behind)) = (at(step), at(-step)) else { return Ok(()) };
-            let slope = |model: &QuadraticModel| crate::mesh::vector::dot(model.gradient, d);
-            let found = (ahead.energy - behind.energy) / (2.0 * step);
-            let size = (model.energy * curvature).sqrt();
-            prop_assert!((slope(&model) - found).abs() < 1e-4 * size, "{} {found}", slope(&model));
-            let found = (slope(&ahead) - slope(&behind)) / (2.0 * step);
-            prop_assert!((curvature - found).abs() < 1e-3 * curvature, "{curvature} {found}");
         }
 
         /// Lengths as one by one.

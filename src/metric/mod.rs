@@ -6,6 +6,7 @@ mod conversions;
 pub mod edges;
 mod eigen;
 mod ellipsoid;
+pub mod energy;
 mod error;
 mod exponential;
 pub mod field;
@@ -38,6 +39,7 @@ pub mod tensor;
 #[cfg(test)]
 mod tests;
 pub mod transfer;
+pub mod unit_space;
 
 pub use analytic::Analytic;
 pub use background::Background;

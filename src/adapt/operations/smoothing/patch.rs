@@ -4,10 +4,11 @@
 //! twice and for half of it.
 use crate::adapt::core::ids::{FACE, TetId, VertexId, place_of};
 use crate::adapt::core::store::Store;
-use crate::mesh::vector::{Vec3, add, lerp, scale, sub};
+use crate::mesh::vector::{Vec3, add, lerp, scale};
 use crate::metric::Sym3;
-use crate::metric::batch::{Batch, IncidentEdges, QuadraticModel, Shapes};
-use crate::metric::lanes::{LANES, Lanes};
+use crate::metric::batch::{Batch, IncidentEdges, Shapes};
+use crate::metric::energy::{Energy, QuadraticModel, SHORTEST};
+use crate::metric::lanes::{LANES, LaneSym3, Lanes};
 
 /// Q³ counts as at least this. A tetrahedron that is nearly flat would else hide all others in the energy.
 const LEAST_CUBE: f64 = 1e-18;
@@ -19,6 +20,10 @@ pub struct SmoothingPatch {
     incident: Vec<IncidentEdges>,
     tets: usize,
     ends: usize,
+    /// ΣM over the vertices of each triangle of the link.
+    metrics: Vec<LaneSym3>,
+    /// 1/Q³ of the tetrahedra as they are; 0 in lanes without one.
+    kept: Vec<Lanes>,
     /// Q³ at the place that was tried last.
     cubes: Vec<Lanes>,
     /// The part of the energy that comes of the tetrahedra, there.
@@ -39,13 +44,25 @@ impl SmoothingPatch {
         while self.batches.len() * LANES < ball.len() {
             self.batches.push(Batch::default());
         }
+        self.kept.clear();
+        self.metrics.clear();
         for (some, batch) in ball.chunks(LANES).zip(&mut self.batches) {
+            let mut kept = Lanes::ZERO;
+            for (energy, &t) in kept.0.iter_mut().zip(some) {
+                let q = store.quality(t);
+                *energy = 1.0 / (q * q * q).max(LEAST_CUBE);
+            }
+            self.kept.push(kept);
+            let mut metrics = [Lanes::ZERO; 6];
             for lane in 0..LANES {
                 let w = store.vertices(some[lane.min(some.len() - 1)]);
                 let face = FACE[place_of(v, w)].map(|k| w[k]);
                 let logs = face.map(|x| store.log(x));
                 batch.set(lane, face.map(|x| store.position(x)), [&logs[0], &logs[1], &logs[2]]);
+                let [a, b, c] = face.map(|x| store.metric(x).0);
+                (0..6).for_each(|i| metrics[i].0[lane] = a[i] + b[i] + c[i]);
             }
+            self.metrics.push(metrics);
             batch.prepare();
         }
         while self.incident.len() * LANES < link.len() {
@@ -59,30 +76,16 @@ impl SmoothingPatch {
         }
     }
 
-    /// The energy about p to second order, with the metric as it is at p; `None` where a tetrahedron is flat.
-    pub fn quadratic_model(&self, p: Vec3, log: &Sym3, metric: &Sym3) -> Option<QuadraticModel> {
-        let mut sum = QuadraticModel { energy: 0.0, gradient: [0.0; 3], hessian: Sym3::ZERO };
-        for (first, batch) in (0..self.tets).step_by(LANES).zip(&self.batches) {
-            let model = batch.quadratic_model(p, log, LANES.min(self.tets - first))?;
-            sum.energy += model.energy;
-            sum.gradient = add(sum.gradient, model.gradient);
-            sum.hessian = sum.hessian.plus(model.hessian);
-        }
+    /// The energy to second order about the vertex' place p; none where a tetrahedron is not positive (in floating point).
+    pub fn model(&self, p: Vec3, metric: &Sym3) -> Option<QuadraticModel> {
+        let mut sum = Energy::at(p, metric);
         for (first, incident) in (0..self.ends).step_by(LANES).zip(&self.incident) {
-            let lengths = incident.lengths(p, metric);
-            for lane in 0..LANES.min(self.ends - first) {
-                let length = lengths[lane].max(0.1);
-                sum.energy += misfit(length);
-                // φ = ((L − 1/L)/2)²; ∇L = M(p − x)/L. Of the Hessian only the part that is never negative.
-                let inverse = 1.0 / length;
-                let slope = 0.5 * (length - inverse) * (1.0 + inverse * inverse);
-                let curvature = 0.5 * (1.0 + 3.0 * inverse.powi(4));
-                let out = scale(metric.apply(sub(p, incident.end(lane))), inverse);
-                sum.gradient = add(sum.gradient, scale(out, slope));
-                sum.hessian = sum.hessian.plus(Sym3::outer(out, curvature));
-            }
+            sum.add_edges(incident, LANES.min(self.ends - first));
         }
-        Some(sum)
+        for ((batch, metrics), energies) in self.batches.iter().zip(&self.metrics).zip(&self.kept) {
+            sum.add_tets(batch, metrics, energies);
+        }
+        sum.model()
     }
 
     /// The mean, over the neighbours, of the point at unit distance from each in the direction of p (pliant smoothing).
@@ -91,7 +94,7 @@ impl SmoothingPatch {
         for (first, incident) in (0..self.ends).step_by(LANES).zip(&self.incident) {
             let lengths = incident.lengths(p, metric);
             for lane in 0..LANES.min(self.ends - first) {
-                sum = add(sum, lerp(incident.end(lane), p, 1.0 / lengths[lane].max(0.1)));
+                sum = add(sum, lerp(incident.end(lane), p, 1.0 / lengths[lane].max(SHORTEST)));
             }
         }
         scale(sum, 1.0 / self.ends as f64)

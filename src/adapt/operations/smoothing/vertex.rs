@@ -13,7 +13,7 @@ use crate::adapt::core::worker::Worker;
 use crate::adapt::schedule::Operation;
 use crate::geometry::{Entity, Evaluate};
 use crate::mesh::vector::{Vec3, add, dot, lerp, scale, unit};
-use crate::metric::batch::QuadraticModel;
+use crate::metric::energy::QuadraticModel;
 use crate::metric::plane_basis;
 
 /// A step must promise to save this share of the energy, and must really save half of it.
@@ -80,7 +80,7 @@ impl<A: Access> Worker<'_, '_, A> {
     ) -> Result<(), Refusal> {
         let held = self.vertex_state(v);
         let from = held.placed.point;
-        let Some(model) = patch.quadratic_model(from, &held.log, &held.metric) else {
+        let Some(model) = patch.model(from, &held.metric) else {
             let limit = patch.energy(from, &held.log, &held.metric) * (1.0 - GAIN);
             let to = patch.pliant(from, &held.metric);
             let targets = STEPS.map(|step| lerp(from, to, step));
