@@ -99,6 +99,7 @@ impl<A: Access> Worker<'_, '_, A> {
             let (v, n, tags) = (self.claim_tet(t)?, self.store.neighbours(t), self.store.tags(t));
             shell.tets.push(t);
             shell.ring.push(v[k]);
+            self.store.fetch_vertex(v[k]);
             // The face (a, b, ring[i]) lies opposite ring[i + 1], and the next one opposite ring[i].
             shell.tags.push(tags[l]);
             t = n[k];

@@ -4,7 +4,7 @@
 //! Rings of three and four are the 3-2 and 4-4 flips; an open ring on a model face is the surface's 2-2 flip. The best triangulation
 //! is found by dynamic programming over the polygon (Klincsek 1980; Shewchuk 2002).
 use super::criteria::{Criterion, mean_ratio_score, wanted_score};
-use super::ring::{LONGEST_RING, Ring};
+use super::ring::{Filling, LONGEST_RING, Ring};
 use crate::adapt::core::access::Access;
 use crate::adapt::core::commit::NewTet;
 use crate::adapt::core::ids::{TetId, VertexId};
@@ -13,10 +13,7 @@ use crate::adapt::core::shell::Shell;
 use crate::adapt::core::worker::Worker;
 
 /// Tetrahedra below this mean ratio try the longest rings, which cost most and seldom gain.
-const LONG_RINGS_BELOW: f64 = 0.5;
-
-/// Tetrahedra below this mean ratio try rings of five. Of 30 that are measured one gains.
-const RINGS_OF_FIVE_BELOW: f64 = 0.75;
+const LONG_RINGS_BELOW: f64 = 0.65;
 
 /// A ring of n tetrahedra is tried only where the mean of their 1/Q − 1 is at least the n-th of these: below, few would gain, and little
 /// (docs/decisions/kernel-speed.md).
@@ -41,11 +38,7 @@ impl<A: Access> Worker<'_, '_, A> {
     ) -> Result<(), Refusal> {
         self.claim(a)?;
         self.claim(b)?;
-        let longest = match self.store.quality(t) {
-            quality if quality < LONG_RINGS_BELOW => LONGEST_RING,
-            quality if quality < RINGS_OF_FIVE_BELOW => 5,
-            _ => 4,
-        };
+        let longest = if self.store.quality(t) < LONG_RINGS_BELOW { LONGEST_RING } else { 5 };
         self.gather_shell_while(a, b, t, longest, |worker, other| worker.goes_first(t, other))?;
         if let [only] = self.state.shell.tets[..] {
             return self.remove_boundary_tet(only, a, b);
@@ -86,18 +79,17 @@ impl<A: Access> Worker<'_, '_, A> {
             }
         };
         let wanted = wanted_score(old);
-        let gains = ring.is_feasible() && {
-            match criterion {
-                Criterion::MeanRatio => ring.score_mean_ratios(),
-                _ => ring.score_each(criterion, |tet, cavity| self.score(criterion, tet, cavity)),
-            }
-            ring.triangulate(criterion, wanted)
-        };
+        let gains = ring.is_feasible()
+            && match criterion {
+                Criterion::MeanRatio => ring.is_promising(self.store, old, wanted) && ring.measure(self.store) > wanted,
+                _ => {
+                    let found = ring.score_each(criterion, |tet, cavity| self.score(criterion, tet, cavity));
+                    // What it becomes is kept by its mean ratios.
+                    found > wanted && ring.measure(self.store).is_finite()
+                }
+            };
         if !gains {
             return Err(Refusal::Shape);
-        }
-        if criterion != Criterion::MeanRatio {
-            ring.score_mean_ratios();
         }
         self.write_triangulation([a, b], shell, ring, across.unwrap_or(0));
         if let Some(SurfaceFlip { across, old, new }) = surface {
@@ -148,11 +140,11 @@ impl<A: Access> Worker<'_, '_, A> {
         let regions = [0, second].map(|side| self.store.region(shell.tets[side]));
         self.state.replacement.clear();
         self.state.replacement.old.extend(&shell.tets);
-        ring.each_triangle(|[x, y, z], side, ratios| {
+        for &Filling { vertices: [x, y, z], side, ratios } in ring.best() {
             let region = regions[side];
             for (vertices, quality) in [[x, y, z, b], [x, z, y, a]].into_iter().zip(ratios) {
                 self.state.replacement.new.push(NewTet { vertices, region, quality });
             }
-        });
+        }
     }
 }
