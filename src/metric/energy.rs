@@ -62,17 +62,11 @@ impl Energy {
         add_edges(self, edges, &weights(count));
     }
 
-    /// The sum at the vertex' place.
-    #[inline]
-    pub fn value(&self) -> f64 {
-        self.value.sum()
-    }
-
     /// The sum as a function of the vertex' place; none where a tetrahedron is not positive (in floating point).
     #[inline]
     pub fn model(&self) -> Option<QuadraticModel> {
         self.is_positive.then(|| QuadraticModel {
-            energy: self.value(),
+            energy: self.value.sum(),
             gradient: self.gradient.map(Lanes::sum),
             hessian: Sym3(self.hessian.map(Lanes::sum)),
         })
@@ -85,8 +79,8 @@ fn weights(count: usize) -> Lanes {
     Lanes(std::array::from_fn(|lane| if lane < count { 1.0 } else { 0.0 }))
 }
 
-/// 1/Q³ is S³/(432 V²) but for a factor, with S the sum of the squared edges in the mean metric M̄ and V six times the volume (METHOD.md §2.4).
-/// With v = ∇V/V and s = ∇S/S its gradient is (3s − 2v)/Q³ and its Hessian (6 (v − s)(v − s)ᵀ + 18 M̄/S)/Q³, which is positive definite: each
+/// 1/Q³ is S³/(432 V²) but for a factor, with S the sum of the squared edges in the mean metric M̂ and V six times the volume (METHOD.md §2.4).
+/// With v = ∇V/V and s = ∇S/S its gradient is (3s − 2v)/Q³ and its Hessian (6 (v − s)(v − s)ᵀ + 18 M̂/S)/Q³, which is positive definite: each
 /// tetrahedron's part is convex.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn add_tets(sum: &mut Energy, triangles: &Batch, metrics: &LaneSym3, energies: &Lanes) {

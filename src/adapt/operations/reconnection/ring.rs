@@ -4,8 +4,8 @@
 //! (Klincsek 1980; Shewchuk 2002) finds the best triangulation.
 //!
 //! All is done in one metric first, the mean of those at all vertices: in its unit space a mean ratio costs a few operations and no
-//! exponential. Sums of 1/Q − 1 are within a few per cent of those in the tetrahedra's own metrics, and most rings have
-//! nothing to gain by far more than that (docs/decisions/reconnection.md). So only what may gain is measured.
+//! exponential. Sums of 1/Q − 1 are within a few per cent of those in the tetrahedra's own metrics, and most rings have nothing to gain by
+//! far more than that (docs/decisions/reconnection.md). So only what may gain is measured.
 use super::criteria::{Criterion, mean_ratio_score};
 use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::store::Store;
@@ -103,15 +103,17 @@ impl Ring {
         self.straighten(store);
     }
 
-    /// Brings the ring to the space in which the mean metric is the unit tensor.
+    /// Brings the ring to the space in which the mean metric is the unit tensor, but for a factor.
     fn straighten(&mut self, store: &Store) {
         let (sum, trace) = self
             .cavity
             .iter()
             .fold((Sym3::ZERO, 0.0), |(sum, trace), &v| (sum.plus(store.metric(v)), trace + store.log(v).trace()));
-        let share = 1.0 / self.cavity.len() as f64;
-        let space = UnitSpace::of(&sum.times(share));
-        self.is_even = space.det() < VARIES * (share * trace).exp();
+        // A multiple of the mean, so that sizes of any magnitude can be computed with.
+        let (share, scale) = (1.0 / self.cavity.len() as f64, 1.0 / sum.trace());
+        let space = UnitSpace::of(&sum.times(scale));
+        let geometric = (share / 3.0 * trace).exp() * scale / share;
+        self.is_even = space.det() < VARIES * geometric.powi(3);
         let a = store.position(self.cavity[0]);
         let straight = |v: VertexId| space.vector(sub(store.position(v), a));
         let end = straight(self.cavity[1]);

@@ -49,19 +49,22 @@ fn costs(store: &Store, ring: &mut Ring) -> Option<[f64; 2]> {
 
 #[test]
 fn where_the_metric_is_constant_the_estimate_is_what_is_measured() {
-    let metric = Sym3([40.0, 7.0, 90.0, -3.0, 5.0, 12.0]);
-    let mut found = 0;
-    each_ring(
-        |_| metric,
-        |store, ring| {
-            assert!(ring.is_even);
-            if let Some([estimated, measured]) = costs(store, ring) {
-                found += 1;
-                assert!((estimated - measured).abs() < 1e-6 * (1.0 + measured), "{estimated} {measured}");
-            }
-        },
-    );
-    assert!(found > 300, "{found}");
+    // Sizes of any magnitude.
+    for scale in [1.0, 1e-120, 1e120] {
+        let metric = Sym3([40.0, 7.0, 90.0, -3.0, 5.0, 12.0]).times(scale);
+        let mut found = 0;
+        each_ring(
+            |_| metric,
+            |store, ring| {
+                assert!(ring.is_even, "{scale}");
+                if let Some([estimated, measured]) = costs(store, ring) {
+                    found += 1;
+                    assert!((estimated - measured).abs() < 1e-6 * (1.0 + measured), "{scale}: {estimated} {measured}");
+                }
+            },
+        );
+        assert!(found > 300, "{scale}: {found}");
+    }
 }
 
 #[test]
