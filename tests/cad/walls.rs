@@ -5,7 +5,7 @@ use crate::common::models::{Random, data};
 use crate::common::program;
 use geo_adapt::geometry::classify::{self, Classification};
 use geo_adapt::geometry::{Entity, Evaluate, Geometry, Model};
-use geo_adapt::mesh::vector::{Vec3, add, dot, scale, unit};
+use geo_adapt::mesh::vector::{Vec3, add, dot, lerp, scale, unit};
 use geo_adapt::mesh::{TetMesh, io};
 use geo_adapt::metric::Sym3;
 use geo_adapt::sizing::layer::{Foot, distances, from_triangles};
@@ -96,6 +96,17 @@ fn bootstrapped(work: &Workplace, path: &Path) -> (TetMesh, Model, Classificatio
     (mesh, model, place)
 }
 
+/// The greatest distance of the triangles from the faces that they are on, at their centroids and the middles of their edges.
+fn rise_of_chords(mesh: &TetMesh, place: &Classification, distance: impl Fn(u32, Vec3) -> Option<f64>) -> f64 {
+    let mut greatest = 0.0;
+    for (nodes, &face) in mesh.triangles.nodes.iter().zip(&place.faces) {
+        let [a, b, c] = nodes.map(|v| mesh.vertices[v as usize]);
+        let middles = [lerp(a, b, 0.5), lerp(b, c, 0.5), lerp(c, a, 0.5), lerp(lerp(a, b, 0.5), c, 1.0 / 3.0)];
+        greatest = middles.into_iter().filter_map(|p| distance(face, p)).fold(greatest, f64::max);
+    }
+    greatest
+}
+
 /// On spline faces, against OpenCASCADE's own search at each vertex on each face, which misses some closest points on the blade, and against the mesh's
 /// triangles, whose chords are the difference; and bit for bit on any number of threads.
 #[test]
@@ -108,6 +119,8 @@ fn distances_from_several_spline_faces_are_those_of_opencascade() {
         let found = distances(Team::alone(), &mesh, &place, &model, &faces);
         let by_triangles = from_triangles(Team::alone(), &mesh, &mesh.triangles.refs);
         let (evaluator, diagonal) = (occt.evaluator(), model.topology().diagonal());
+        let chord = rise_of_chords(&mesh, &place, |face, p| evaluator.reference_distance(true, face, p));
+        assert!(chord < 0.01 * diagonal, "{name} {chord} {diagonal}");
         let (mut looked, mut missed) = (0, 0);
         for (v, &p) in mesh.vertices.iter().enumerate() {
             if place.entities[v] != Entity::Interior {
@@ -117,7 +130,7 @@ fn distances_from_several_spline_faces_are_those_of_opencascade() {
             let each = faces.iter().filter_map(|&face| evaluator.reference_distance(true, face, p));
             let expected = each.fold(f64::INFINITY, f64::min);
             assert!(found[v] < expected + 1e-7 * diagonal, "{name} {} {expected} at {p:?}", found[v]);
-            assert!((found[v] - by_triangles[v]).abs() < 5e-3 * diagonal, "{name} {} {}", found[v], by_triangles[v]);
+            assert!((found[v] - by_triangles[v]).abs() < 1.5 * chord, "{name} {} {}", found[v], by_triangles[v]);
             missed += usize::from(found[v] < expected - 1e-7 * diagonal);
             looked += 1;
         }
