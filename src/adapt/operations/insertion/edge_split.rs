@@ -25,7 +25,7 @@ fn cut_off(length: f64) -> f64 {
     if length * length > 6.0 && length * length < 18.0 { 1.0 / 3.0 } else { 0.5 }
 }
 
-/// Where along a ridge it may be split opposite to a vertex of another.
+/// Where along a ridge it is split opposite to a vertex of another; else where any edge is.
 const FACING: RangeInclusive<f64> = 0.25..=0.75;
 
 /// Splits edges that are too long.
@@ -74,10 +74,8 @@ impl<A: Access> Worker<'_, '_, A> {
                 return Err(Refusal::Stale);
             }
         }
-        match self.facing_vertex([a, b]) {
-            Some((x, point)) => self.split_shell([a, b], point, x),
-            None => self.split_shell([a, b], self.cut(a, b), VertexId::NONE),
-        }
+        let (facing, opposite) = self.facing_vertex([a, b]).unwrap_or((VertexId::NONE, None));
+        self.split_shell([a, b], opposite.unwrap_or_else(|| self.cut(a, b)), facing)
     }
 
     /// The other two vertices of a tetrahedron with the claimed vertices a and b.
@@ -118,10 +116,10 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// The nearest vertex of another edge of the model, nearer than new edges may be short, that lies opposite to the ridge a–b, whose shell
-    /// is gathered; and the point of a–b that it faces. Where two edges of the model run side by side, nearer than the metric's sizes (a
-    /// blunt trailing edge), each point of one is too near to the other: if that counted, the ridges would stay too long
-    /// (docs/decisions/surface.md).
-    fn facing_vertex(&self, [a, b]: [VertexId; 2]) -> Option<(VertexId, Vec3)> {
+    /// is gathered; and the point of a–b that it faces, unless that is too near to an end. Where two edges of the model run side by side, nearer
+    /// than the metric's sizes (a blunt trailing edge), each point of one is too near to the other: if that counted, the ridges would stay too
+    /// long (docs/decisions/surface.md).
+    fn facing_vertex(&self, [a, b]: [VertexId; 2]) -> Option<(VertexId, Option<Vec3>)> {
         let curve = self.store.ridge_curve(a, b)?;
         let is_on_another = |x: VertexId| match self.store.entity(x) {
             Entity::Edge(other) => other != curve,
@@ -132,9 +130,10 @@ impl<A: Access> Worker<'_, '_, A> {
         let found = self.state.shell.ring.iter().copied().filter(|&x| is_on_another(x)).filter_map(|x| {
             let (share, point) = self.closest_between(x, a, b);
             let off = self.store.metric(x).quadratic(sub(self.store.position(x), point));
-            (FACING.contains(&share) && off < near).then_some((off, x, point))
+            let opposite = FACING.contains(&share).then_some(point);
+            ((0.0..=1.0).contains(&share) && off < near).then_some((off, x, opposite))
         });
-        found.min_by(|x, y| x.0.total_cmp(&y.0)).map(|(_, x, point)| (x, point))
+        found.min_by(|x, y| x.0.total_cmp(&y.0)).map(|(_, x, opposite)| (x, opposite))
     }
 
     /// The point of the line a–b closest to x in the metric there, and its share of the way from a to b.
