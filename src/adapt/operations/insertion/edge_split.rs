@@ -1,7 +1,7 @@
 //! Edges that are too long are split, at their middles or thirds in the metric.
 use crate::adapt::core::access::Access;
 use crate::adapt::core::edge_list::EdgeItem;
-use crate::adapt::core::ids::{ACROSS, TetId, VertexId, place_of};
+use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::star::Seed;
 use crate::adapt::core::vertex_moves::Placed;
@@ -60,13 +60,6 @@ impl<A: Access> Worker<'_, '_, A> {
         if length <= self.context.limits.long {
             return Err(Refusal::Stale);
         }
-        // Of an edge inside, two vertices of the ring are known before it is walked, and mostly one of these refuses the point.
-        if self.store.dimension(a).max(self.store.dimension(b)) == 3 {
-            let [k, l] = self.opposite(a, b, tet)?;
-            if self.is_blocked(&[k, l], [a, b], self.cut(a, b), length) {
-                return Err(Refusal::Length);
-            }
-        }
         self.gather_shell(a, b, tet)?;
         if self.context.limits.waits {
             let now = self.store.clock();
@@ -76,12 +69,6 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let (facing, opposite) = self.facing_vertex([a, b]).unwrap_or((VertexId::NONE, None));
         self.split_shell([a, b], opposite.unwrap_or_else(|| self.cut(a, b)), facing)
-    }
-
-    /// The other two vertices of a tetrahedron with the claimed vertices a and b.
-    fn opposite(&mut self, a: VertexId, b: VertexId, tet: TetId) -> Result<[VertexId; 2], Refusal> {
-        let v = self.claim_tet(tet)?;
-        Ok(ACROSS[place_of(a, v)][place_of(b, v)].map(|k| v[k]))
     }
 
     /// Splits an edge whose vertices are claimed, at a point of its straight line, on its entity of the model.

@@ -30,13 +30,13 @@ impl<A: Access> Worker<'_, '_, A> {
         let limits = &self.context.limits;
         // A much too long edge may be split at the price of a bad tetrahedron or a short edge, which later operations repair.
         let excess = match seed {
-            Seed::Edge(a, b) if limits.long_first => self.excess(self.length(a, b)),
+            Seed::Edge(a, b) if limits.long_first => (limits.long / self.length(a, b)).min(1.0),
             _ => 1.0,
         };
         let shortest_new = limits.shortest_new * excess.powf(SHORT_FOR_LONG);
         if let Seed::Edge(a, b) = seed
             && excess > NEARLY_MET
-            && self.is_near_one_of(&self.state.shell.ring, [a, b], placed.point, (shortest_new, facing))
+            && self.is_near_ring([a, b], placed.point, shortest_new, facing)
         {
             return Err(Refusal::Length);
         }
@@ -47,32 +47,12 @@ impl<A: Access> Worker<'_, '_, A> {
         })
     }
 
-    /// The share that the greatest length allowed is of an edge's length; 1 at most.
-    fn excess(&self, length: f64) -> f64 {
-        (self.context.limits.long / length).min(1.0)
-    }
-
-    /// Whether a point on an edge of this length is too near to one of some vertices of the edge's ring, so that its insertion would be refused
-    /// whatever the others are.
-    pub fn is_blocked(&self, some: &[VertexId], ends: [VertexId; 2], point: Vec3, length: f64) -> bool {
-        let limits = &self.context.limits;
-        let excess = if limits.long_first { self.excess(length) } else { 1.0 };
-        let shortest_new = limits.shortest_new * excess.powf(SHORT_FOR_LONG);
-        excess > NEARLY_MET && self.is_near_one_of(some, ends, point, (shortest_new, VertexId::NONE))
-    }
-
-    /// Whether a point on an edge is too near to one of some vertices of the edge's ring, but for `facing`, in the metrics of that vertex and
-    /// of both ends. Where sizes are nearly met, the metric at the point lies between these, and need not be asked.
-    fn is_near_one_of(
-        &self,
-        some: &[VertexId],
-        ends: [VertexId; 2],
-        point: Vec3,
-        (limit, facing): (f64, VertexId),
-    ) -> bool {
+    /// Whether a point on an edge is too near to a vertex of the edge's ring, in the metrics of that vertex and of both ends. Where sizes are nearly
+    /// met, the metric at the point lies between these, and need not be asked.
+    fn is_near_ring(&self, ends: [VertexId; 2], point: Vec3, limit: f64, facing: VertexId) -> bool {
         let square = limit * limit;
         let ends = ends.map(|v| self.store.metric(v));
-        some.iter().any(|&x| {
+        self.state.shell.ring.iter().any(|&x| {
             let way = sub(self.store.position(x), point);
             x != facing
                 && self.store.metric(x).quadratic(way) < square
