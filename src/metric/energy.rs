@@ -1,8 +1,7 @@
 //! The energy that smoothing lowers, to second order about a vertex: inner loop of smoothing.
 //!
-//! How a mean ratio changes follows from the mean of M over the tetrahedron's vertices, where exp of the mean of ln M would be right. These
-//! differ in second order, and the first needs no exponential: it tells well enough where the energy is lowest. Whether it falls there is
-//! asked of the right one.
+//! The metric of a tetrahedron is exp of the mean of ln M over its vertices. Here it is the mean of M, which needs no exponential and differs
+//! in second order: that tells well enough where the energy is lowest. Whether the energy falls there is computed with the first.
 use super::Sym3;
 use super::batch::{Batch, IncidentEdges, lengths};
 use super::lanes::{LaneSym3, LaneVec3, Lanes, add_dyad, apply, contract, dot, everywhere, everywhere_tensor, sub};
@@ -49,8 +48,8 @@ impl Energy {
         }
     }
 
-    /// Adds Σ 1/Q³ over the tetrahedra that the vertex makes with triangles; ΣM over the vertices of each triangle and what each tetrahedron has
-    /// at the vertex' place are given. In lanes without one that is 0, and the triangle repeats another.
+    /// Adds Σ 1/Q³ over the tetrahedra that the vertex makes with triangles. `metrics` is ΣM over the vertices of each triangle, `energies` 1/Q³
+    /// of each tetrahedron as it is. A lane without a tetrahedron has the energy 0, and repeats the triangle of another.
     #[inline]
     pub fn add_tets(&mut self, triangles: &Batch, metrics: &LaneSym3, energies: &Lanes) {
         add_tets(self, triangles, metrics, energies);

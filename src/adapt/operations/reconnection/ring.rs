@@ -23,7 +23,7 @@ type Table<T> = [[T; LONGEST_RING]; LONGEST_RING];
 /// Triangles of a ring of the greatest length.
 const MOST_TRIANGLES: usize = LONGEST_RING * (LONGEST_RING - 1) * (LONGEST_RING - 2) / 6;
 
-/// A triangulation is measured if its estimate is no more than this share of the present score below what is wanted.
+/// An estimate may be off by this share of the present score: one that misses what is wanted by less is measured.
 const ESTIMATED_TO: f64 = 0.05;
 
 /// Where the determinant of the mean metric is more than this times the geometric mean of those at the vertices, the metric varies too much
