@@ -41,33 +41,50 @@ impl<A: Access> Worker<'_, '_, A> {
         if self.store.quality(t) >= self.context.limits.flip_below {
             return Err(Refusal::Stale);
         }
+        // Most edges and faces are another tetrahedron's: that is seen at the neighbours, before a ring is walked.
+        let neighbours = self.store.neighbours(t);
+        let is_first = neighbours.map(|n| !n.is_some() || self.goes_first(t, n));
+        // What needs a neighbour out of reach waits for the next round, but nothing is left to wait for if another edge can be removed now.
+        let mut is_in_reach = [true; 4];
         if A::REFUSES_UNTIL_ROUND_ENDS {
-            // Its edges and faces need these vertices in any case.
-            for n in self.store.neighbours(t).into_iter().filter(|n| n.is_some()) {
-                self.claim_tet(n)?;
+            for i in (0..4).filter(|&i| is_first[i] && neighbours[i].is_some()) {
+                is_in_reach[i] = self.claim_tet(neighbours[i]).is_ok();
             }
         }
-        // Most edges and faces are another tetrahedron's: that is seen at the neighbours, before a ring is walked.
-        let is_first = self.store.neighbours(t).map(|n| !n.is_some() || self.goes_first(t, n));
         let mut refusal = Refusal::Shape;
         for [i, j] in EDGE {
             let [k, l] = ACROSS[i][j];
             if !(is_first[k] && is_first[l]) {
                 continue;
             }
-            match self.remove_edge(ring, [v[i], v[j]], t, criterion) {
-                Ok(()) => return Ok(()),
-                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
-                Err(other) => refusal = other,
+            let result = match is_in_reach[k] && is_in_reach[l] {
+                true => self.remove_edge(ring, [v[i], v[j]], t, criterion),
+                false => Err(Refusal::Conflict),
+            };
+            if is_done::<A>(result, &mut refusal)? {
+                return Ok(());
             }
         }
         for i in (0..4).filter(|&i| is_first[i]) {
-            match self.remove_face(t, i, criterion) {
-                Ok(()) => return Ok(()),
-                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
-                Err(other) => refusal = other,
+            let result = if is_in_reach[i] { self.remove_face(t, i, criterion) } else { Err(Refusal::Conflict) };
+            if is_done::<A>(result, &mut refusal)? {
+                return Ok(());
             }
         }
         Err(refusal)
     }
+}
+
+/// Whether the last of several tries was carried out. Else `refusal` becomes that of all: a conflict, if there was one.
+///
+/// # Errors
+/// `Conflict` where another thread holds a vertex for the moment: then nothing else is tried.
+fn is_done<A: Access>(result: Result<(), Refusal>, refusal: &mut Refusal) -> Result<bool, Refusal> {
+    match result {
+        Ok(()) => return Ok(true),
+        Err(Refusal::Conflict) if !A::REFUSES_UNTIL_ROUND_ENDS => return Err(Refusal::Conflict),
+        Err(other) if *refusal != Refusal::Conflict => *refusal = other,
+        Err(_) => {}
+    }
+    Ok(false)
 }
