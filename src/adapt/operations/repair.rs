@@ -1,12 +1,13 @@
 //! Repair of the worst tetrahedra: what reconnection and smoothing could not improve is tried with larger cavities.
 use crate::adapt::core::access::Access;
 use crate::adapt::core::edge_list::EdgeItem;
-use crate::adapt::core::ids::{EDGE, TetId, VertexId};
+use crate::adapt::core::ids::{ACROSS, EDGE, TetId, VertexId};
 use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::star::{Bounds, Seed};
 use crate::adapt::core::worker::Worker;
 use crate::adapt::operations::collapse::onto_end::CollapseScratch;
 use crate::adapt::schedule::Operation;
+use crate::mesh::vector::lerp;
 use std::ops::RangeInclusive;
 
 /// The worst mean ratio of a larger cavity must grow by this factor.
@@ -14,7 +15,10 @@ pub const GAIN: f64 = 1.05;
 
 /// Below this mean ratio an edge may be split for the shape alone. Where two edges of the model run side by side, nearer than the metric's
 /// sizes (a blunt trailing edge), their vertices must face each other, and a vertex may be missing for that.
-const SPLIT_BELOW: f64 = 0.25;
+pub const SPLIT_BELOW: f64 = 0.35;
+
+/// By a split for the shape the worst mean ratio must grow by this factor: smoothing gains the rest.
+pub const SPLIT_GAIN: f64 = 1.001;
 
 /// Where along an edge it may be split for the shape.
 const BETWEEN: RangeInclusive<f64> = 0.1..=0.9;
@@ -64,19 +68,18 @@ impl<A: Access> Worker<'_, '_, A> {
         if quality < SPLIT_BELOW { self.split_longest_edge(t, vertices) } else { Err(Refusal::Shape) }
     }
 
-    /// Splits the longest edge of a tetrahedron that can be split at the point closest to another of its vertices. The limits of this pass
-    /// ask of an insertion that the worst tetrahedron becomes better, and nothing about lengths.
+    /// Splits the longest edge of a tetrahedron that can be split, at the point closest to another of its vertices or in the middle. The
+    /// limits of this pass ask of an insertion that the worst tetrahedron becomes better, and nothing about lengths.
     fn split_longest_edge(&mut self, t: TetId, vertices: [VertexId; 4]) -> Result<(), Refusal> {
         let mut edges = EDGE.map(|[i, j]| (self.length(vertices[i], vertices[j]), i, j));
         edges.sort_by(|x, y| y.0.total_cmp(&x.0));
         for (_, i, j) in edges {
-            for x in (0..4).filter(|&x| x != i && x != j) {
-                let (a, b) = (vertices[i].min(vertices[j]), vertices[i].max(vertices[j]));
-                let (share, opposite) = self.closest_between(vertices[x], a, b);
-                if !BETWEEN.contains(&share) {
-                    continue;
-                }
-                match self.split_at(EdgeItem { a, b, tet: t }, opposite) {
+            let (a, b) = (vertices[i].min(vertices[j]), vertices[i].max(vertices[j]));
+            let middle = lerp(self.store.position(a), self.store.position(b), 0.5);
+            let opposite = ACROSS[i][j].map(|x| self.closest_between(vertices[x], a, b));
+            let between = opposite.into_iter().filter(|(share, _)| BETWEEN.contains(share)).map(|(_, point)| point);
+            for point in between.chain([middle]) {
+                match self.split_at(EdgeItem { a, b, tet: t }, point) {
                     Err(Refusal::Conflict) => return Err(Refusal::Conflict),
                     Err(_) => {}
                     Ok(()) => return Ok(()),

@@ -3,11 +3,20 @@ use super::{Pipeline, shape_limits};
 use crate::adapt::core::context::{LONG, Limits};
 use crate::adapt::core::ids::TetId;
 use crate::adapt::operations::reconnection::criteria::Criterion;
-use crate::adapt::operations::repair::{GAIN, Repair};
+use crate::adapt::operations::repair::{Repair, SPLIT_BELOW, SPLIT_GAIN};
 use crate::adapt::schedule::work::Kind;
 
 /// Tetrahedra below this mean ratio are repaired.
 const REPAIR_BELOW: f64 = 0.5;
+
+/// Rounds of repair.
+const ROUNDS: usize = 3;
+
+/// Rounds that may follow where tetrahedra are so bad that edges are split for their shape: a split often makes room for another.
+const FURTHER_ROUNDS: usize = 5;
+
+/// They go on while at least this share of the tetrahedra is repaired.
+const FURTHER_SHARE: f64 = 0.02;
 
 /// In a run, repair tries at most this share of the tetrahedra of the mesh, and [`REPAIR_FEW`]. It is dear: one costs as much as to look
 /// at some thousand flips. Where a metric can be met, fewer tetrahedra are below the limit; where it cannot, repair would not end.
@@ -28,17 +37,19 @@ impl Pipeline<'_, '_> {
             flip_below: REPAIR_BELOW,
             longest_new: 1.3 * LONG,
             shortest_new: 0.0,
-            insert_floor: 1.0,
-            insert_loss: GAIN,
+            insert_floor: SPLIT_BELOW,
+            insert_loss: SPLIT_GAIN,
             ball: REPAIR_BALL,
             ..shape_limits()
         });
-        for _ in 0..3 {
-            let mut items = self.tets(|store, t| store.quality(t) < REPAIR_BELOW);
+        for round in 0..ROUNDS + FURTHER_ROUNDS {
+            let (limit, share) = if round < ROUNDS { (REPAIR_BELOW, 0.0) } else { (SPLIT_BELOW, FURTHER_SHARE) };
+            let mut items = self.tets(|store, t| store.quality(t) < limit);
             let store = &self.context.store;
             self.team().sort_by(&mut items, |x, y| store.quality(*x).total_cmp(&store.quality(*y)).then(x.cmp(y)));
             self.no_more_than_repaired(&mut items);
-            if self.observer.stop() || self.sweep(Kind::Repair, &Repair, &items).done == 0 {
+            let done = if self.observer.stop() { 0 } else { self.sweep(Kind::Repair, &Repair, &items).done };
+            if done == 0 || (done as f64) < share * items.len() as f64 {
                 break;
             }
             self.reconnect(Criterion::MeanRatio, 2);
