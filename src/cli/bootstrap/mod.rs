@@ -157,7 +157,7 @@ fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Target
     let mut patches = arguments.patches();
     loop {
         let line = Waiting::for_what("tetrahedra of its triangles");
-        let (model, meshed, names) = triangles::run(team, &arguments.model, &patches, limit)?;
+        let (model, meshed, names) = triangles::run(team, &arguments.model, &mut patches, limit)?;
         drop(line);
         stage("meshed");
         if arguments.no_adapt {
@@ -176,10 +176,7 @@ fn of_triangles(arguments: &Arguments, pool: &Pool, (targets, threads): (&Target
             Err(Failed::OnModel(why)) if patches.smooth => why,
             Err(failed) => return Err(failed.of(&arguments.model).into()),
         };
-        super::note(format_args!(
-            "smooth patches do not fit this surface ({why}): its triangles are taken as they are; give --flat-surface to other commands too"
-        ));
-        patches.smooth = false;
+        triangles::take_as_they_are(&mut patches, &why);
     }
 }
 

@@ -27,14 +27,15 @@ pub fn is_surface(path: &Path) -> bool {
         || Format::of(path).is_ok_and(|format| !format.is_fields())
 }
 
-/// The surface as a model, its mesh, and what references are called.
+/// The surface as a model, its mesh, and what references are called. Where smooth patches go through each other the `options` become those
+/// of flat ones.
 ///
 /// # Errors
 /// When it is no surface, is not closed, or crosses itself: where, and what to do.
 pub fn run(
     team: Team<'_>,
     path: &Path,
-    options: &DiscreteOptions,
+    options: &mut DiscreteOptions,
     limit: Duration,
 ) -> Result<(Model, Meshed, Names), String> {
     let named = |error: String| format!("{}: {error}", path.display());
@@ -59,11 +60,25 @@ pub fn run(
         .map_err(|error| named(describe(&error, &surface, &kept)))?;
     let solids = solids(&filled);
     look_out(&mut surface, &mut filled, &solids);
-    let (discrete, on) = Discrete::new(team, &surface, options).map_err(|error| named(error.to_string()))?;
+    let on_itself =
+        |options: &DiscreteOptions| Discrete::new(team, &surface, options).map_err(|error| named(error.to_string()));
+    let (mut discrete, mut on) = on_itself(options)?;
+    if let Some(at) = discrete.crossing(team) {
+        take_as_they_are(options, &format!("they go through each other near {}", place(at)));
+        (discrete, on) = on_itself(options)?;
+    }
     let model = Model::Discrete(discrete);
     let (mesh, on_model) = meshed(&model, &surface, &on, (&filled, &solids));
     let (mesh, place) = judge(team, mesh, &model, Some(on_model)).map_err(named)?;
     Ok((model, Meshed { mesh, place, by: Rung::Own { finer: 1.0 }, notices }, names))
+}
+
+/// Has the triangles taken as they are, and tells why smooth patches are not.
+pub fn take_as_they_are(options: &mut DiscreteOptions, why: &str) {
+    crate::cli::note(format_args!(
+        "smooth patches do not fit this surface ({why}): its triangles are taken as they are; give --flat-surface to other commands too"
+    ));
+    options.smooth = false;
 }
 
 /// The triangles of a mesh with their vertices and what is listed on them.

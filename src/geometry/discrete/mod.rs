@@ -3,6 +3,7 @@ mod boundary;
 mod build;
 mod chains;
 mod corners;
+mod crossing;
 mod cubic;
 mod edges;
 mod evaluate;

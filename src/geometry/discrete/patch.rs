@@ -41,6 +41,29 @@ impl Patch {
         self.bounds
     }
 
+    /// Number of its triangles.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// The corners of triangle k.
+    pub fn corners(&self, k: usize) -> [Vec3; 3] {
+        self.triangles[k]
+    }
+
+    /// Whether triangle k has a cubic patch.
+    pub fn is_curved(&self, k: usize) -> bool {
+        self.smooth.as_ref().is_some_and(|smooth| !smooth.is_chord(k))
+    }
+
+    /// Box of triangle k, or of its cubic patch.
+    pub fn bounds_of(&self, k: usize) -> Box3 {
+        match &self.smooth {
+            Some(smooth) => smooth.bounds_of(k, self.triangles[k]),
+            None => box_of(self.triangles[k]),
+        }
+    }
+
     /// Bounds of the parameters.
     pub fn range(&self) -> [[f64; 2]; 2] {
         let Some(plane) = &self.plane else { return [[0.0, self.triangles.len() as f64], [0.0, 1.0]] };
@@ -80,7 +103,7 @@ impl Patch {
     }
 
     /// The point of triangle k, or of its cubic patch, with barycentric weights.
-    fn at(&self, k: usize, weights: [f64; 3]) -> Vec3 {
+    pub fn at(&self, k: usize, weights: [f64; 3]) -> Vec3 {
         match &self.smooth {
             Some(smooth) => smooth.point(k, self.triangles[k], weights),
             None => self.on_chord(k, weights),

@@ -46,6 +46,11 @@ impl Smooth {
         box_of(self.nets.iter().flat_map(CubicTriangle::points))
     }
 
+    /// The box of triangle k, or of its patch's control points.
+    pub fn bounds_of(&self, k: usize, corners: [Vec3; 3]) -> Box3 {
+        box_of(self.net(k, corners).points())
+    }
+
     /// Whether triangle k is flat.
     pub fn is_chord(&self, k: usize) -> bool {
         self.net_of[k] == NONE
