@@ -224,7 +224,7 @@ impl<'m> Workbench<'m> {
         let topology = self.context.model.topology();
         let (faces, edges) = (topology.faces.len(), topology.edges.len());
         let refs = References { faces: vec![1; faces], inward: vec![false; faces], edges: vec![1; edges] };
-        let extracted = extract::extract(Team::alone(), &self.context, &from.mesh, &refs, &[]);
+        let extracted = extract::extract(Team::alone(), &self.context, &from.mesh, &refs, &[]).expect("it is whole");
         Snapshot { mesh: extracted.mesh, place: extracted.classification }
     }
 

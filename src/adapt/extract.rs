@@ -3,7 +3,7 @@ use crate::adapt::core::context::Context;
 use crate::adapt::core::ids::{FACE, TetId, VertexId};
 use crate::adapt::core::numbering::inverse;
 use crate::adapt::core::required::Required;
-use crate::adapt::core::store::Store;
+use crate::adapt::core::store::{Store, Torn};
 use crate::adapt::references::References;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluate, Geometry, Model};
@@ -13,6 +13,7 @@ use crate::mesh::{Elements, TetMesh};
 use crate::metric::Sym3;
 use crate::tasks::{GRAIN, Team};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// The store as a plain mesh with its classification, and the metric at its vertices.
 pub struct Extracted {
@@ -68,21 +69,29 @@ struct Triangle {
 
 /// Takes the mesh out of the store, in the order of its ids, with what `input` required; `refs` gives each model
 /// entity its reference, and `unprojected` are the vertices that are not on the model.
+///
+/// # Errors
+/// [`Torn`] where a tetrahedron has a dead vertex.
 pub fn extract(
     team: Team<'_>,
     context: &Context,
     input: &TetMesh,
     refs: &References,
     unprojected: &[VertexId],
-) -> Extracted {
+) -> Result<Extracted, Torn> {
     let store = &context.store;
     let vertices = live_vertices(team, store);
     let number = inverse(team, &vertices, store.vertex_bound(), |place| place);
     let renumber = |v: VertexId| number[v.index()];
+    let tets = tets(team, store, &renumber);
+    let is_whole = |range: Range<usize>| tets.nodes[range].iter().all(|nodes| !nodes.contains(&VertexId::NONE.0));
+    if !team.chunks(GRAIN, tets.len(), is_whole).into_iter().all(|is_whole| is_whole) {
+        return Err(Torn);
+    }
     let mut mesh = TetMesh {
         vertices: at(team, &vertices, |v| store.position(v)),
         vertex_refs: vertex_refs(team, context, &vertices, input),
-        tets: tets(team, store, &renumber),
+        tets,
         ..TetMesh::default()
     };
     let triangles = team.collect(GRAIN, store.tet_bound(), |range, found| {
@@ -111,7 +120,7 @@ pub fn extract(
     let mut held: Vec<u32> = held.collect();
     held.sort_unstable();
     let metrics = at(team, &vertices, |v| store.metric(v));
-    Extracted { mesh, classification, metrics, off_model, held, crossings, part: None }
+    Ok(Extracted { mesh, classification, metrics, off_model, held, crossings, part: None })
 }
 
 /// Sets the projected places of the vertices without room on the model to their closest points there, so that the next

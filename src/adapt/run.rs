@@ -4,6 +4,7 @@ use crate::adapt::core::context::Context;
 use crate::adapt::core::fill::{self, Filled, Known};
 use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::required::{Freeze, Required};
+use crate::adapt::core::store::Torn;
 use crate::adapt::extract::{self, Extracted};
 use crate::adapt::operations::insertion::centroid::PointCreation;
 use crate::adapt::operations::reconnection::criteria::Criterion;
@@ -167,7 +168,8 @@ pub fn adapt_part(
         Some(part) => part.refs.clone(),
         None => References::of(team, mesh, place, model),
     };
-    let mut extracted = extract::extract(team, &context, mesh, &refs, &unprojected);
+    let mut extracted =
+        extract::extract(team, &context, mesh, &refs, &unprojected).map_err(|Torn| fill::Error::Torn)?;
     if let Some(part) = part {
         extracted.part = Some(extract::part(team, &context, part.held));
     }

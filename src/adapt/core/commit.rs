@@ -32,8 +32,13 @@ pub struct Replacement {
     pub dead: Vec<VertexId>,
     /// Whether declared faces may be boundary triangles that were there before, since a vertex of theirs only moves.
     pub keeps_surface: bool,
+    /// Whether those that come are all that one of their vertices will have: then they must hang together by their faces.
+    pub is_ball: bool,
     links: Vec<[Link; 4]>,
     ids: Vec<TetId>,
+    /// Of those that come, which are reached from the first by their faces, and from which it is still to go on.
+    reached: Vec<bool>,
+    next: Vec<u32>,
 }
 
 impl Replacement {
@@ -44,6 +49,27 @@ impl Replacement {
         self.faces.clear();
         self.dead.clear();
         self.keeps_surface = false;
+        self.is_ball = false;
+    }
+
+    /// Whether those that come hang together by their faces. A cavity in a mesh that overlaps itself may have grown around to where it began.
+    fn hangs_together(&mut self) -> bool {
+        let Self { links, reached, next, .. } = self;
+        reached.clear();
+        reached.resize(links.len(), false);
+        next.clear();
+        next.extend(0..links.len().min(1) as u32);
+        let mut count = 0;
+        while let Some(tet) = next.pop() {
+            if !std::mem::replace(&mut reached[tet as usize], true) {
+                count += 1;
+                next.extend(links[tet as usize].iter().filter_map(|link| match link {
+                    Link::Inside { index, .. } => Some(*index),
+                    Link::Surface { .. } | Link::Outside { .. } => None,
+                }));
+            }
+        }
+        count == links.len()
     }
 }
 
@@ -86,7 +112,7 @@ impl<A: Access> Worker<'_, '_, A> {
     ///
     /// # Errors
     /// `Geometry` when something required would go, `Topology` when old and new tetrahedra have different
-    /// boundaries, `Full` when there are no more ids, `Crossing` when the boundary would pass through itself. The mesh is
+    /// boundaries or the new ball of a vertex would fall apart, `Full` when there are no more ids, `Crossing` when the boundary would pass through itself. The mesh is
     /// unchanged then.
     pub fn commit(&mut self) -> Result<(), Refusal> {
         let Replacement { old, new, dead, .. } = &self.state.replacement;
@@ -94,6 +120,9 @@ impl<A: Access> Worker<'_, '_, A> {
         self.context.required.check(self.store, old, dead, stays)?;
         self.enter_old_faces()?;
         self.match_new_faces()?;
+        if self.state.replacement.is_ball && !self.state.replacement.hangs_together() {
+            return Err(Refusal::Topology);
+        }
         let guarded = self.guard_surface()?;
         self.number_new_tets()?;
         self.write_new_tets();
@@ -247,5 +276,43 @@ impl<A: Access> Worker<'_, '_, A> {
             self.store.set_tet_of(v, TetId::NONE);
             state.id_pool.free_vertex(v);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::core::access::Exclusive;
+    use crate::adapt::tests::bench::{Bench, Shape, sample};
+    use crate::geometry::Entity;
+
+    #[test]
+    fn the_new_ball_of_a_vertex_must_hang_together() {
+        let sample = sample(Shape::Cube, 3, 0.5);
+        let mut bench = Bench::new(&sample, 1, 3);
+        bench.context.store.tick();
+        let store = &bench.context.store;
+        let v = store.live_vertices().find(|&v| store.entity(v) == Entity::Interior).expect("a vertex inside");
+        let ball: Vec<TetId> = store.live_tets().filter(|&t| store.vertices(t).contains(&v)).collect();
+        let first = ball[0];
+        let are_neighbours = |t: TetId| store.neighbours(first).contains(&t);
+        let beside = *ball[1..].iter().find(|&&t| are_neighbours(t)).expect("a neighbour at the vertex");
+        let apart = *ball[1..].iter().find(|&&t| !are_neighbours(t)).expect("another one at the vertex");
+        let mut worker = Worker::new(&bench.context, &mut bench.states[0], Exclusive);
+        // They are replaced by themselves.
+        for (other, is_ball, result) in
+            [(apart, true, Err(Refusal::Topology)), (apart, false, Ok(())), (beside, true, Ok(()))]
+        {
+            let replacement = &mut worker.state.replacement;
+            replacement.clear();
+            replacement.is_ball = is_ball;
+            for t in [first, other] {
+                let (vertices, region, quality) = (store.vertices(t), store.region(t), store.quality(t));
+                replacement.old.push(t);
+                replacement.new.push(NewTet { vertices, region, quality });
+            }
+            assert_eq!(worker.commit(), result);
+        }
+        bench.check("tetrahedra that were replaced by themselves");
     }
 }

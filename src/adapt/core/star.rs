@@ -119,6 +119,9 @@ impl<A: Access> Worker<'_, '_, A> {
         let result = self.grow_star(&mut star, seed, apex, seeds, bounds);
         let result = result.and_then(|()| self.finish_star(&mut star, seed, apex));
         self.state.star = star;
+        // Over its seeds alone it is the ball of its apex whatever the mesh is like.
+        let replacement = &mut self.state.replacement;
+        replacement.is_ball &= replacement.old.len() > seeds.len();
         result
     }
 
@@ -232,6 +235,7 @@ impl<A: Access> Worker<'_, '_, A> {
         linked.clear();
         linked.insert(apex.0);
         let replacement = &mut self.state.replacement;
+        replacement.is_ball = true;
         let mut worst = f64::INFINITY;
         for face in seen.iter() {
             if face.behind.is_some() && inside.contains(face.behind.0) {
@@ -242,9 +246,12 @@ impl<A: Access> Worker<'_, '_, A> {
             }
             link.extend(face.tet.vertices.iter().copied().filter(|v| linked.insert(v.0)));
             // Faces at the apex bound the cavity too, but carry no tetrahedron.
-            if face.tet.region != u32::MAX {
-                worst = worst.min(face.tet.quality);
-                replacement.new.push(face.tet);
+            match face.tet.region {
+                u32::MAX => replacement.is_ball = false,
+                _ => {
+                    worst = worst.min(face.tet.quality);
+                    replacement.new.push(face.tet);
+                }
             }
         }
         for &(triangle, tag) in surface.iter() {

@@ -175,7 +175,20 @@ impl PlaceRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::adapt::extract::extract;
+    use crate::adapt::references::References;
     use crate::adapt::tests::bench::{Bench, Shape, sample};
+
+    #[test]
+    fn a_mesh_with_a_tetrahedron_at_a_dead_vertex_is_not_taken_out() {
+        let sample = sample(Shape::Cube, 2, 0.5);
+        let bench = Bench::new(&sample, 1, 3);
+        let refs = References::of(Team::alone(), &sample.mesh, &sample.place, &sample.model);
+        let taken = || extract(Team::alone(), &bench.context, &sample.mesh, &refs, &[]);
+        assert_eq!(taken().map(|taken| taken.mesh.tets.len()), Ok(sample.mesh.tets.len()));
+        bench.context.store.set_tet_of(VertexId(5), TetId::NONE);
+        assert_eq!(taken().map(|taken| taken.mesh.tets.len()), Err(Torn));
+    }
 
     #[test]
     fn a_tetrahedron_at_a_dead_vertex_is_told_and_nothing_is_moved() {

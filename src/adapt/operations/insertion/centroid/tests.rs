@@ -135,7 +135,7 @@ fn one_sweep_makes_points_inside_on_faces_and_on_ridges_and_leaves_a_valid_mesh(
         let edges = vec![1; topology.edges.len()];
         let faces = vec![1; topology.faces.len()];
         let refs = crate::adapt::references::References { inward: vec![false; faces.len()], faces, edges };
-        let extracted = extract::extract(Team::alone(), &context, &mesh, &refs, &[]);
+        let extracted = extract::extract(Team::alone(), &context, &mesh, &refs, &[]).unwrap();
         assert_valid_cube(&extracted.mesh);
     }
 }
