@@ -45,10 +45,14 @@ impl<A: Access> Worker<'_, '_, A> {
         let neighbours = self.store.neighbours(t);
         let is_first = neighbours.map(|n| !n.is_some() || self.goes_first(t, n));
         // What needs a neighbour out of reach waits for the next round, but nothing is left to wait for if another edge can be removed now.
+        // With two out of reach there is one other edge at most.
         let mut is_in_reach = [true; 4];
         if A::REFUSES_UNTIL_ROUND_ENDS {
             for i in (0..4).filter(|&i| is_first[i] && neighbours[i].is_some()) {
                 is_in_reach[i] = self.claim_tet(neighbours[i]).is_ok();
+            }
+            if is_in_reach.iter().filter(|&&is_in_reach| !is_in_reach).count() > 1 {
+                return Err(Refusal::Conflict);
             }
         }
         let mut refusal = Refusal::Shape;
@@ -65,9 +69,12 @@ impl<A: Access> Worker<'_, '_, A> {
                 return Ok(());
             }
         }
+        if refusal == Refusal::Conflict || is_in_reach != [true; 4] {
+            // Faces come after all edges.
+            return Err(Refusal::Conflict);
+        }
         for i in (0..4).filter(|&i| is_first[i]) {
-            let result = if is_in_reach[i] { self.remove_face(t, i, criterion) } else { Err(Refusal::Conflict) };
-            if is_done::<A>(result, &mut refusal)? {
+            if is_done::<A>(self.remove_face(t, i, criterion), &mut refusal)? {
                 return Ok(());
             }
         }
