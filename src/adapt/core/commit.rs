@@ -111,9 +111,9 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Carries out `state.replacement`. All vertices of the old and new tetrahedra must be claimed.
     ///
     /// # Errors
-    /// `Geometry` when something required would go, `Topology` when old and new tetrahedra have different
-    /// boundaries or the new ball of a vertex would fall apart, `Full` when there are no more ids, `Crossing` when the boundary would pass through itself. The mesh is
-    /// unchanged then.
+    /// `Geometry` when something required would go, `Topology` when old and new tetrahedra have different boundaries or the new ball of a
+    /// vertex would fall apart, `Full` when there are no more ids, `Crossing` when the boundary would pass through itself. The mesh is unchanged
+    /// then.
     pub fn commit(&mut self) -> Result<(), Refusal> {
         let Replacement { old, new, dead, .. } = &self.state.replacement;
         let stays = |a, b| new.iter().any(|tet| tet.vertices.contains(&a) && tet.vertices.contains(&b));

@@ -119,7 +119,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let result = self.grow_star(&mut star, seed, apex, seeds, bounds);
         let result = result.and_then(|()| self.finish_star(&mut star, seed, apex));
         self.state.star = star;
-        // Over its seeds alone it is the ball of its apex whatever the mesh is like.
+        // A cavity that has not grown hangs together as its seeds do, and needs no test.
         let replacement = &mut self.state.replacement;
         replacement.is_ball &= replacement.old.len() > seeds.len();
         result

@@ -11,7 +11,7 @@ use crate::mesh::vector::lerp;
 use std::ops::RangeInclusive;
 
 /// The worst mean ratio of a larger cavity must grow by this factor.
-pub const GAIN: f64 = 1.05;
+const GAIN: f64 = 1.05;
 
 /// Below this mean ratio an edge may be split for the shape alone. Where two edges of the model run side by side, nearer than the metric's
 /// sizes (a blunt trailing edge), their vertices must face each other, and a vertex may be missing for that.

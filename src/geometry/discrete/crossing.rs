@@ -6,8 +6,7 @@ use crate::mesh::triangle_pair::meeting;
 use crate::mesh::vector::Vec3;
 use crate::tasks::Team;
 
-/// The sides of a patch are cut into so many parts. What two patches reach into each other by is missed where it is less than about a sixteenth of
-/// their rise.
+/// The sides of a patch are cut into so many parts. Two patches that reach into each other by less than about a sixteenth of their rise are missed.
 const PARTS: usize = 4;
 
 /// Two triangles by their numbers, the lower first, and a point where their patches meet.
@@ -116,7 +115,7 @@ mod tests {
 
     #[test]
     fn balls_whose_patches_bulge_into_each_other_cross_and_their_triangles_do_not() {
-        // With n = 3 no vertex is at the pole: the flat triangles are 0.11 inside the ball there.
+        // With n = 3 no vertex is at the pole: the flat triangles are 0.19 inside the ball there.
         let flat = two_balls(3, 0.1);
         let at = crossing(&flat, true, 1).unwrap();
         let centre =

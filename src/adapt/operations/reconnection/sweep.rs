@@ -55,23 +55,19 @@ impl<A: Access> Worker<'_, '_, A> {
                 return Err(Refusal::Conflict);
             }
         }
-        let mut refusal = Refusal::Shape;
+        let mut refusal = if is_in_reach == [true; 4] { Refusal::Shape } else { Refusal::Conflict };
         for [i, j] in EDGE {
             let [k, l] = ACROSS[i][j];
-            if !(is_first[k] && is_first[l]) {
+            if ![k, l].iter().all(|&m| is_first[m] && is_in_reach[m]) {
                 continue;
             }
-            let result = match is_in_reach[k] && is_in_reach[l] {
-                true => self.remove_edge(ring, [v[i], v[j]], t, criterion),
-                false => Err(Refusal::Conflict),
-            };
-            if is_done::<A>(result, &mut refusal)? {
+            if is_done::<A>(self.remove_edge(ring, [v[i], v[j]], t, criterion), &mut refusal)? {
                 return Ok(());
             }
         }
-        if refusal == Refusal::Conflict || is_in_reach != [true; 4] {
-            // Faces come after all edges.
-            return Err(Refusal::Conflict);
+        if refusal == Refusal::Conflict {
+            // Faces are tried after all edges, in a round that reaches them.
+            return Err(refusal);
         }
         for i in (0..4).filter(|&i| is_first[i]) {
             if is_done::<A>(self.remove_face(t, i, criterion), &mut refusal)? {
