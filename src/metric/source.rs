@@ -9,6 +9,9 @@ use crate::tasks::{GRAIN, Team};
 /// About how many samples of an analytic field are taken for its complexity.
 const SAMPLES: usize = 1 << 20;
 
+/// And about how many for a forecast.
+const FEW_SAMPLES: usize = 1 << 17;
+
 /// The source of the metric at any point. Shared by all threads.
 pub enum Source {
     /// An analytic field, evaluated.
@@ -56,11 +59,12 @@ impl Source {
         let corners = |t: usize| Some(mesh.tets.nodes[t].map(|v| mesh.vertices[v as usize]));
         match self {
             Self::Background(background) => background.complexity(team),
-            Self::Analytic { .. } => self.sampled_complexity(team, mesh.tets.len(), corners),
+            Self::Analytic { .. } => self.sampled_complexity(team, (SAMPLES, mesh.tets.len()), corners),
         }
     }
 
-    /// As [`Source::complexity`] of a mesh of up to so many tetrahedra, told by their corners; none where there is no tetrahedron.
+    /// As [`Source::complexity`], of a mesh of up to so many tetrahedra, told by their corners; none where there is no tetrahedron. An analytic
+    /// field is asked at fewer places, which serves for a forecast.
     pub fn complexity_within(
         &self,
         team: Team<'_>,
@@ -69,32 +73,34 @@ impl Source {
     ) -> f64 {
         match self {
             Self::Background(background) => background.complexity(team),
-            Self::Analytic { .. } => self.sampled_complexity(team, tets, corners),
+            Self::Analytic { .. } => self.sampled_complexity(team, (FEW_SAMPLES, tets), corners),
         }
     }
 
     fn sampled_complexity(
         &self,
         team: Team<'_>,
-        tets: usize,
+        (samples, tets): (usize, usize),
         corners: impl Fn(usize) -> Option<[Vec3; 4]> + Sync,
     ) -> f64 {
-        self.sampled_terms(team, (tets, tets), corners).into_iter().sum()
+        self.sampled_terms(team, samples / tets.max(1), tets, corners).into_iter().sum()
     }
 
     /// The terms of the complexity of an analytic field on a mesh of `all` tetrahedra, at some of them, told by their corners: in slices of
     /// multiples of [`GRAIN`] tetrahedra they are the same.
     pub fn complexity_terms(&self, all: usize, tets: usize, corners: impl Fn(usize) -> [Vec3; 4] + Sync) -> Vec<f64> {
-        self.sampled_terms(Team::alone(), (all, tets), |t| Some(corners(t)))
+        self.sampled_terms(Team::alone(), SAMPLES / all.max(1), tets, |t| Some(corners(t)))
     }
 
+    /// With about so many samples a tetrahedron.
     fn sampled_terms(
         &self,
         team: Team<'_>,
-        (all, tets): (usize, usize),
+        samples: usize,
+        tets: usize,
         corners: impl Fn(usize) -> Option<[Vec3; 4]> + Sync,
     ) -> Vec<f64> {
-        let depth = (SAMPLES / all.max(1)).max(1).ilog2();
+        let depth = samples.max(1).ilog2();
         // As many samples a task whatever their depth.
         team.chunks(GRAIN >> depth.min(GRAIN.ilog2()), tets, |range| {
             range.filter_map(&corners).map(|corners| self.integrate(corners, depth)).sum()
