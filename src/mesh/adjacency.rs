@@ -118,56 +118,61 @@ pub fn unique_edges(tets: &[[u32; 4]]) -> Vec<[u32; 2]> {
     found
 }
 
-/// Edges that were met last are kept to be known again: most tetrahedra at an edge are near each other in memory.
-const KEPT: usize = 1 << 12;
+/// Edges that were met last are kept to be known again.
+const MET: usize = 1 << 10;
 
-/// Tetrahedra a task.
-const TETS: usize = 8 * GRAIN;
-
-/// The edges of tetrahedra, by their lower nodes.
-pub struct Edges {
-    /// For each node the greater nodes that edges join it to. Some are there twice.
+/// The edges of tetrahedra, known by their lower nodes.
+pub struct Edges<'t> {
+    tets: &'t [[u32; 4]],
+    /// For each node the tetrahedra in which it is not the greatest: 12 bytes a tetrahedron.
     at: Rows,
+    nodes: usize,
 }
 
-impl Edges {
-    /// Of tetrahedra.
-    pub fn of(team: Team<'_>, tets: &[[u32; 4]]) -> Self {
-        let met = team.collect(TETS, tets.len(), |range, met| {
-            let mut kept = vec![u64::MAX; KEPT];
-            for nodes in &tets[range] {
-                for [i, j] in EDGES {
-                    let [low, high] = sorted2([nodes[i], nodes[j]]);
-                    let edge = u64::from(low) << 32 | u64::from(high);
-                    // Knuth's multiplicative hashing.
-                    let place = edge.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> (u64::BITS - KEPT.ilog2());
-                    let before = std::mem::replace(&mut kept[place as usize], edge);
-                    // A tetrahedron that a file has wrong may have a node twice.
-                    if before != edge && low != high {
-                        met.push([low, high]);
-                    }
-                }
-            }
+impl<'t> Edges<'t> {
+    /// Of tetrahedra, fewer than 2³⁰.
+    pub fn of(team: Team<'_>, tets: &'t [[u32; 4]]) -> Self {
+        let greatest = |range: Range<usize>| tets[range].iter().flatten().max().copied();
+        let greatest = team.chunks(GRAIN, tets.len(), greatest).into_iter().max().flatten();
+        let nodes = greatest.map_or(0, |greatest| greatest as usize + 1);
+        let at = Rows::by_key(team, nodes, tets.len(), |t| {
+            let greatest = tets[t].into_iter().max().unwrap_or(0);
+            tets[t].map(|v| if v < greatest { v } else { Rows::NOWHERE })
         });
-        let greatest = team.chunks(TETS, met.len(), |range| met[range].iter().map(|edge| edge[1]).max());
-        let nodes = greatest.into_iter().flatten().max().map_or(0, |greatest| greatest as usize + 1);
-        Self { at: Rows::of_pairs(team, nodes, &met) }
+        Self { tets, at, nodes }
     }
 
     /// The nodes are less than this.
     pub fn nodes(&self) -> usize {
-        self.at.len()
+        self.nodes
     }
 
     /// Calls `f` with the edges whose lower node is in the range, each once, in the order of their nodes.
     pub fn for_each(&self, range: Range<usize>, mut f: impl FnMut([u32; 2])) {
         let mut upper: Vec<u32> = Vec::new();
+        let mut met = [u64::MAX; MET];
         for low in range {
+            let row = self.at.row(low);
             upper.clear();
-            upper.extend(self.at.row(low));
+            upper.resize(4 * row.len(), 0);
+            // What is greater and what is met again comes in no order: all is written, and the place taken back if it is not new.
+            let mut count = 0;
+            for &entry in row {
+                for high in self.tets[entry as usize / 4] {
+                    let (edge, known) = ((low as u64) << 32 | u64::from(high), &mut met[high as usize % MET]);
+                    upper[count] = high;
+                    count += usize::from((high as usize > low) & (*known != edge));
+                    *known = edge;
+                }
+            }
+            let upper = &mut upper[..count];
             upper.sort_unstable();
-            upper.dedup();
-            upper.iter().for_each(|&high| f([low as u32, high]));
+            // Two nodes with one place among those that were met last come again.
+            for (at, &high) in upper.iter().enumerate() {
+                if at == 0 || upper[at - 1] != high {
+                    f([low as u32, high]);
+                }
+            }
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::tasks::{GRAIN, Team};
 /// About how many samples of an analytic field are taken for its complexity.
 const SAMPLES: usize = 1 << 20;
 
-/// And about how many for a forecast.
+/// About how many are taken where the complexity need not be exact.
 const FEW_SAMPLES: usize = 1 << 17;
 
 /// The source of the metric at any point. Shared by all threads.
@@ -63,8 +63,8 @@ impl Source {
         }
     }
 
-    /// As [`Source::complexity`], of a mesh of up to so many tetrahedra, told by their corners; none where there is no tetrahedron. An analytic
-    /// field is asked at fewer places, which serves for a forecast.
+    /// As [`Source::complexity`], of a mesh of up to so many tetrahedra, told by their corners; none where there is no tetrahedron. Less exact: an
+    /// analytic field is asked at fewer places, which is enough for a forecast and for the bound on growth.
     pub fn complexity_within(
         &self,
         team: Team<'_>,
@@ -92,7 +92,7 @@ impl Source {
         self.sampled_terms(Team::alone(), SAMPLES / all.max(1), tets, |t| Some(corners(t)))
     }
 
-    /// With about so many samples a tetrahedron.
+    /// The terms with about so many samples a tetrahedron.
     fn sampled_terms(
         &self,
         team: Team<'_>,

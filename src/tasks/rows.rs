@@ -32,11 +32,6 @@ impl Rows {
         Self::deal_out(team, nodes, elements.len(), |element| elements[element], |element| [element as u32; N])
     }
 
-    /// For each of so many keys the second numbers of the pairs whose first it is, in the order of the pairs.
-    pub fn of_pairs(team: Team<'_>, keys: usize, pairs: &[[u32; 2]]) -> Self {
-        Self::deal_out(team, keys, pairs.len(), |pair| [pairs[pair][0]], |pair| [pairs[pair][1]])
-    }
-
     /// The counting sort: what each item brings, by its keys.
     ///
     /// Each thread counts and deals out one part of the items, with counts of its own: no word is locked, and the entries of a key
