@@ -41,31 +41,45 @@ impl Analytic {
         self.spectral(p, |h| -2.0 * h.ln())
     }
 
+    /// √det M at p.
+    pub fn density_at(self, p: Vec3) -> f64 {
+        let [a, b, c] = self.sizes(p[0].hypot(p[1]), p[2]);
+        1.0 / (a * b * c)
+    }
+
     /// Whether the ratio of the sizes at p is one that doubles hold for certain. Only far away it is not.
     #[inline]
     pub fn is_moderate(p: Vec3) -> bool {
         p.iter().all(|x| x.abs() < 1e3)
     }
 
+    /// The sizes at a distance from the z axis and a height: along x, y, z; in the polar fields away from the axis, around it, along it.
+    #[inline]
+    fn sizes(self, r: f64, z: f64) -> [f64; 3] {
+        match self {
+            Self::Linear => [H1, H1, size(z - 0.5)],
+            Self::Polar1 => [size(r - 0.5), H1, H1],
+            Self::Polar2 => [size(r - 0.5), circumferential(r), H1],
+        }
+    }
+
     /// Σ f(h_i) e_i e_iᵀ.
     #[inline]
     fn spectral(self, p: Vec3, f: impl Fn(f64) -> f64) -> Sym3 {
-        let wide = f(H1);
-        if self == Self::Linear {
-            return Sym3::diagonal(wide, wide, f(size(p[2] - 0.5)));
-        }
         let r = p[0].hypot(p[1]);
+        let [radial, around, upright] = self.sizes(r, p[2]).map(f);
+        if self == Self::Linear {
+            return Sym3::diagonal(radial, around, upright);
+        }
         // On the axis every direction is radial.
         let (c, s) = if r > 0.0 { (p[0] / r, p[1] / r) } else { (1.0, 0.0) };
-        let radial = f(size(r - 0.5));
-        let around = if self == Self::Polar1 { wide } else { f(circumferential(r)) };
         Sym3([
             radial * c * c + around * s * s,
             (radial - around) * c * s,
             radial * s * s + around * c * c,
             0.0,
             0.0,
-            wide,
+            upright,
         ])
     }
 }
@@ -149,6 +163,7 @@ mod tests {
                 for i in 0..6 {
                     assert!((m.ln().0[i] - log.0[i]).abs() < 1e-9, "{field} {p:?}");
                 }
+                assert!((field.density_at(p) / m.det().sqrt() - 1.0).abs() < 1e-12, "{field} {p:?}");
             }
             assert_eq!(field.name().parse::<Analytic>().unwrap(), field);
         }

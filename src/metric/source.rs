@@ -116,12 +116,21 @@ impl Source {
         }
     }
 
+    /// √det M at p.
+    fn density_at(&self, p: Vec3) -> f64 {
+        match self {
+            Self::Analytic { field, log_scale } if Analytic::is_moderate(p) => {
+                field.density_at(p) * (1.5 * log_scale).exp()
+            }
+            _ => (0.5 * self.log_at(p, &mut 0).trace()).exp(),
+        }
+    }
+
     /// ∫ √det M over a tetrahedron, bisected `depth` times across its longest edge.
     fn integrate(&self, x: [Vec3; 4], depth: u32) -> f64 {
         if depth == 0 {
             let centroid = scale(add(add(x[0], x[1]), add(x[2], x[3])), 0.25);
-            let density = (0.5 * self.log_at(centroid, &mut 0).trace()).exp();
-            return density * volume6(x[0], x[1], x[2], x[3]).abs() / 6.0;
+            return self.density_at(centroid) * volume6(x[0], x[1], x[2], x[3]).abs() / 6.0;
         }
         let mut longest = (0.0, [0, 1]);
         for [i, j] in EDGES {

@@ -111,13 +111,16 @@ impl<A: Access> Worker<'_, '_, A> {
     /// Carries out `state.replacement`. All vertices of the old and new tetrahedra must be claimed.
     ///
     /// # Errors
-    /// `Geometry` when something required would go, `Topology` when old and new tetrahedra have different boundaries or the new ball of a
-    /// vertex would fall apart, `Full` when there are no more ids, `Crossing` when the boundary would pass through itself. The mesh is unchanged
-    /// then.
+    /// `Geometry` when something required would go, or a part of a larger mesh would get a face or a surface edge that another part may have too,
+    /// `Topology` when old and new tetrahedra have different boundaries or the new ball of a vertex would fall apart, `Full` when there are no
+    /// more ids, `Crossing` when the boundary would pass through itself. The mesh is unchanged then.
     pub fn commit(&mut self) -> Result<(), Refusal> {
         let Replacement { old, new, dead, .. } = &self.state.replacement;
         let stays = |a, b| new.iter().any(|tet| tet.vertices.contains(&a) && tet.vertices.contains(&b));
         self.context.required.check(self.store, old, dead, stays)?;
+        if self.context.required.is_part() && self.joins_held() {
+            return Err(Refusal::Geometry);
+        }
         self.enter_old_faces()?;
         self.match_new_faces()?;
         if self.state.replacement.is_ball && !self.state.replacement.hangs_together() {
@@ -128,6 +131,17 @@ impl<A: Access> Worker<'_, '_, A> {
         self.write_new_tets();
         self.note_surface(guarded);
         Ok(())
+    }
+
+    /// Whether a new face has only vertices that must not move, or a new edge of the surface has: in a part of a larger mesh another part may
+    /// have the same, and then three tetrahedra would share a face.
+    fn joins_held(&self) -> bool {
+        let Replacement { old, new, faces, .. } = &self.state.replacement;
+        let was_there =
+            |of: &[VertexId]| old.iter().map(|&t| self.store.vertices(t)).any(|tet| of.iter().all(|v| tet.contains(v)));
+        let is_new = |of: &[VertexId]| of.iter().all(|&v| self.context.is_frozen(v)) && !was_there(of);
+        new.iter().any(|tet| FACE.iter().any(|face| is_new(&face.map(|k| tet.vertices[k]))))
+            || faces.iter().any(|&([a, b, c], _)| [[a, b], [b, c], [c, a]].iter().any(|edge| is_new(edge)))
     }
 
     /// Enters the cavity's boundary faces and the declared ones into the face map.

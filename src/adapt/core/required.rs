@@ -36,6 +36,8 @@ pub struct Required {
     edges: HashSet<[VertexId; 2]>,
     /// By the store's numbers.
     regions: Vec<u32>,
+    /// Whether the mesh is a part of a larger one, with faces to other parts.
+    is_part: bool,
 }
 
 impl Required {
@@ -55,7 +57,8 @@ impl Required {
     /// The same with vertices of no tetrahedron.
     fn listed(mesh: &TetMesh, freeze: &Freeze) -> Self {
         let regions = freeze.regions.iter().map(|&region| region as u32).collect();
-        let mut required = Self { frozen: vec![false; mesh.vertices.len()], edges: HashSet::new(), regions };
+        let mut required =
+            Self { frozen: vec![false; mesh.vertices.len()], edges: HashSet::new(), regions, is_part: false };
         let edges = mesh.required_edges.iter().map(|&e| mesh.edges.nodes[e as usize]);
         let triangles = mesh.required_triangles.iter().map(|&t| mesh.triangles.nodes[t as usize]);
         let surfaces = mesh.triangles.iter().filter(|(_, reference)| freeze.surfaces.contains(reference));
@@ -72,8 +75,9 @@ impl Required {
         required
     }
 
-    /// Holds vertices, and the edges of triangles of held vertices, of a mesh that has so many vertices.
+    /// Holds vertices, and the edges of triangles of held vertices, of a part that has so many vertices.
     pub fn hold(&mut self, vertices: usize, held: &[u32], triangles: impl Iterator<Item = [u32; 3]>) {
+        self.is_part = !held.is_empty();
         self.frozen.resize(vertices, false);
         held.iter().for_each(|&v| self.frozen[v as usize] = true);
         for [a, b] in triangles.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]) {
@@ -107,6 +111,12 @@ impl Required {
         }
         self.frozen = frozen;
         self.edges = self.edges.iter().map(|&[a, b]| key(number[a.index()], number[b.index()])).collect();
+    }
+
+    /// Whether the mesh is a part of a larger one, with faces to others. Then another part may have, or make, what joins vertices that must not move.
+    #[inline(always)]
+    pub fn is_part(&self) -> bool {
+        self.is_part
     }
 
     /// Whether a vertex must neither move nor go.

@@ -96,7 +96,12 @@ impl<A: Access> Worker<'_, '_, A> {
                 return Err(Refusal::Stale);
             }
             let [k, l] = self.turn(t, a, b).ok_or(Refusal::Topology)?;
-            let (v, n, tags) = (self.claim_tet(t)?, self.store.neighbours(t), self.store.tags(t));
+            let (v, n, tags) = (self.store.vertices(t), self.store.neighbours(t), self.store.tags(t));
+            if t == first {
+                self.claim(v[k])?;
+            }
+            // That is the first one's of the next tetrahedron.
+            self.claim(v[l])?;
             shell.tets.push(t);
             shell.ring.push(v[k]);
             self.store.fetch_vertex(v[k]);

@@ -193,8 +193,7 @@ impl<A: Access> Worker<'_, '_, A> {
         for lane in 0..LANES {
             let face = star.wanted[lane.min(count - 1)].vertices;
             let face = [face[0], face[1], face[2]];
-            let logs = face.map(|x| store.log(x));
-            batch.set(lane, face.map(|x| store.position(x)), logs.each_ref());
+            batch.set_with_sum(lane, face.map(|x| store.position(x)), &store.log_sum(face));
         }
         batch.prepare();
         let qualities = batch.shapes(apex.point, &apex.log).mean_ratios();

@@ -80,8 +80,13 @@ pub struct Store {
 }
 
 #[inline(always)]
+fn value(from: &AtomicU64) -> f64 {
+    f64::from_bits(from.load(Relaxed))
+}
+
+#[inline(always)]
 fn load<const N: usize>(from: &[AtomicU64; N]) -> [f64; N] {
-    std::array::from_fn(|i| f64::from_bits(from[i].load(Relaxed)))
+    std::array::from_fn(|i| value(&from[i]))
 }
 
 #[inline(always)]

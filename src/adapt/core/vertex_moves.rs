@@ -121,11 +121,7 @@ impl<A: Access> Worker<'_, '_, A> {
         is_fair: impl FnOnce(&mut Self) -> bool,
     ) -> Result<(), Refusal> {
         let before = self.vertex_state(v);
-        self.with_vertex_at(
-            v,
-            to,
-            |worker| if is_fair(worker) { worker.keep_apart(v, ball) } else { Err(Refusal::Normal) },
-        )?;
+        self.move_unmeasured(v, to, ball, is_fair)?;
         let way = sub(to.placed.point, before.placed.point);
         let far = before.metric.quadratic(way) > FAR * FAR;
         for (&t, ratio) in ball.iter().zip(ratios) {
@@ -136,12 +132,22 @@ impl<A: Access> Worker<'_, '_, A> {
         Ok(())
     }
 
-    /// Moves a vertex whose ball is claimed to a place where all its tetrahedra are positive; their mean ratios are not known yet.
+    /// As [`Worker::move_in_ball`], where the mean ratios are not known yet.
     ///
     /// # Errors
-    /// `Geometry` when the vertex must not move, `Crossing` when the boundary would pass through itself.
-    pub fn move_unmeasured(&mut self, v: VertexId, to: &VertexState, ball: &[TetId]) -> Result<(), Refusal> {
-        self.with_vertex_at(v, to, |worker| worker.keep_apart(v, ball))
+    /// Those of [`Worker::move_in_ball`].
+    pub fn move_unmeasured(
+        &mut self,
+        v: VertexId,
+        to: &VertexState,
+        ball: &[TetId],
+        is_fair: impl FnOnce(&mut Self) -> bool,
+    ) -> Result<(), Refusal> {
+        self.with_vertex_at(
+            v,
+            to,
+            |worker| if is_fair(worker) { worker.keep_apart(v, ball) } else { Err(Refusal::Normal) },
+        )
     }
 
     /// Measures tetrahedra again after their vertices have moved, and stamps them so that all operations look at them.

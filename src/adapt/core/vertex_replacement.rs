@@ -1,6 +1,6 @@
 //! A vertex inside goes onto a neighbour, by changes to the records that are there. For sweeps that remove most of a crowded mesh.
 use super::access::Access;
-use super::ids::{TetId, VertexId};
+use super::ids::{FACE, TetId, VertexId};
 use super::refusal::Refusal;
 use super::worker::Worker;
 
@@ -25,11 +25,24 @@ pub struct BallSplit {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
+    /// Whether w, in place of another vertex, comes into a new face whose vertices must not move; see [`Worker::commit`].
+    fn joins_held_at(&self, w: VertexId, ball: &BallSplit) -> bool {
+        let is_held = |[x, y]: [VertexId; 2]| self.context.is_frozen(x) && self.context.is_frozen(y);
+        let was_there = |edge: [VertexId; 2]| {
+            ball.gone.iter().any(|&(t, _)| edge.iter().all(|x| self.store.vertices(t).contains(x)))
+        };
+        let comes = |&Kept { tet, local, .. }: &Kept| {
+            let [a, b, c] = FACE[local].map(|k| self.store.vertices(tet)[k]);
+            [[a, b], [b, c], [c, a]].into_iter().any(|edge| is_held(edge) && !was_there(edge))
+        };
+        self.context.is_frozen(w) && ball.kept.iter().any(comes)
+    }
+
     /// Writes w in place of v in the tetrahedra of its ball that stay, and makes neighbours of what lies on both sides of those that go. The
     /// whole ball is claimed, and what stays is positive.
     ///
     /// # Errors
-    /// `Geometry` when something required would go.
+    /// `Geometry` when something required would go, or a part of a larger mesh would get a face that another part may have too.
     pub fn replace_vertex(
         &mut self,
         v: VertexId,
@@ -39,6 +52,9 @@ impl<A: Access> Worker<'_, '_, A> {
     ) -> Result<(), Refusal> {
         // An edge without v and w also belongs to a tetrahedron that stays.
         self.context.required.check(self.store, tets, &[v], |x, y| x != v && y != v)?;
+        if self.context.required.is_part() && self.joins_held_at(w, ball) {
+            return Err(Refusal::Geometry);
+        }
         let store = self.store;
         for &Kept { tet, local, quality } in &ball.kept {
             store.set_vertex(tet, local, w);

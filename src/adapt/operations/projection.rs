@@ -81,28 +81,54 @@ impl<A: Access> Worker<'_, '_, A> {
             return Ok(());
         }
         let to = self.state_at(goal, hint);
+        let folded = self.folded_at(v, ball);
         let arrived = self.with_vertex_at(v, &to, |worker| {
             worker.build_star(Seed::Vertex(v), v, ball, Bounds::default())?;
             worker.state.replacement.keeps_surface = true;
-            worker.commit()
+            if worker.folded_of_star() > folded { Err(Refusal::Normal) } else { worker.commit() }
         });
         match arrived {
             Err(Refusal::Conflict) | Ok(()) => arrived,
-            Err(_) => self.approach(v, ball, goal),
+            Err(_) => self.approach(v, ball, (goal, folded)),
         }
     }
 
-    fn approach(&mut self, v: VertexId, ball: &[TetId], goal: Placed) -> Result<(), Refusal> {
+    /// How many triangles of the surface at a vertex are folded, in a part of a larger mesh: there must not be more. A part does not see what is
+    /// beyond its cuts, and surfaces of two parts that share a rim do not cross as long as each lies over its side of the model.
+    fn folded_at(&mut self, v: VertexId, ball: &[TetId]) -> usize {
+        if !self.context.required.is_part() {
+            return 0;
+        }
+        let mut triangles = std::mem::take(&mut self.state.star.surface);
+        triangles.clear();
+        self.list_surface(v, ball, &mut triangles);
+        let folded = self.folded(&triangles);
+        self.state.star.surface = triangles;
+        folded
+    }
+
+    /// The same of the triangles that come with `state.replacement`.
+    fn folded_of_star(&mut self) -> usize {
+        if !self.context.required.is_part() {
+            return 0;
+        }
+        let triangles = std::mem::take(&mut self.state.replacement.faces);
+        let folded = self.folded(&triangles);
+        self.state.replacement.faces = triangles;
+        folded
+    }
+
+    fn approach(&mut self, v: VertexId, ball: &[TetId], (goal, folded): (Placed, usize)) -> Result<(), Refusal> {
         let VertexState { placed, hint, .. } = self.vertex_state(v);
         let mut step = 0.5;
         for _ in 0..HALVINGS {
             let point = lerp(placed.point, goal.point, step);
             if self.is_positive_at(v, point, ball) {
                 let to = self.state_at(Placed { point, ..placed }, hint);
-                match self.move_unmeasured(v, &to, ball) {
+                match self.move_unmeasured(v, &to, ball, |worker| worker.folded_at(v, ball) <= folded) {
                     Ok(()) => break,
                     // Nearer to where it was it may keep out of what is across a void.
-                    Err(Refusal::Crossing) => {}
+                    Err(Refusal::Crossing | Refusal::Normal) => {}
                     Err(refusal) => return Err(refusal),
                 }
             }

@@ -35,6 +35,12 @@ use std::time::Instant;
 /// Most passes for the sizes.
 const SIZE_PASSES: usize = 20;
 
+/// With this share of the vertices that are expected a mesh has nearly all.
+const NEARLY_ALL: f64 = 0.9;
+
+/// Where less than this share of the insertions was done, most were refused.
+const MOSTLY_REFUSED: f64 = 0.25;
+
 /// Most passes for the shapes.
 const SHAPE_PASSES: usize = 6;
 
@@ -44,7 +50,7 @@ const PATIENCE: usize = 1;
 /// Most tetrahedra of a cavity from then on: inner vertices that are in the way to the model go.
 const LARGE_CAVITY: usize = 4096;
 
-/// The store is renumbered before insertions and stages when it has grown by this factor.
+/// The store is renumbered before insertions, and after stages, when it has grown by this factor.
 const OUT_OF_ORDER: f64 = 2.0;
 
 /// The store is renumbered before the passes for the shapes when it has grown by this factor.
@@ -54,9 +60,9 @@ const OUT_OF_PLACE: f64 = 1.2;
 fn size_limits() -> Limits {
     Limits {
         improve_below: 0.4,
-        flip_below: 0.65,
+        flip_below: 0.7,
         short: 0.65,
-        shortest_new: 0.7,
+        shortest_new: 0.75,
         long_first: true,
         several_below: 0.0,
         ..Limits::default()
@@ -275,14 +281,15 @@ impl<'c, 'm> Pipeline<'c, 'm> {
 
     /// One pass of insertion and collapse, with the reconnection that they need. Returns whether it changed little.
     fn size_pass(&mut self) -> bool {
-        let before = self.changes();
+        let (before, insertions) = (self.changes(), self.insertions());
         self.refine();
         self.collapse();
         self.reconnect(self.criterion, 1);
-        if self.effort.smooths {
-            self.smooth();
-        }
-        self.is_little(self.changes() - before)
+        let (changes, live) = (self.changes() - before, self.live() as f64);
+        let [tried, done] = [0, 1].map(|i| (self.insertions()[i] - insertions[i]) as f64);
+        let is_crowded = live > NEARLY_ALL * self.expected && done < MOSTLY_REFUSED * tried;
+        let little = if is_crowded { self.effort.crowded } else { self.effort.little };
+        (changes as f64) < little * live
     }
 
     /// One pass of all operations. Flips come after collapses and splits, where they find most; after smoothing they find next to nothing.
@@ -310,14 +317,15 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.unprojected.len() < before
     }
 
-    /// Takes out the vertices that found no room on the model: where the surface becomes no worse, or at any price.
+    /// Takes out the vertices that found no room on the model: where the surface becomes no worse, or at any price but, in a part of a larger
+    /// mesh, that of a fold: what is beyond its cuts may be in the way.
     fn remove_unprojected(&mut self, at_any_price: bool) {
         let limits = self.context.limits;
         self.context.limits = Limits { collapse_floor: 0.0, longest_new: f64::INFINITY, ball: usize::MAX, ..limits };
         if at_any_price {
             // A coarse surface can be refined again, one beside the model stays there.
             self.context.limits = Limits {
-                cos_deviation: -1.0,
+                cos_deviation: if self.context.required.is_part() { 0.0 } else { -1.0 },
                 cos_variation: -1.0,
                 chord: f64::INFINITY,
                 rise: f64::INFINITY,
@@ -333,6 +341,12 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// Whether so many changes are few for a mesh of this size.
     fn is_little(&self, changes: u64) -> bool {
         (changes as f64) < self.effort.little * self.live() as f64
+    }
+
+    /// Insertions that were tried, each once, and that were done.
+    fn insertions(&self) -> [u64; 2] {
+        let counts = &self.work[Kind::Split as usize].counts;
+        [counts.attempts - counts.refused[Refusal::Conflict as usize], counts.done]
     }
 
     fn changes(&self) -> u64 {

@@ -46,6 +46,9 @@ const AT_ONCE: usize = 8;
 /// To look at so many tetrahedra is cheaper than to begin an item that meets another part.
 const TETS_AN_ITEM: usize = if cfg!(test) { 12 } else { 64 };
 
+/// Items are asked for so many places ahead when their parts are found.
+const KNOWN_AHEAD: usize = 16;
+
 /// Instead of the part of an item: it waits for another round, or is gone.
 const WAITS: u32 = u32::MAX;
 const GONE: u32 = u32::MAX - 1;
@@ -184,8 +187,11 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         // Where few items are left, they find out by themselves.
         let is_worth = O::WHOLE_BALLS && self.left.len() * TETS_AN_ITEM > store.tet_bound();
         let between = if is_worth { self.between() } else { Vec::new() };
-        let part_of = |number: &u32| {
-            let vertices = self.item(*number).vertices(store);
+        let part_of = |at: usize| {
+            if let Some(&ahead) = self.left.get(at + KNOWN_AHEAD) {
+                self.item(ahead).fetch_known_by(store);
+            }
+            let vertices = self.item(self.left[at]).vertices(store);
             if vertices.iter().any(|&v| !v.is_some() || owner(store, v) == 0) {
                 return GONE;
             }
@@ -195,7 +201,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
             if waits { WAITS } else { u32::from(part - Owned::word(0)) }
         };
         self.pool.collect(Plan { grain: GRAIN, ..self.plan }, self.left.len(), |_, range, found| {
-            found.extend(self.left[range].iter().map(part_of));
+            found.extend(range.map(part_of));
         })
     }
 

@@ -64,6 +64,9 @@ pub trait Item: Copy + Send + Sync {
     /// The vertices that it is known by; some may be repeated. For an item that is gone they may be any. Between sweeps only.
     fn vertices(self, store: &Store) -> [VertexId; 4];
 
+    /// Asks the memory for what [`Item::vertices`] reads.
+    fn fetch_known_by(self, store: &Store);
+
     /// Asks the memory for what its operation will read, one step after the other: each needs what the one before has asked for.
     fn fetch(self, store: &Store, step: usize);
 }
@@ -87,6 +90,9 @@ impl Item for VertexId {
     }
 
     #[inline(always)]
+    fn fetch_known_by(self, _store: &Store) {}
+
+    #[inline(always)]
     fn fetch(self, store: &Store, step: usize) {
         match step {
             0 => store.fetch_vertex(self),
@@ -100,6 +106,9 @@ impl Item for EdgeItem {
     fn vertices(self, _store: &Store) -> [VertexId; 4] {
         [self.a, self.b, self.a, self.b]
     }
+
+    #[inline(always)]
+    fn fetch_known_by(self, _store: &Store) {}
 
     #[inline(always)]
     fn fetch(self, store: &Store, step: usize) {
@@ -118,6 +127,11 @@ impl Item for EdgeItem {
 impl Item for TetId {
     fn vertices(self, store: &Store) -> [VertexId; 4] {
         store.unlocked_vertices(self)
+    }
+
+    #[inline(always)]
+    fn fetch_known_by(self, store: &Store) {
+        store.fetch_tet(self);
     }
 
     #[inline(always)]

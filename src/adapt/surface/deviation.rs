@@ -192,6 +192,12 @@ impl<A: Access> Worker<'_, '_, A> {
         WorstDeviation { worst, side: if sum < 0.0 { -1.0 } else { 1.0 } }
     }
 
+    /// How many of some surface triangles, with their tags, look to the other side of the model than most of them do.
+    pub fn folded(&mut self, triangles: &[([VertexId; 3], u32)]) -> usize {
+        let beyond = triangles.iter().filter(|&&(triangle, tag)| self.cos_deviation(triangle, tag - 1) < 1e-3).count();
+        beyond.min(triangles.len() - beyond)
+    }
+
     /// Refuses a star whose surface triangles deviate more than the limits and more than the triangles that go, by `slack`.
     pub fn check_normals(&mut self, slack: f64) -> Result<(), Refusal> {
         if self.state.star.surface.is_empty() {

@@ -3,7 +3,7 @@ use super::bench::{Bench, Sample, Shape, Task, sample};
 use crate::adapt::core::access::{Access, Exclusive};
 use crate::adapt::core::check::{check, check_part, open_faces};
 use crate::adapt::core::fill::{self, Known};
-use crate::adapt::core::ids::{EDGE, VertexId};
+use crate::adapt::core::ids::{EDGE, FACE, VertexId};
 use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::required::{Freeze, held_vertices};
 use crate::adapt::core::worker::Worker;
@@ -12,6 +12,7 @@ use crate::adapt::operations::reconnection::criteria::Criterion;
 use crate::adapt::operations::reconnection::ring::Ring;
 use crate::adapt::schedule::{Operation, Scheduler};
 use crate::tasks::Team;
+use std::collections::BTreeSet;
 
 /// Which of the cells along each axis, by their number along a side, a part has; by planes of the mesh, so that it hangs together by faces.
 type Wanted = fn(u32, [u32; 3]) -> bool;
@@ -43,10 +44,25 @@ fn part(shape: Shape, n: u32, size: f64, is_wanted: Wanted) -> Sample {
     })
 }
 
-/// Rounds of all kinds of sweeps; each checks what is held. Returns how often each was carried out.
+/// The faces of which no vertex may move, by the coordinates of their vertices.
+fn held_faces(bench: &Bench) -> BTreeSet<[[u64; 3]; 3]> {
+    let (store, context) = (&bench.context.store, &bench.context);
+    let faces = store.live_tets().flat_map(|t| FACE.map(|face| face.map(|k| store.vertices(t)[k])));
+    let held = faces.filter(|face| face.iter().all(|&v| context.is_frozen(v)));
+    let by_coordinates = |face: [VertexId; 3]| {
+        let mut corners = face.map(|v| store.position(v).map(f64::to_bits));
+        corners.sort_unstable();
+        corners
+    };
+    held.map(by_coordinates).collect()
+}
+
+/// Rounds of all kinds of sweeps; each checks what is held. No face comes of which another part may have all vertices. Returns how often each
+/// was carried out.
 fn rounds(sample: &Sample, threads: usize, scheduler: Scheduler) -> [u64; 10] {
     let mut bench = Bench::new(sample, threads, 7);
     bench.scheduler = scheduler;
+    let faces = held_faces(&bench);
     let mut done = [0; 10];
     for round in 0..4 {
         if round > 1 {
@@ -55,6 +71,8 @@ fn rounds(sample: &Sample, threads: usize, scheduler: Scheduler) -> [u64; 10] {
         for (task, done) in Task::ALL.into_iter().zip(&mut done) {
             *done += bench.sweep(task).done;
         }
+        let new = held_faces(&bench).difference(&faces).count();
+        assert!(faces.len() > 4 && new == 0, "{new} new faces of vertices that are held");
     }
     done
 }

@@ -86,8 +86,8 @@ pub struct Given {
     pub names: Names,
     /// The fields of its file.
     pub fields: Vec<NamedField>,
-    /// Whether it is the result of a cycle: manifold, and with a report that tells where its boundary crosses itself.
-    pub is_result: bool,
+    /// Whether it is the result of a cycle, which is manifold: whether its boundary crosses itself.
+    pub result_crosses: Option<bool>,
 }
 
 /// All that the adapter needs.
@@ -106,6 +106,8 @@ pub struct OnModel {
     pub mesh: Arc<TetMesh>,
     /// Vertices and tetrahedra of the whole mesh.
     pub size: [usize; 2],
+    /// Whether its boundary crosses itself.
+    pub crosses: bool,
     /// Where it lies on the model.
     pub place: Classification,
     /// The model.
@@ -172,7 +174,7 @@ impl InputArguments {
             stage("metric read");
         }
         let Dataset { mesh, stack, names, fields } = content;
-        Ok(Given { mesh, stack, logs, names, fields, is_result: false })
+        Ok(Given { mesh, stack, logs, names, fields, result_crosses: None })
     }
 
     /// Completes the boundary, puts the mesh on its model, and brings the metric to its complexity.
@@ -184,17 +186,20 @@ impl InputArguments {
         cad: Option<Model>,
         notices: &mut Vec<String>,
     ) -> Result<Input, Error> {
-        let Given { mut mesh, stack, mut logs, mut names, fields, is_result } = given;
+        let Given { mut mesh, stack, mut logs, mut names, fields, result_crosses } = given;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let added = complete_matched(team, &mut mesh, &faces);
         stage("boundary complete");
         if added > 0 {
             notices.push(format!("{added} triangles were missing on the boundary or between regions, and were added"));
         }
-        if !is_result {
-            self.tell_crossings(team, &mesh, &faces, notices);
-        }
-        let copies = if is_result { Vec::new() } else { self.take_apart(team, &mut mesh, &faces, notices)? };
+        let (crosses, copies) = match result_crosses {
+            Some(crosses) => (crosses, Vec::new()),
+            None => {
+                let crosses = self.tell_crossings(team, &mesh, &faces, notices);
+                (crosses, self.take_apart(team, &mut mesh, &faces, notices)?)
+            }
+        };
         if !stack.is_empty() && !copies.is_empty() {
             return Err(format!("{}: a mesh with {} must not be pinched so", self.mesh.display(), stack.told()).into());
         }
@@ -220,13 +225,19 @@ impl InputArguments {
         let on = On { place: &place, model: &model, names: &names, beside: beside.as_ref() };
         let (source, how) = self.source(team, (&mesh, faces), raw, on, (self.amount.complexity(), notices))?;
         let size = [mesh.vertices.len(), mesh.tets.len()];
-        Ok(Input { on: OnModel { mesh, size, place, model, names, how, meeting: None, beside }, source, raw: kept })
+        Ok(Input {
+            on: OnModel { mesh, size, crosses, place, model, names, how, meeting: None, beside },
+            source,
+            raw: kept,
+        })
     }
 
-    /// Tells where the boundary of the mesh passes through itself.
-    fn tell_crossings(&self, team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, notices: &mut Vec<String>) {
-        notices.extend(self.crossings_told(&crossing::of_boundary(team, mesh, faces, 1)));
+    /// Tells where the boundary of the mesh passes through itself. Returns whether it does.
+    fn tell_crossings(&self, team: Team<'_>, mesh: &TetMesh, faces: &MatchedFaces, notices: &mut Vec<String>) -> bool {
+        let crossings = crossing::of_boundary(team, mesh, faces, 1);
+        notices.extend(self.crossings_told(&crossings));
         stage("boundary held against itself");
+        crossings.count > 0
     }
 
     /// What is told of crossings, if there are some.

@@ -161,7 +161,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             return Ok(interrupt::exit_code());
         }
         if report.is_refused() {
-            // No command would take it, the next cycle neither.
+            // It is not a mesh for a solver, nor for the next cycle.
             return Ok(ExitCode::from(super::INVALID));
         }
         if let Some(why) = report.why_incomplete() {
@@ -171,7 +171,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let logs = arguments.input.field.metric.is_some().then(|| Field::logs_of(team, &report.metrics));
         let (mesh, stack, names) =
             (std::mem::take(&mut report.mesh), std::mem::take(&mut report.stack), report.names.clone());
-        given = Given { mesh, stack, logs, names, fields: Vec::new(), is_result: true };
+        given = Given { mesh, stack, logs, names, fields: Vec::new(), result_crosses: Some(report.crosses()) };
         cad = arguments.input.has_model().then_some(input.on.model);
     }
     Ok(ExitCode::SUCCESS)

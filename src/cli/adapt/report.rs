@@ -134,6 +134,9 @@ pub struct Report {
     deviating: usize,
     /// Pairs of boundary triangles that cross, and the first of them.
     crossings: Crossings,
+    /// Whether there were such in the input.
+    #[serde(skip)]
+    input_crosses: bool,
     operations: BTreeMap<&'static str, Operation>,
     /// Wall times.
     pub seconds: Seconds,
@@ -208,6 +211,7 @@ impl Report {
             unrepaired: adapted.unrepaired,
             deviating: adapted.deviating,
             crossings: extracted.crossings,
+            input_crosses: input.crosses,
             operations: operations(&adapted.work),
             seconds: Seconds { geometry: adapted.geometry.as_secs_f64(), ..Seconds::default() },
             mesh,
@@ -217,9 +221,14 @@ impl Report {
         }
     }
 
-    /// Whether other commands refuse the mesh on this model: a vertex is off it.
+    /// Whether the mesh is not to be used: a vertex is off the model, or the boundary crosses itself and that of the input did not.
     pub fn is_refused(&self) -> bool {
-        !self.off_model.is_empty()
+        !self.off_model.is_empty() || (self.crosses() && !self.input_crosses)
+    }
+
+    /// Whether its boundary crosses itself.
+    pub fn crosses(&self) -> bool {
+        self.crossings.count > 0
     }
 
     /// Whether the mesh ended before its metric was met, since there was to be, or could be, no more of it.

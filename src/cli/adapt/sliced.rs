@@ -122,7 +122,8 @@ impl InputArguments {
         }
         let counts = files.reader().counts();
         let size = [counts.vertices, counts.tets];
-        let on = OnModel { mesh, size, place, model, names, how: Default::default(), meeting: None, beside: None };
+        let (crosses, how) = (crossings.count > 0, Default::default());
+        let on = OnModel { mesh, size, crosses, place, model, names, how, meeting: None, beside: None };
         Ok(Begun { on, complexity, content: Content::Slices(Box::new(files), shell) })
     }
 }

@@ -190,6 +190,7 @@ impl Refined {
         let on = OnModel {
             mesh: self.start,
             size,
+            crosses: false,
             place,
             model,
             names,

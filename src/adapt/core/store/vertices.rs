@@ -1,6 +1,6 @@
 //! What the store holds of vertices.
 use super::super::ids::{TetId, VertexId};
-use super::{CornerRidge, INDEX_BITS, Store, load, pack, save, unpack};
+use super::{CornerRidge, INDEX_BITS, Store, load, pack, save, unpack, value};
 use crate::geometry::Entity;
 use crate::mesh::vector::Vec3;
 use crate::metric::Sym3;
@@ -33,6 +33,22 @@ impl Store {
     pub fn metric(&self, v: VertexId) -> Sym3 {
         self.must_hold(v);
         Sym3(load(&self.vertices[v.index()].metric))
+    }
+
+    /// Σ ln M over the vertices of a triangle. Component by component, so that all of it stays in registers.
+    #[inline(always)]
+    pub fn log_sum(&self, triangle: [VertexId; 3]) -> Sym3 {
+        triangle.iter().for_each(|&v| self.must_hold(v));
+        let [a, b, c] = triangle.map(|v| &self.vertices[v.index()].log);
+        Sym3(std::array::from_fn(|i| value(&a[i]) + value(&b[i]) + value(&c[i])))
+    }
+
+    /// ΣM over the vertices of a triangle.
+    #[inline(always)]
+    pub fn metric_sum(&self, triangle: [VertexId; 3]) -> Sym3 {
+        triangle.iter().for_each(|&v| self.must_hold(v));
+        let [a, b, c] = triangle.map(|v| &self.vertices[v.index()].metric);
+        Sym3(std::array::from_fn(|i| value(&a[i]) + value(&b[i]) + value(&c[i])))
     }
 
     /// Sets ln M and M together.

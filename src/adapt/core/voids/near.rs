@@ -30,6 +30,12 @@ const STRAIGHT: f64 = 1e-9;
 /// Triangles whose normals have a greater cosine do not face each other.
 const FACING: f64 = 0.5;
 
+/// The boxes about triangles that are held are so much larger than these, in parts of their sides.
+const HELD: f64 = 0.25;
+
+/// The face of a triangle that is a face to another part of a larger mesh.
+const CUT: u32 = u32::MAX;
+
 /// A triangle of the boundary.
 #[derive(Clone, Copy)]
 struct Wall {
@@ -44,16 +50,17 @@ impl Voids {
     pub fn of(team: Team<'_>, context: &Context<'_>) -> Self {
         let walls = Walls::of(team, context);
         let reaches = reaches(team, context, &walls, Until::Growth);
-        if reaches.iter().all(|reach| *reach == 0.0) {
+        let mut zone = beside_held(context, &walls);
+        if reaches.iter().any(|reach| *reach > 0.0) {
+            let boxes = walls.boxes(&reaches);
+            zone.extend(near_others(team, &walls, &reaches, &boxes, false).into_iter().map(|i| boxes[i]));
+        }
+        if zone.is_empty() {
             return Self::default();
         }
-        let boxes = walls.boxes(&reaches);
-        let near = near_others(team, &walls, &reaches, &boxes, false);
-        if near.is_empty() {
-            return Self::default();
-        }
-        let mut narrow = Narrow::new(near.into_iter().map(|i| boxes[i]).collect());
-        let walls = walls.all;
+        let mut narrow = Narrow::new(zone);
+        let Walls { all: mut walls, mut cuts, .. } = walls;
+        walls.append(&mut cuts);
         let inside = team.collect(GRAIN, walls.len(), |range, inside| {
             inside.extend(range.filter(|&i| narrow.meets(&walls[i].corners)));
         });
@@ -68,6 +75,9 @@ impl Voids {
     /// Whether there are none even when all edges are as long as the metric allows. Between sweeps only.
     pub fn are_none_to_come(team: Team<'_>, context: &Context<'_>) -> bool {
         let walls = Walls::of(team, context);
+        if !beside_held(context, &walls).is_empty() {
+            return false;
+        }
         let reaches = reaches(team, context, &walls, Until::End);
         let boxes = walls.boxes(&reaches);
         reaches.iter().all(|reach| *reach == 0.0) || near_others(team, &walls, &reaches, &boxes, true).is_empty()
@@ -97,13 +107,15 @@ impl Until {
 struct Walls {
     all: Vec<Wall>,
     normals: Vec<[Vec3; 3]>,
+    /// Where the mesh is a part of a larger one: its faces to other parts.
+    cuts: Vec<Wall>,
 }
 
 impl Walls {
     fn of(team: Team<'_>, context: &Context<'_>) -> Self {
-        let all = walls(team, &context.store);
+        let (cuts, all): (Vec<_>, Vec<_>) = walls(team, &context.store).into_iter().partition(|wall| wall.face == CUT);
         let normals = normals(team, context, &all);
-        Self { all, normals }
+        Self { all, normals, cuts }
     }
 
     /// Boxes about all triangles with all that they may come to fill.
@@ -112,7 +124,7 @@ impl Walls {
     }
 }
 
-/// The triangles of the boundary.
+/// The triangles of the boundary, with those of cuts.
 fn walls(team: Team<'_>, store: &Store) -> Vec<Wall> {
     team.collect(GRAIN, store.tet_bound(), |range, walls| {
         for t in store.live_tets_in(range) {
@@ -121,18 +133,43 @@ fn walls(team: Team<'_>, store: &Store) -> Vec<Wall> {
                 continue;
             }
             let (v, tags) = (store.vertices(t), store.tags(t));
-            // Without a tag it is a face to another part of a larger mesh.
-            for i in (0..4).filter(|&i| !n[i].is_some() && tags[i] != 0) {
+            for i in (0..4).filter(|&i| !n[i].is_some()) {
                 let [a, b, c] = FACE[i].map(|k| v[k]);
                 let vertices = [a, c, b];
-                walls.push(Wall { vertices, corners: vertices.map(|v| store.position(v)), face: tags[i] - 1 });
+                // Without a tag it is a face to another part of a larger mesh.
+                let face = if tags[i] == 0 { CUT } else { tags[i] - 1 };
+                walls.push(Wall { vertices, corners: vertices.map(|v| store.position(v)), face });
             }
         }
     })
 }
 
+/// Boxes about the triangles of a curved surface at vertices that must not move, and about faces to other parts at these. Between long chords
+/// that stay and short ones beside them the surface folds, and may pass through what stays. Triangles that cannot change need none.
+fn beside_held(context: &Context<'_>, walls: &Walls) -> Vec<Bounds> {
+    let mut is_held = vec![false; context.store.vertex_bound()];
+    let mut boxes = Vec::new();
+    let mut add = |wall: &Wall| {
+        let [low, high] = bounds(&wall.corners, 0.0);
+        boxes.push(bounds(&wall.corners, HELD * (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max)));
+    };
+    for wall in walls.all.iter().filter(|wall| context.planes[wall.face as usize].is_none()) {
+        let [a, b, c] = wall.vertices;
+        if [[a, b], [b, c], [c, a]].iter().all(|&[x, y]| context.required.has_edge(x, y)) {
+            continue;
+        }
+        let mut held = wall.vertices.into_iter().filter(|&v| context.is_frozen(v)).peekable();
+        if held.peek().is_some() {
+            add(wall);
+            held.for_each(|v| is_held[v.index()] = true);
+        }
+    }
+    walls.cuts.iter().filter(|wall| wall.vertices.iter().any(|v| is_held[v.index()])).for_each(add);
+    boxes
+}
+
 /// How far the surface may move at each triangle: as the chords rise at its vertices.
-fn reaches(team: Team<'_>, context: &Context<'_>, Walls { all: walls, normals }: &Walls, until: Until) -> Vec<f64> {
+fn reaches(team: Team<'_>, context: &Context<'_>, Walls { all: walls, normals, .. }: &Walls, until: Until) -> Vec<f64> {
     let rises = team.map(GRAIN, walls.len(), |i| rise(context, &walls[i], &normals[i], until));
     let mut at = vec![0.0f64; context.store.vertex_bound()];
     for (wall, rise) in walls.iter().zip(rises) {
@@ -210,7 +247,7 @@ fn ridge_angle(store: &Store, a: VertexId, b: VertexId) -> f64 {
 /// The triangles that are nearer to another, across a void, than both may move: all, or (`is_any_enough`) some if there are any.
 fn near_others(
     team: Team<'_>,
-    Walls { all: walls, normals: mean_normals }: &Walls,
+    Walls { all: walls, normals: mean_normals, .. }: &Walls,
     reaches: &[f64],
     boxes: &[Bounds],
     is_any_enough: bool,

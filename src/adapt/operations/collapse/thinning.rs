@@ -144,8 +144,7 @@ impl<A: Access> Worker<'_, '_, A> {
                 let Kept { tet, local, .. } = some[lane.min(some.len() - 1)];
                 let vertices = store.vertices(tet);
                 let face = FACE[local].map(|k| vertices[k]);
-                let logs = face.map(|x| store.log(x));
-                batch.set(lane, face.map(|x| store.position(x)), logs.each_ref());
+                batch.set_with_sum(lane, face.map(|x| store.position(x)), &store.log_sum(face));
             }
             batch.prepare();
             let qualities = batch.shapes(point, &log).mean_ratios();

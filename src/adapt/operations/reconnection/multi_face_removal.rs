@@ -241,8 +241,7 @@ impl<A: Access> Worker<'_, '_, A> {
             for lane in 0..LANES {
                 let [x, y, ..] = tree.tet(some[lane.min(some.len() - 1)]);
                 let base = [x, y, lower];
-                let logs = base.map(|v| self.store.log(v));
-                self.state.batch.set(lane, base.map(|v| self.store.position(v)), logs.each_ref());
+                self.state.batch.set_with_sum(lane, base.map(|v| self.store.position(v)), &self.store.log_sum(base));
             }
             self.state.batch.prepare();
             let qualities = self.state.batch.shapes(apex, &log).mean_ratios();

@@ -125,7 +125,17 @@ impl Ring {
 
     /// Whether a triangulation with positive tetrahedra (in floating point) may exist; lists the triangles that can be in one.
     pub fn is_feasible(&mut self) -> bool {
-        let (n, seen) = (self.len(), &self.seen);
+        // Most rings are of four or five: for these the compiler unrolls all loops.
+        match self.len() {
+            4 => self.can_be_filled(4),
+            5 => self.can_be_filled(5),
+            n => self.can_be_filled(n),
+        }
+    }
+
+    #[inline(always)]
+    fn can_be_filled(&mut self, n: usize) -> bool {
+        let seen = &self.seen;
         for i in 0..n - 1 {
             self.fillable[i][i + 1] = true;
         }
@@ -144,7 +154,7 @@ impl Ring {
         }
         let all = self.polygons().iter().all(|&(i, j)| self.fillable[i][j]);
         if all {
-            self.list_possible();
+            self.list_possible(n);
         }
         all
     }
@@ -154,9 +164,9 @@ impl Ring {
     }
 
     /// Lists the triangles that are in some triangulation of the whole ring.
-    fn list_possible(&mut self) {
+    #[inline(always)]
+    fn list_possible(&mut self, n: usize) {
         self.possible.clear();
-        let n = self.len();
         let mut reached = [[false; LONGEST_RING]; LONGEST_RING];
         self.polygons().iter().for_each(|&(i, j)| reached[i][j] = true);
         for width in (2..n).rev() {
@@ -177,17 +187,21 @@ impl Ring {
 
     /// Finds the best triangulation by mean ratios, in place of what scores `old`. Returns whether it may score more than `wanted`.
     pub fn is_promising(&mut self, store: &Store, old: f64, wanted: f64) -> bool {
-        if self.is_even {
-            self.estimate();
-        } else {
-            self.measure_possible(store);
-        }
-        self.triangulate(Criterion::MeanRatio) > wanted - ESTIMATED_TO * old.abs()
+        let score = match (self.is_even, self.len()) {
+            (true, 4) => self.estimate(4),
+            (true, 5) => self.estimate(5),
+            (true, n) => self.estimate(n),
+            (false, _) => {
+                self.measure_possible(store);
+                self.triangulate(Criterion::MeanRatio)
+            }
+        };
+        score > wanted - ESTIMATED_TO * old.abs()
     }
 
-    /// Scores the possible triangles in the mean metric.
-    fn estimate(&mut self) {
-        let n = self.len();
+    /// Scores the possible triangles in the mean metric, and finds the best triangulation. Returns its score.
+    #[inline(always)]
+    fn estimate(&mut self, n: usize) -> f64 {
         let (mut to_ends, mut between) = ([[0.0; 2]; LONGEST_RING], [[0.0; LONGEST_RING]; LONGEST_RING]);
         for i in 0..n {
             to_ends[i] = self.seen[i].map(|v| dot(v, v));
@@ -210,6 +224,7 @@ impl Ring {
                 self.value[i][j][k] = 2.0 - inverse[2 * which] - inverse[2 * which + 1];
             }
         }
+        self.triangulate_of(n, Criterion::MeanRatio)
     }
 
     /// Scores the possible triangles, each tetrahedron in its own metric.
@@ -236,7 +251,11 @@ impl Ring {
 
     /// Finds the best triangulation of scored triangles. Returns its score.
     fn triangulate(&mut self, criterion: Criterion) -> f64 {
-        let n = self.len();
+        self.triangulate_of(self.len(), criterion)
+    }
+
+    #[inline(always)]
+    fn triangulate_of(&mut self, n: usize, criterion: Criterion) -> f64 {
         for i in 0..n - 1 {
             self.score[i][i + 1] = criterion.nothing();
         }
@@ -308,18 +327,19 @@ fn mean_ratios(
     ends: [VertexId; 2],
     triangle: impl Fn(usize) -> [VertexId; 3],
 ) -> [[f64; 2]; LANES / 2] {
-    let [a, b] = ends.map(|v| (store.position(v), store.log(v)));
-    let (mut apex, mut log) = ([a.0; LANES], [a.1; LANES]);
     for which in 0..LANES / 2 {
-        let [x, y, z] = triangle(which);
-        for (lane, face, end) in [(2 * which, [x, y, z], &b), (2 * which + 1, [x, z, y], &a)] {
-            let logs = face.map(|v| store.log(v));
-            batch.set(lane, face.map(|v| store.position(v)), logs.each_ref());
-            (apex[lane], log[lane]) = *end;
-        }
+        let face = triangle(which);
+        let ([x, y, z], logs) = (face.map(|v| store.position(v)), store.log_sum(face));
+        batch.set_with_sum(2 * which, [x, y, z], &logs);
+        batch.set_with_sum(2 * which + 1, [x, z, y], &logs);
     }
     batch.prepare();
-    let q = batch.shapes_of(&apex, &log).mean_ratios();
+    let [a, b] = ends.map(|v| (store.position(v), store.log(v)));
+    let in_turn =
+        |second: f64, first: f64| Lanes(std::array::from_fn(|lane| if lane % 2 == 0 { second } else { first }));
+    let apex = std::array::from_fn(|i| in_turn(b.0[i], a.0[i]));
+    let log = std::array::from_fn(|i| in_turn(b.1.0[i], a.1.0[i]));
+    let q = batch.shapes_each(&apex, &log).mean_ratios();
     std::array::from_fn(|which| [q[2 * which], q[2 * which + 1]])
 }
 

@@ -57,10 +57,9 @@ impl SmoothingPatch {
             for lane in 0..LANES {
                 let w = store.vertices(some[lane.min(some.len() - 1)]);
                 let face = FACE[place_of(v, w)].map(|k| w[k]);
-                let logs = face.map(|x| store.log(x));
-                batch.set(lane, face.map(|x| store.position(x)), [&logs[0], &logs[1], &logs[2]]);
-                let [a, b, c] = face.map(|x| store.metric(x).0);
-                (0..6).for_each(|i| metrics[i].0[lane] = a[i] + b[i] + c[i]);
+                batch.set_with_sum(lane, face.map(|x| store.position(x)), &store.log_sum(face));
+                let sum = store.metric_sum(face).0;
+                (0..6).for_each(|i| metrics[i].0[lane] = sum[i]);
             }
             self.metrics.push(metrics);
             batch.prepare();

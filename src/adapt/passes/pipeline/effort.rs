@@ -8,10 +8,11 @@ pub struct Effort {
     /// Whether edges wait for flips, as [`Limits::waits`](crate::adapt::core::context::Limits::waits) says. From a first mesh, which has no
     /// vertex inside, that halves the insertions; a mesh that is good already gets no better, and takes more sweeps.
     pub waits: bool,
-    /// Whether the passes for the sizes smooth too.
-    pub smooths: bool,
     /// A pass for the sizes that changes less than this share of the vertices is the last.
     pub little: f64,
+    /// So is one that changes less than this share, where the mesh has nearly all vertices that are expected and most insertions were refused: what
+    /// is still too long has no room between the others, until these are smoothed.
+    pub crowded: f64,
     /// A pass for the shapes that saves less than this share of the mean of 1/Q − 1 is the last.
     pub settled: f64,
     /// Whether there are passes for the shapes once all vertices are on the model.
@@ -23,7 +24,7 @@ pub struct Effort {
 impl Effort {
     /// For a unit mesh.
     pub const FULL: Self =
-        Self { stages: true, waits: false, smooths: true, little: 0.05, settled: 0.2, shapes: true, repairs: true };
+        Self { stages: true, waits: false, little: 0.05, crowded: 0.12, settled: 0.17, shapes: true, repairs: true };
 
     /// Between cuts that will move: what is bad beside them waits until then.
     pub const BETWEEN_CUTS: Self = Self { repairs: false, ..Self::FULL };
@@ -33,7 +34,7 @@ impl Effort {
 
     /// For a draft.
     pub const DRAFT: Self =
-        Self { stages: false, waits: true, smooths: false, little: 0.1, settled: 0.2, shapes: false, repairs: true };
+        Self { stages: false, waits: true, little: 0.1, crowded: 0.1, settled: 0.17, shapes: false, repairs: true };
 }
 
 #[cfg(test)]

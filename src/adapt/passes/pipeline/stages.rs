@@ -26,9 +26,12 @@ const PASSES: usize = 3;
 /// farther from the model than the layers that come later are thick, and its new vertices would find no way through them.
 const COSINE: f64 = 0.9995;
 
+/// In a stage no insertion makes an edge shorter than this.
+const SHORTEST_NEW: f64 = 0.7;
+
 /// Limits of the passes in a stage.
 fn stage_limits() -> Limits {
-    Limits { cos_deviation: COSINE, cos_variation: COSINE, ..size_limits() }
+    Limits { shortest_new: SHORTEST_NEW, cos_deviation: COSINE, cos_variation: COSINE, ..size_limits() }
 }
 
 impl Pipeline<'_, '_> {
@@ -52,6 +55,7 @@ impl Pipeline<'_, '_> {
             self.collapse();
             for _ in 0..PASSES {
                 let is_settled = self.size_pass();
+                self.smooth();
                 self.pass += 1;
                 self.tell_share_of_sizes();
                 if is_settled || self.growth_end.is_some() || self.observer.stop() {
