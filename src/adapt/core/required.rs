@@ -113,7 +113,8 @@ impl Required {
         self.edges = self.edges.iter().map(|&[a, b]| key(number[a.index()], number[b.index()])).collect();
     }
 
-    /// Whether the mesh is a part of a larger one, with faces to others. Then another part may have, or make, what joins vertices that must not move.
+    /// Whether the mesh is a part of a larger one, with faces to other parts. Then another part may have, or make, the same faces of vertices
+    /// that must not move.
     #[inline(always)]
     pub fn is_part(&self) -> bool {
         self.is_part

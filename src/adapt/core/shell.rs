@@ -100,7 +100,7 @@ impl<A: Access> Worker<'_, '_, A> {
             if t == first {
                 self.claim(v[k])?;
             }
-            // That is the first one's of the next tetrahedron.
+            // It is the v[k] of the next tetrahedron.
             self.claim(v[l])?;
             shell.tets.push(t);
             shell.ring.push(v[k]);

@@ -93,8 +93,8 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// How many triangles of the surface at a vertex are folded, in a part of a larger mesh: there must not be more. A part does not see what is
-    /// beyond its cuts, and surfaces of two parts that share a rim do not cross as long as each lies over its side of the model.
+    /// How many surface triangles at a vertex are folded: 0 unless the mesh is a part of a larger one, where there must never be more. A part
+    /// does not see what is beyond its cuts, and surfaces of two parts that share a rim do not cross as long as neither folds.
     fn folded_at(&mut self, v: VertexId, ball: &[TetId]) -> usize {
         if !self.context.required.is_part() {
             return 0;

@@ -317,8 +317,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         self.unprojected.len() < before
     }
 
-    /// Takes out the vertices that found no room on the model: where the surface becomes no worse, or at any price but, in a part of a larger
-    /// mesh, that of a fold: what is beyond its cuts may be in the way.
+    /// Takes out the vertices that found no room on the model: where the surface becomes no worse, or at any price. In a part of a larger mesh
+    /// the surface does not fold all the same: it may pass through what is beyond the cuts.
     fn remove_unprojected(&mut self, at_any_price: bool) {
         let limits = self.context.limits;
         self.context.limits = Limits { collapse_floor: 0.0, longest_new: f64::INFINITY, ball: usize::MAX, ..limits };

@@ -86,7 +86,7 @@ pub struct Given {
     pub names: Names,
     /// The fields of its file.
     pub fields: Vec<NamedField>,
-    /// Whether it is the result of a cycle, which is manifold: whether its boundary crosses itself.
+    /// Of the result of a cycle, which is manifold: whether its boundary crosses itself. None for a mesh of a file.
     pub result_crosses: Option<bool>,
 }
 

@@ -5,8 +5,8 @@
 //! change of the surface is tested against the triangles there ([`guard`]), by exact predicates, and refused where it would bring two of
 //! them through each other. Elsewhere, and where there are no narrow voids, nothing is tested.
 //!
-//! The same is done about what stays on a curved surface, as at the cuts of a part: between long chords that stay and short edges beside them
-//! the surface folds.
+//! Changes are tested in the same way near what must stay on a curved surface, as at the cuts of a part: short edges beside long chords that
+//! stay may fold the surface.
 //!
 //! What lies across a void cannot be claimed by vertices, so one thread alone makes such changes. Beside other threads they are a conflict,
 //! and wait for the end of the sweep, which one thread does. So the mesh does not depend on the threads.

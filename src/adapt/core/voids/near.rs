@@ -144,8 +144,8 @@ fn walls(team: Team<'_>, store: &Store) -> Vec<Wall> {
     })
 }
 
-/// Boxes about the triangles of a curved surface at vertices that must not move, and about faces to other parts at these. Between long chords
-/// that stay and short ones beside them the surface folds, and may pass through what stays. Triangles that cannot change need none.
+/// Boxes about the triangles of a curved surface at vertices that must not move, and about faces to other parts at these vertices. Short edges
+/// beside long chords that stay may fold the surface, and bring it through what stays. Triangles that cannot change need no box.
 fn beside_held(context: &Context<'_>, walls: &Walls) -> Vec<Bounds> {
     let mut is_held = vec![false; context.store.vertex_bound()];
     let mut boxes = Vec::new();
