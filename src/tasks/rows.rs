@@ -9,6 +9,11 @@ pub struct Rows {
     entries: Vec<u32>,
 }
 
+/// Ranges of the keys, and shares of the items at most, where they are dealt out twice.
+const RANGES: usize = 256;
+/// See [`RANGES`].
+const SHARES: usize = 256;
+
 /// Keys a task: one takes some nanoseconds.
 const KEYS: usize = 4 * GRAIN;
 
@@ -33,9 +38,6 @@ impl Rows {
     }
 
     /// The counting sort: what each item brings, by its keys.
-    ///
-    /// Each thread counts and deals out one part of the items, with counts of its own: no word is locked, and the entries of a key
-    /// come out ascending however many parts there are.
     fn deal_out<const N: usize>(
         team: Team<'_>,
         keys: usize,
@@ -43,7 +45,22 @@ impl Rows {
         key: impl Fn(usize) -> [u32; N] + Sync,
         brings: impl Fn(usize) -> [u32; N] + Sync,
     ) -> Self {
-        // The counts of all parts are no longer than the entries.
+        // The counts of all parts are no longer than the entries: more threads than that sort in two steps, which takes longer on few.
+        if team.threads() > N * items / keys.max(1) + 1 {
+            return Self::deal_out_twice(team, keys, items, key, brings);
+        }
+        Self::deal_out_once(team, keys, items, key, brings)
+    }
+
+    /// Each thread counts and deals out one part of the items, with counts of its own: no word is locked, and the entries of a key
+    /// come out ascending however many parts there are.
+    fn deal_out_once<const N: usize>(
+        team: Team<'_>,
+        keys: usize,
+        items: usize,
+        key: impl Fn(usize) -> [u32; N] + Sync,
+        brings: impl Fn(usize) -> [u32; N] + Sync,
+    ) -> Self {
         let parts = team.threads().min(N * items / keys.max(1)).max(1);
         let part = items.div_ceil(parts).max(1);
         let mut places = team.chunks(part, items, |range| {
@@ -67,6 +84,50 @@ impl Rows {
             }
         });
         Self { starts, entries: entries.into_iter().map(AtomicU32::into_inner).collect() }
+    }
+
+    /// Each task deals a share of the items out to ranges of the keys; then each range is sorted, with counts of its own keys alone.
+    fn deal_out_twice<const N: usize>(
+        team: Team<'_>,
+        keys: usize,
+        items: usize,
+        key: impl Fn(usize) -> [u32; N] + Sync,
+        brings: impl Fn(usize) -> [u32; N] + Sync,
+    ) -> Self {
+        let width = keys.div_ceil(RANGES).max(1);
+        let keyed = |item| key(item).into_iter().zip(brings(item)).filter(|&(key, _)| key != Self::NOWHERE);
+        let shares = team.chunks(items.div_ceil(SHARES).max(GRAIN), items, |range| {
+            // Counted two places on: while the entries are dealt out, each start moves to the next one's place.
+            let mut starts = [0u32; RANGES + 2];
+            range.clone().flat_map(keyed).for_each(|(key, _)| starts[key as usize / width + 2] += 1);
+            (1..starts.len()).for_each(|at| starts[at] += starts[at - 1]);
+            let mut dealt = vec![(0, 0); starts[RANGES + 1] as usize];
+            for (key, entry) in range.flat_map(keyed) {
+                let place = &mut starts[key as usize / width + 1];
+                dealt[*place as usize] = (key, entry);
+                *place += 1;
+            }
+            (starts, dealt)
+        });
+        let of_range = |range: usize| {
+            shares.iter().flat_map(move |(starts, dealt)| &dealt[starts[range] as usize..starts[range + 1] as usize])
+        };
+        let sorted = team.chunks(1, keys.div_ceil(width), |range| {
+            let (first, count) = (range.start * width, width.min(keys - range.start * width));
+            let mut ends = vec![0u32; count + 1];
+            of_range(range.start).for_each(|&(key, _)| ends[key as usize - first + 1] += 1);
+            (1..=count).for_each(|at| ends[at] += ends[at - 1]);
+            let mut entries = vec![0; ends[count] as usize];
+            // Each start moves to its end.
+            for &(key, entry) in of_range(range.start) {
+                let place = &mut ends[key as usize - first];
+                entries[*place as usize] = entry;
+                *place += 1;
+            }
+            ends.truncate(count);
+            (ends, entries)
+        });
+        Self::of_parts(team, &sorted)
     }
 
     /// The rows of several parts, one part after the other: of each where its rows end in its entries.
@@ -138,4 +199,41 @@ fn starts(team: Team<'_>, keys: usize, counts: &mut [Vec<u32>]) -> Vec<u32> {
         }
     });
     starts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tasks::{Plan, Pool};
+
+    /// Two keys an item: a few of many, some of them nowhere.
+    fn key(item: usize, keys: usize) -> [u32; 2] {
+        let mixed = (item as u32).wrapping_mul(2_654_435_761) >> 7;
+        let first = if item.is_multiple_of(7) { Rows::NOWHERE } else { mixed % keys as u32 };
+        [first, (item * keys / 20_000) as u32]
+    }
+
+    #[test]
+    fn entries_of_a_key_are_ascending_however_many_threads_sort_them() {
+        let items = 20_000;
+        // Many keys for few items are dealt out twice by several threads; few keys never.
+        for keys in [1, 5, 300, 7_001, 30_000] {
+            let mut expected = vec![Vec::new(); keys];
+            for item in 0..items {
+                for (k, key) in key(item, keys).into_iter().enumerate().filter(|(_, key)| *key != Rows::NOWHERE) {
+                    expected[key as usize].push((2 * item + k) as u32);
+                }
+            }
+            for threads in [1, 2, 5, 16] {
+                let pool = Pool::new(threads).unwrap();
+                let rows = Rows::by_key(Team::new(&pool, Plan::default()), keys, items, |item| key(item, keys));
+                assert_eq!(rows.len(), keys);
+                assert!((0..keys).all(|row| rows.row(row) == expected[row]), "{keys} keys, {threads} threads");
+            }
+        }
+        let none = Rows::by_key(Team::alone(), 3, 0, |_| [0]);
+        assert_eq!((none.len(), none.row(2).len()), (3, 0));
+        let pool = Pool::new(4).unwrap();
+        assert!(Rows::by_key(Team::new(&pool, Plan::default()), 0, 0, |_| [0]).is_empty());
+    }
 }
