@@ -86,7 +86,8 @@ proptest! {
         let greatest = values.into_iter().fold(f64::NEG_INFINITY, f64::max).exp();
         for v in [v, frame[0], frame[1], frame[2]] {
             let exact: f64 = (0..3).map(|i| values[i].exp() * dot(frame[i], v).powi(2)).sum();
-            prop_assert!((e.quadratic(v) - exact).abs() <= 4e-15 * greatest * dot(v, v), "{} {exact}", e.quadratic(v));
+            // Exponents up to 13.8 are rounded to 2e-15 each, and there are a few.
+            prop_assert!((e.quadratic(v) - exact).abs() <= 2e-14 * greatest * dot(v, v), "{} {exact}", e.quadratic(v));
         }
     }
 
