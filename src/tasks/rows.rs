@@ -38,6 +38,9 @@ impl Rows {
     }
 
     /// The counting sort: what each item brings, by its keys.
+    ///
+    /// Each thread counts and deals out one part of the items, with counts of its own: no word is locked, and the entries of a key
+    /// come out ascending however many parts there are.
     fn deal_out<const N: usize>(
         team: Team<'_>,
         keys: usize,
@@ -45,22 +48,11 @@ impl Rows {
         key: impl Fn(usize) -> [u32; N] + Sync,
         brings: impl Fn(usize) -> [u32; N] + Sync,
     ) -> Self {
-        // The counts of all parts are no longer than the entries: more threads than that sort in two steps, which takes longer on few.
+        // The counts of all parts are no longer than the entries. Where that makes too few parts, two steps are faster.
         if team.threads() > N * items / keys.max(1) + 1 {
-            return Self::deal_out_twice(team, keys, items, key, brings);
+            let keyed = |item| key(item).into_iter().zip(brings(item)).filter(|&(key, _)| key != Self::NOWHERE);
+            return Self::deal_out_twice(team, keys, items, keyed);
         }
-        Self::deal_out_once(team, keys, items, key, brings)
-    }
-
-    /// Each thread counts and deals out one part of the items, with counts of its own: no word is locked, and the entries of a key
-    /// come out ascending however many parts there are.
-    fn deal_out_once<const N: usize>(
-        team: Team<'_>,
-        keys: usize,
-        items: usize,
-        key: impl Fn(usize) -> [u32; N] + Sync,
-        brings: impl Fn(usize) -> [u32; N] + Sync,
-    ) -> Self {
         let parts = team.threads().min(N * items / keys.max(1)).max(1);
         let part = items.div_ceil(parts).max(1);
         let mut places = team.chunks(part, items, |range| {
@@ -87,22 +79,20 @@ impl Rows {
     }
 
     /// Each task deals a share of the items out to ranges of the keys; then each range is sorted, with counts of its own keys alone.
-    fn deal_out_twice<const N: usize>(
+    fn deal_out_twice<I: Iterator<Item = (u32, u32)>>(
         team: Team<'_>,
         keys: usize,
         items: usize,
-        key: impl Fn(usize) -> [u32; N] + Sync,
-        brings: impl Fn(usize) -> [u32; N] + Sync,
+        keyed: impl Fn(usize) -> I + Sync,
     ) -> Self {
         let width = keys.div_ceil(RANGES).max(1);
-        let keyed = |item| key(item).into_iter().zip(brings(item)).filter(|&(key, _)| key != Self::NOWHERE);
         let shares = team.chunks(items.div_ceil(SHARES).max(GRAIN), items, |range| {
             // Counted two places on: while the entries are dealt out, each start moves to the next one's place.
             let mut starts = [0u32; RANGES + 2];
-            range.clone().flat_map(keyed).for_each(|(key, _)| starts[key as usize / width + 2] += 1);
+            range.clone().flat_map(&keyed).for_each(|(key, _)| starts[key as usize / width + 2] += 1);
             (1..starts.len()).for_each(|at| starts[at] += starts[at - 1]);
             let mut dealt = vec![(0, 0); starts[RANGES + 1] as usize];
-            for (key, entry) in range.flat_map(keyed) {
+            for (key, entry) in range.flat_map(&keyed) {
                 let place = &mut starts[key as usize / width + 1];
                 dealt[*place as usize] = (key, entry);
                 *place += 1;
