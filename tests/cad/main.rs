@@ -15,6 +15,8 @@ mod damaged;
 mod geometry_scripts;
 mod metric_geometry;
 mod model;
+mod model_names;
+mod model_refused;
 mod projections;
 mod reading;
 mod settled;
