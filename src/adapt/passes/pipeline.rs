@@ -62,7 +62,7 @@ fn size_limits() -> Limits {
         improve_below: 0.4,
         flip_below: 0.7,
         short: 0.65,
-        shortest_new: 0.74,
+        shortest_new: 0.75,
         long_first: true,
         several_below: 0.0,
         ..Limits::default()

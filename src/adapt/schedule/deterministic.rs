@@ -28,11 +28,8 @@ const ITEMS: usize = if cfg!(test) { 12 } else { 4096 };
 /// Short lists have so many parts, if each gets [`FEWEST_ITEMS`].
 const FEW: usize = 32;
 
-/// Least items a part in the first round.
+/// Least items a part.
 const FEWEST_ITEMS: usize = if cfg!(test) { 6 } else { 1024 };
-
-/// Least items a part in later rounds. What few parts leave waits for one thread.
-const FEWEST_LEFT: usize = if cfg!(test) { 3 } else { 256 };
 
 /// When less than this share of all items is left, one thread does the rest.
 const LITTLE: f64 = 0.003;
@@ -95,7 +92,7 @@ pub fn run<'m, O: Operation>(
         }
         // What is left lies between the parts of this round, and is cut elsewhere in the next. Fewer and larger parts have less between them.
         let most = if 2 * left.len() > before { parts / 2 } else { parts };
-        parts = most.min(power(left.len() / FEWEST_LEFT));
+        parts = most.min(power(left.len() / FEWEST_ITEMS));
         shared = true;
     }
 }
