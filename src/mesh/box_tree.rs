@@ -122,8 +122,9 @@ impl BoxTree {
     }
 
     /// A value for each node, of its items.
-    pub fn of_nodes<T>(&self, of: impl Fn(&[u32]) -> T) -> Vec<T> {
-        self.ranges().into_iter().map(|range| of(&self.items[range])).collect()
+    pub fn of_nodes<T: Copy + Send>(&self, team: Team<'_>, of: impl Fn(&[u32]) -> T + Sync) -> Vec<T> {
+        let ranges = self.ranges();
+        team.map(1, ranges.len(), |node| of(&self.items[ranges[node].clone()]))
     }
 
     /// The places in `items` of each node.

@@ -127,6 +127,20 @@ const PAGE: usize = 1 << 12;
 /// See [`PAGE`].
 const PAGES: usize = 1 << 9;
 
+/// Writes a zero to a record on each page of some that are not used.
+fn touch<T: Sync>(
+    team: Team<'_>,
+    records: &[T],
+    unused: std::ops::Range<usize>,
+    word: impl Fn(&T) -> &AtomicU32 + Sync,
+) {
+    let unused = unused.start..unused.end.min(records.len());
+    let step = PAGE / size_of::<T>();
+    team.for_each(PAGES, unused.len().div_ceil(step), |pages| {
+        pages.for_each(|page| word(&records[unused.start + step * page]).store(0, Relaxed));
+    });
+}
+
 /// How much to ask memory for, in turn: what is wished; what is needed with half of the rest, a quarter, and so on; at last what is needed
 /// alone. Where memory is not lent beyond what there is, room for later counts as used.
 fn capacities(needed: usize, wished: usize) -> impl Iterator<Item = usize> {
@@ -210,21 +224,14 @@ impl Store {
             || capacities(needed, used + 3 * needed).any(|room| rehouse(team, &mut self.tets, used, room))
     }
 
-    /// Writes to each page of so many records beyond those that are used, on all threads. The system gives memory when it is first written, which
-    /// takes long; without this the first part of the mesh that needs new ids would wait for all pages. Between sweeps only.
+    /// For a mesh that will have so many vertices and tetrahedra, writes to each page of the records that it does not use yet, on all threads. The
+    /// system gives memory when it is first written, which takes long; without this the first part of the mesh that needs new ids would wait for
+    /// all pages. Between sweeps only.
     pub fn map_pages(&self, team: Team<'_>, vertices: usize, tets: usize) {
-        let pages = |used: usize, count: usize, len: usize, size: usize| {
-            let records = used.min(len)..(used + count).min(len);
-            (records.start, PAGE / size, records.len().div_ceil(PAGE / size))
-        };
-        let (first, step, count) = pages(self.tet_bound(), tets, self.tets.len(), size_of::<TetRecord>());
-        team.for_each(PAGES, count, |range| {
-            range.for_each(|page| self.tets[first + step * page].moved.store(0, Relaxed));
-        });
-        let (first, step, count) = pages(self.vertex_bound(), vertices, self.vertices.len(), size_of::<VertexRecord>());
-        team.for_each(PAGES, count, |range| {
-            range.for_each(|page| self.vertices[first + step * page].lock.store(0, Relaxed));
-        });
+        touch(team, &self.tets, self.tet_bound()..tets, |tet| &tet.moved);
+        let vertices = self.vertex_bound()..vertices;
+        touch(team, &self.vertices, vertices.clone(), |vertex| &vertex.lock);
+        touch(team, &self.places, vertices, |place| &place.hint);
     }
 
     /// An array of owners for so many vertices, which means nothing between sweeps.

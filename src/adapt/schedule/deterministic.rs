@@ -14,6 +14,7 @@ use crate::adapt::core::refusal::{Counts, Refusal};
 use crate::adapt::core::store::Store;
 use crate::adapt::core::worker::Worker;
 use crate::tasks::{Plan, Pool, Team};
+use std::cmp::Reverse;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -146,10 +147,13 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         let id_pools = threads[0].state.id_pool.split(store, self.parts);
         let part = |id_pool| Part { id_pool, unprojected: Vec::new(), counts: Counts::default(), again: Vec::new() };
         let parts: Vec<_> = id_pools.into_iter().map(|id_pool| Mutex::new(part(id_pool))).collect();
+        // The largest first: a thread that began one at the end would keep the others waiting.
+        let mut order: Vec<usize> = (0..self.parts).collect();
+        order.sort_by_key(|&part| Reverse(starts[part + 1] - starts[part]));
         let plan = Plan { grain: 1, ..self.plan };
         self.pool.task_for_with(plan, self.parts, threads, |thread, _, range| {
             // After a stop no further part begins.
-            for index in range.take_while(|_| advance(0)) {
+            for &index in order[range].iter().take_while(|_| advance(0)) {
                 let mut part = parts[index].lock().expect("each part is one task's");
                 self.work(&sorted[starts[index]..starts[index + 1]], index, &mut part, thread, advance);
             }

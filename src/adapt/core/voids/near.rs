@@ -52,7 +52,7 @@ impl Voids {
         let reaches = reaches(team, context, &walls, Until::Growth);
         let mut zone = beside_held(context, &walls);
         if reaches.iter().any(|reach| *reach > 0.0) {
-            let boxes = walls.boxes(&reaches);
+            let boxes = walls.boxes(team, &reaches);
             zone.extend(near_others(team, &walls, &reaches, &boxes, false).into_iter().map(|i| boxes[i]));
         }
         if zone.is_empty() {
@@ -79,7 +79,7 @@ impl Voids {
             return false;
         }
         let reaches = reaches(team, context, &walls, Until::End);
-        let boxes = walls.boxes(&reaches);
+        let boxes = walls.boxes(team, &reaches);
         reaches.iter().all(|reach| *reach == 0.0) || near_others(team, &walls, &reaches, &boxes, true).is_empty()
     }
 }
@@ -119,8 +119,8 @@ impl Walls {
     }
 
     /// Boxes about all triangles with all that they may come to fill.
-    fn boxes(&self, reaches: &[f64]) -> Vec<Bounds> {
-        self.all.iter().zip(reaches).map(|(wall, reach)| bounds(&wall.corners, *reach)).collect()
+    fn boxes(&self, team: Team<'_>, reaches: &[f64]) -> Vec<Bounds> {
+        team.map(GRAIN, self.all.len(), |i| bounds(&self.all[i].corners, reaches[i]))
     }
 }
 
@@ -175,7 +175,7 @@ fn reaches(team: Team<'_>, context: &Context<'_>, Walls { all: walls, normals, .
     for (wall, rise) in walls.iter().zip(rises) {
         wall.vertices.iter().for_each(|v| at[v.index()] = at[v.index()].max(rise));
     }
-    walls.iter().map(|wall| wall.vertices.iter().fold(0.0, |most, v| at[v.index()].max(most))).collect()
+    team.map(GRAIN, walls.len(), |i| walls[i].vertices.iter().fold(0.0, |most, v| at[v.index()].max(most)))
 }
 
 /// The mean normals of each triangle's face at its corners; on a plane they are not asked for.
@@ -252,7 +252,7 @@ fn near_others(
     boxes: &[Bounds],
     is_any_enough: bool,
 ) -> Vec<usize> {
-    let tree = BoxTree::new(walls.len(), |i| boxes[i as usize]);
+    let tree = BoxTree::on(team, walls.len(), |i| boxes[i as usize]);
     let normal = |i: usize| {
         let [a, b, c] = walls[i].corners;
         unit(area2(a, b, c))
@@ -279,7 +279,7 @@ fn near_others(
                 length <= reach
             }
     };
-    let cones = tree.of_nodes(|items| Cone::of(items.iter().map(|&i| normals[i as usize])));
+    let cones = tree.of_nodes(team, |items| Cone::of(items.iter().map(|&i| normals[i as usize])));
     let is_over = AtomicBool::new(false);
     let may_face = |leaf: usize, node: usize| !is_over.load(Ordering::Relaxed) && cones[leaf].may_face(&cones[node]);
     let pairs = tree.overlapping_pairs(
@@ -299,6 +299,7 @@ fn near_others(
 }
 
 /// Directions about an axis.
+#[derive(Clone, Copy)]
 struct Cone {
     axis: Vec3,
     /// Cosine and sine of the greatest angle from the axis.

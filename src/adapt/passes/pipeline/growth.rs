@@ -30,9 +30,7 @@ const FOR_THE_SURFACE: f64 = 20_000.0;
 /// Room for so many tetrahedra a new vertex. Six are usual.
 const TETS_A_VERTEX: usize = 12;
 
-/// Of the insertions that are tried at first so many are done, and a mesh has so many tetrahedra a vertex.
-const DONE: f64 = 0.8;
-/// See [`DONE`].
+/// A mesh has so many tetrahedra a vertex.
 const USUAL_TETS: f64 = 5.6;
 
 /// With this share of the vertices that it may have, a mesh has them all: of the last edges most are refused.
@@ -154,9 +152,9 @@ impl Pipeline<'_, '_> {
         if new == 0 {
             return;
         }
-        let live = self.live() as f64;
-        let more = (self.expected - live).clamp(0.0, DONE * new as f64);
-        self.context.store.map_pages(self.team(), more as usize, (USUAL_TETS * more) as usize);
+        // Nearly all insertions are done while the edges are far too long, later so many as the metric asks for.
+        let vertices = self.expected.min((self.live() + new) as f64);
+        self.context.store.map_pages(self.team(), vertices as usize, (USUAL_TETS * vertices) as usize);
     }
 
     /// Whether input and metric account for so many vertices: what is quickly known is asked first.
