@@ -13,7 +13,6 @@ use crate::cli::waiting::Waiting;
 use crate::cli::{BAD_INPUT, INVALID, Outcome, interrupt, note};
 use crate::decomposition::{Adapted, Common, Shelf, Sizes, wanted_vertices};
 use crate::memory;
-use crate::metric::statistics::Statistics;
 use crate::ranks::{Ranks, agree, broadcast};
 use crate::tasks::{Plan, Pool, Team, stage};
 use std::path::{Path, PathBuf};
@@ -236,12 +235,11 @@ impl Ending<'_> {
         let finished = from.0.elapsed();
         let line = Waiting::for_what("measuring and writing");
         let asked = self.arguments.asked(self.threads);
-        let mut report = Report::new(self.team, &asked, on, adapted, (self.progress.forecast(), None));
+        let mut report = Report::new(&asked, on, adapted, self.progress.forecast());
         let mut told = self.told.clone();
         told.near_cuts = near_cuts;
         report.parts = Some(told);
-        let times = [from.1, finished, from.0.elapsed()];
-        let (report, lost) = targets.write(self.team, report, times)?;
+        let (report, lost) = targets.write((self.team, &on.model), report, (from.0, [from.1, finished]))?;
         drop(line);
         lost.iter().for_each(note);
         self.told(&report)
@@ -260,8 +258,8 @@ impl Ending<'_> {
         let line = Waiting::for_what("measuring and writing");
         let asked = self.arguments.asked(self.threads);
         let skin = adapted.done().clone().with(adapted.take_skin());
-        let mut report =
-            Report::new(self.team, &asked, on, skin, (self.progress.forecast(), Some(Statistics::default())));
+        let mut report = Report::new(&asked, on, skin, self.progress.forecast());
+        report.measure_boundary(self.team, &on.model);
         let mut told = self.told.clone();
         told.boundary_measured = (from.0.elapsed() - finished).as_secs_f64();
         report.parts = Some(told);

@@ -6,10 +6,11 @@ use crate::cli::files::reading::METRIC;
 use crate::cli::files::{Files, Outputs, Target};
 use crate::decomposition::Adapted;
 use crate::formats::{Dataset, NamedField};
+use crate::geometry::Model;
 use crate::mesh::io::{FieldKind, MeshCounts};
 use crate::metric::Field;
 use crate::ranks::Ranks;
-use crate::tasks::Team;
+use crate::tasks::{Team, stage};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -57,13 +58,13 @@ impl Targets {
         Ok(outputs)
     }
 
-    /// Writes mesh, metric and report together; `times` since the start: when the work began, when it ended, now. Returns with the report
-    /// what the mesh's format cannot carry.
+    /// Writes mesh, metric and report together. The mesh is measured while the disk takes its files. `times` are the start, and those since when
+    /// the work began and when it ended. Returns with the report what the mesh's format cannot carry.
     pub fn write(
         &self,
-        team: Team<'_>,
+        (team, model): (Team<'_>, &Model),
         mut report: Report,
-        times: [Duration; 3],
+        (start, [prepared, finished]): (Instant, [Duration; 2]),
     ) -> Result<(Report, Vec<String>), Failure> {
         let mut outputs = self.outputs()?;
         let field = Field { metrics: std::mem::take(&mut report.metrics) };
@@ -80,7 +81,10 @@ impl Targets {
         let lost = outputs.mesh(team, &self.mesh, &data)?;
         (report.mesh, report.stack) = (data.mesh, data.stack);
         report.metrics = field.metrics;
-        self.finish(outputs, &mut report, times)?;
+        stage("files made");
+        report.measure(team, model);
+        stage("report");
+        self.finish(outputs, &mut report, [prepared, finished, start.elapsed()])?;
         Ok((report, lost))
     }
 

@@ -145,10 +145,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let finished = start.elapsed();
         let line = Waiting::for_what("measuring and writing");
         let held = adapted.extracted.part.as_ref().map(|joint| joint.held.clone());
-        let mut report = Report::new(team, &asked, &input.on, adapted, (progress.forecast(), None));
+        let mut report = Report::new(&asked, &input.on, adapted, progress.forecast());
         report.rejoin(team, &input.on, held.as_deref())?;
-        stage("report");
-        let (mut report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
+        let (mut report, lost) = targets.write((team, &input.on.model), report, (start, [prepared, finished]))?;
         drop(line);
         stage("written");
         simulation_told().into_iter().for_each(crate::cli::tell);

@@ -10,6 +10,7 @@ use crate::cli::metric::fields::Made;
 use crate::cli::metric::goal;
 use crate::cli::table::{Table, place};
 use crate::formats::Format;
+use crate::geometry::classify::Classification;
 #[cfg(feature = "occt")]
 use crate::geometry::classify::associate;
 use crate::geometry::fidelity::{self, Fidelity};
@@ -152,19 +153,16 @@ pub struct Report {
     /// The metric at its vertices.
     #[serde(skip)]
     pub metrics: Vec<Sym3>,
+    /// Where its boundary lies, and the vertices that had to stay, until it is measured.
+    #[serde(skip)]
+    boundary: Option<(Classification, Vec<u32>)>,
 }
 
 impl Report {
-    /// Associates the adapted mesh with the model, or gives it back the features of the input's surface; and measures it. What was forecast may be
-    /// known, and its statistics, where they come from elsewhere.
-    pub fn new(
-        team: Team<'_>,
-        asked: &Asked,
-        input: &OnModel,
-        adapted: Adapted,
-        known: (Option<Forecast>, Option<Statistics>),
-    ) -> Self {
-        let (extracted, (forecast, statistics)) = (adapted.extracted, known);
+    /// Associates the adapted mesh with the model, or gives it back the features of the input's surface. It is not measured yet. What was forecast
+    /// may be known.
+    pub fn new(asked: &Asked, input: &OnModel, adapted: Adapted, forecast: Option<Forecast>) -> Self {
+        let extracted = adapted.extracted;
         let (mut mesh, model) = (extracted.mesh, &input.model);
         // The stack's boundary keeps its references, and so does what continues it.
         #[cfg(feature = "occt")]
@@ -190,7 +188,6 @@ impl Report {
             }
             _ => names,
         };
-        let fidelity = fidelity::measure_adapted(team, &mesh, model, &extracted.classification, &extracted.held);
         Self {
             version: env!("CARGO_PKG_VERSION"),
             asked: asked.clone(),
@@ -202,8 +199,8 @@ impl Report {
             kept: None,
             input_vertices: input.size[0],
             input_tets: input.size[1],
-            statistics: statistics.unwrap_or_else(|| Statistics::in_metric(team, &mesh, &extracted.metrics)),
-            fidelity,
+            statistics: Statistics::default(),
+            fidelity: Fidelity::default(),
             off_model: extracted.off_model,
             overgrown: adapted.growth_end.is_some(),
             growth_end: adapted.growth_end,
@@ -218,7 +215,22 @@ impl Report {
             stack: Stack::default(),
             names,
             metrics: extracted.metrics,
+            boundary: Some((extracted.classification, extracted.held)),
         }
+    }
+
+    /// Measures the mesh against its metric and the model, once.
+    pub fn measure(&mut self, team: Team<'_>, model: &Model) {
+        if self.measure_boundary(team, model) {
+            self.statistics = Statistics::in_metric(team, &self.mesh, &self.metrics);
+        }
+    }
+
+    /// Measures the boundary against the model, once: whether it was not measured before.
+    pub fn measure_boundary(&mut self, team: Team<'_>, model: &Model) -> bool {
+        let Some((place, held)) = self.boundary.take() else { return false };
+        self.fidelity = fidelity::measure_adapted(team, &self.mesh, model, &place, &held);
+        true
     }
 
     /// Whether the mesh is not to be used: a vertex is off the model, or the boundary crosses itself and that of the input did not.

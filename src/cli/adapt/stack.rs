@@ -113,9 +113,10 @@ impl InputArguments {
 }
 
 impl Report {
-    /// Puts the stack and the mesh of the report together; `held` are the numbers of the vertices between both in this.
+    /// Puts the stack and the mesh of the report together, which is measured before; `held` are the numbers of the vertices between both in this.
     pub fn rejoin(&mut self, team: Team<'_>, on: &OnModel, held: Option<&[u32]>) -> Result<(), Error> {
         let (Some(beside), Some(held)) = (&on.beside, held) else { return Ok(()) };
+        self.measure(team, &on.model);
         let (rejoined, metrics) =
             beside.rejoin(team, (&self.mesh, &self.metrics), held).map_err(|error| error.to_string())?;
         self.off_model.iter_mut().for_each(|v| *v = rejoined.number[*v as usize]);

@@ -198,9 +198,8 @@ impl Refined {
             meeting: None,
             beside: None,
         };
-        let report = Report::new(team, asked, &on, self.adapted, (None, None));
-        let [prepared, finished] = self.times;
-        let (report, lost) = targets.write(team, report, [prepared, finished, start.elapsed()])?;
+        let report = Report::new(asked, &on, self.adapted, None);
+        let (report, lost) = targets.write((team, &on.model), report, (start, self.times))?;
         lost.iter().for_each(crate::cli::note);
         arguments.figures.print(&report, || format!("{:<26} {}\n{}", "mesher", self.by, report.text()))?;
         Ok(if self.interrupted {
