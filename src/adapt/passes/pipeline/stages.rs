@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn few_of_the_vertices_of_a_thin_layer_are_inserted_in_vain() {
-        // In the second only half of the complexity is in cells much flatter than those of the mesh. Without stages it has 2.8 insertions a vertex.
+        // The second has less than two thirds of its complexity in cells much flatter than those of the mesh.
         for (first, least) in [(1e-4, 500.0), (3e-3, 150.0)] {
             let sample = layer(first);
             let mut bench = Bench::new(&sample, 1, 3);
