@@ -15,6 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "cases"))
 import one  # noqa: E402
+from judging.tools import Tools  # noqa: E402
 
 OUT = ROOT / "out" / "zoo"
 # What the worst tetrahedron of any result must have; a solver is stopped by what is near nothing.
@@ -72,8 +73,8 @@ def main():
     options, results, began = arguments(known), {}, time.monotonic()
     print(HEAD, flush=True)
     for name in options.names:
-        tools = one.Tools(options.program.resolve(), options.start, options.limit, options.threads)
-        result = one.go(tools, known[name], OUT / name)
+        tools = Tools(options.program.resolve(), options.limit, options.threads)
+        result = one.go(tools, known[name], OUT / name, options.start)
         for field in one.FIELDS:
             least = result.get(field, {}).get("ratio_least", 1)
             floor = LEAST_AT_APEX.get(name, LEAST)

@@ -1,64 +1,16 @@
 """One model of the zoo: its first mesh, two cycles to each field, and the judge's figures of the last meshes."""
 
 import json
-import os
-import resource
-import signal
-import subprocess
-import time
-from dataclasses import dataclass, field
-from pathlib import Path
 
 import layer
 from judging import meshfile, report, represent
+from judging.tools import Failed
 
 CYCLES = 2
 FIELDS = ("layer", "geometry")
 
 
-class Failed(Exception):
-    """A step that did not end well; the message has the command and what it said."""
-
-
-@dataclass
-class Tools:
-    """The program, how first meshes are made (`bootstrap` or `gmsh`), the seconds that one command may take, and threads (0: all cores)."""
-
-    program: Path
-    start: str
-    limit: float
-    threads: int = 0
-    log: list = field(default_factory=list)
-
-    def run(self, *words, codes=(0,)):
-        """Runs the program; returns what it printed and its CPU seconds."""
-        return self.command(self.program, *words, codes=codes)
-
-    def command(self, *words, codes=(0,)):
-        """Runs a command; raises Failed with what it said where its exit code is none of `codes`."""
-        text = [str(word) for word in words]
-        self.log.append(" ".join(text))
-        before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-        # A session of its own, so that the mesher that it may have started ends with it.
-        with subprocess.Popen(text, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True) as child:
-            try:
-                out, err = child.communicate(timeout=self.limit)
-            except subprocess.TimeoutExpired:
-                os.killpg(child.pid, signal.SIGKILL)
-                raise Failed(f"{' '.join(text)}\n    did not end within {self.limit:g} s") from None
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        self.log.append(f"# {time.monotonic() - began:.1f} s\n{out}{err}")
-        if child.returncode not in codes:
-            said = "\n    ".join((err or out).strip().splitlines()[-4:])
-            raise Failed(f"{' '.join(text)}\n    ended with {child.returncode}: {said}")
-        return out, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-    def threads_words(self):
-        """The option of threads, if any."""
-        return ["--threads", self.threads] if self.threads else []
-
-
-def go(tools, path, folder):
+def go(tools, path, folder, mesher):
     """{"model", "start", "layer", "geometry", "problems"}: figures for JSON, and everything that is wrong, one line each."""
     folder.mkdir(parents=True, exist_ok=True)
     result = {"problems": []}
@@ -66,7 +18,7 @@ def go(tools, path, folder):
         model = json.loads(tools.run("model", path, "--json")[0])
         result["model"] = {"diagonal": model["diagonal"], "tolerance": model["tolerance"]}
         result["model"] |= {kind: len(model[kind]) for kind in ("faces", "edges", "vertices")}
-        start, seconds = first_mesh(tools, path, folder)
+        start, seconds = first_mesh(tools, path, folder, mesher)
         mesh = meshfile.read_mesh(start)
         problems = report.counts(mesh)["findings"] + represent.missing(mesh, model)
         result["start"] = {"vertices": len(mesh.points), "seconds": seconds, "problems": problems}
@@ -83,11 +35,11 @@ def go(tools, path, folder):
     return result
 
 
-def first_mesh(tools, path, folder):
-    """The start mesh, associated with the model, and its CPU seconds."""
+def first_mesh(tools, path, folder, mesher):
+    """The start mesh, by `bootstrap` or `gmsh`, associated with the model, and its CPU seconds."""
     start = folder / "start.meshb"
     start.unlink(missing_ok=True)
-    if tools.start == "bootstrap":
+    if mesher == "bootstrap":
         return start, tools.run("bootstrap", path, "-o", start, "-q", *tools.threads_words())[1]
     raw = folder / "gmsh.mesh"
     seconds = tools.command("gmsh", "-3", "-clcurv", "12", "-format", "mesh", "-o", raw, path)[1]

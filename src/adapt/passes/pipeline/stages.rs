@@ -8,7 +8,7 @@ use crate::adapt::core::context::Limits;
 const FACTOR: f64 = 4.0;
 
 /// There are stages at all where the source's complexity is the first of these times that of a stage with the second as its factor.
-const ENTRY: (f64, f64) = (1.5, 16.0);
+const ENTRY: (f64, f64) = (1.2, 16.0);
 
 /// There is another stage where the source's complexity is so many times that of the stage.
 const MUCH: f64 = 1.3;
