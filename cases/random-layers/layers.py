@@ -29,8 +29,8 @@ class Layer:
     face: int
 
     def wall(self):
-        """The words of `geo-adapt metric wall` for a wall: as asked for, however the wall bends and however coarse the mesh is."""
-        layer = f"{self.face}:h={self.across:.6g},growth={1 + self.growth:.6g},tangential={self.along:.6g},chord=off"
+        """The words of `geo-adapt metric wall`: edges whose chords rise by all of the first height, however coarse the mesh is."""
+        layer = f"{self.face}:h={self.across:.6g},growth={1 + self.growth:.6g},tangential={self.along:.6g},chord=1"
         return ["--wall", layer, "--hmax", f"{self.along:.6g}", "--exact"]
 
     def metric(self, points):

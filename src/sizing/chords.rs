@@ -58,6 +58,17 @@ impl SizeBound for Chords<'_> {
     }
 }
 
+/// The vertices on curved walls where sizes along the wall are longer than √(8 h R), and by what factor at most: there edges dive through more
+/// than a layer. For ln M at the vertices of a mesh that lies on the model, shape (n,).
+pub fn too_long(team: Team<'_>, place: &Classification, model: &Model, logs: &[Sym3]) -> Cut {
+    let walls = Walls::below(team, place, model, logs);
+    let parts = team.chunks(GRAIN / 4, logs.len(), |range| {
+        let factors = range.map(|v| cut(&logs[v], walls.at(v), 1.0).1).filter(|&factor| factor > 1.0);
+        factors.fold(Cut::default(), |all, greatest| all.and(Cut { vertices: 1, greatest }))
+    });
+    parts.into_iter().fold(Cut::default(), Cut::and)
+}
+
 /// ln M, cut along these walls, and by what factor at most. No size grows, and the size along the normal of a wall stays: what is intersected is
 /// Σ e_i e_iᵀ/t_i² over the principal directions, so only multiples of these directions are added to M.
 fn cut(log: &Sym3, walls: &[Wall], share: f64) -> (Sym3, f64) {
@@ -213,6 +224,29 @@ mod tests {
             assert!(along > 0.45, "{r} {along}");
         }
         assert!(told.vertices > 1000 && (3.4..3.7).contains(&told.greatest), "{told:?}");
+    }
+
+    /// Edges of 0.5 about the axis, and cells of 0.01 on a wall of the radius 1: chords whose sagitta is 0.01 are 0.283 long. Only the walls count
+    /// that a vertex lies on.
+    #[test]
+    fn sizes_that_are_too_long_for_a_wall_are_counted_at_the_vertices_on_it() {
+        let mesh = bent();
+        let (model, place) = Discrete::from_mesh(Team::alone(), &mesh, 20.0).unwrap();
+        let model = Model::Discrete(model);
+        let told = |about: f64| {
+            let of = |p: &Vec3| {
+                let r = p[0].hypot(p[2]);
+                let axes = [[p[0] / r, 0.0, p[2] / r], [p[2] / r, 0.0, -p[0] / r], [0.0, 1.0, 0.0]];
+                log_of(axes, [0.01, about, 0.5])
+            };
+            let logs: Vec<Sym3> = mesh.vertices.iter().map(of).collect();
+            too_long(Team::alone(), &place, &model, &logs)
+        };
+        let on_walls = mesh.vertices.iter().filter(|p| p[2].hypot(p[0]) < 1.001 || p[2].hypot(p[0]) > 1.999).count();
+        let found = told(0.5);
+        assert_eq!(found.vertices, on_walls);
+        assert!((1.7..1.82).contains(&found.greatest), "{found:?}");
+        assert_eq!(told(0.25).vertices, 0);
     }
 
     #[test]

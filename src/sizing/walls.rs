@@ -86,7 +86,15 @@ pub struct Walls {
 impl Walls {
     /// Those that a metric with these ln M at the vertices, shape (n,), may follow, at any scale near this one.
     pub fn near(team: Team<'_>, place: &Classification, model: &Model, logs: &[Sym3]) -> Self {
-        let search = Search::new(place, model);
+        Self::found(team, Search::new(place, model), model, logs)
+    }
+
+    /// The same for those alone that a vertex lies on: vertices inside have none.
+    pub fn below(team: Team<'_>, place: &Classification, model: &Model, logs: &[Sym3]) -> Self {
+        Self::found(team, Search { own_alone: true, ..Search::new(place, model) }, model, logs)
+    }
+
+    fn found(team: Team<'_>, search: Search<'_>, model: &Model, logs: &[Sym3]) -> Self {
         let parts = team.chunks(VERTICES, logs.len(), |range| {
             let (mut evaluator, mut found, mut ends) = (model.evaluator(), Vec::new(), Vec::new());
             for v in range {
@@ -118,6 +126,8 @@ struct Search<'a> {
     curved: Vec<u32>,
     /// How exact closest points are.
     exact: f64,
+    /// Whether only the faces count that a vertex lies on.
+    own_alone: bool,
 }
 
 impl<'a> Search<'a> {
@@ -125,11 +135,14 @@ impl<'a> Search<'a> {
         let topology = model.topology();
         let faces = 0..topology.faces.len() as u32;
         let curved = faces.filter(|&face| topology.faces[face as usize].kind != SurfaceKind::Plane).collect();
-        Self { place, topology, curved, exact: EXACT * topology.diagonal() }
+        Self { place, topology, curved, exact: EXACT * topology.diagonal(), own_alone: false }
     }
 
     /// Adds the walls of a vertex.
     fn at(&self, evaluator: &mut Evaluator, vertex: usize, log: &Sym3, found: &mut Vec<Wall>) {
+        if self.own_alone && self.place.entities[vertex] == Entity::Interior {
+            return;
+        }
         let eigen = log.eigen();
         if self.curved.is_empty() || eigen.values[2] - eigen.values[0] < 1e-9 {
             // The same size in all directions is no longer along a wall than across it.
@@ -142,7 +155,7 @@ impl<'a> Search<'a> {
         for &face in &self.curved {
             let uv = match own.iter().find(|own| own.0 == face) {
                 Some(own) => Some(own.1),
-                None if reach.holds(point, &self.topology.faces[face as usize].bounds) => {
+                None if !self.own_alone && reach.holds(point, &self.topology.faces[face as usize].bounds) => {
                     evaluator.closest_on_face_within(face, point, reach.greatest).map(|on| on.uv)
                 }
                 None => None,

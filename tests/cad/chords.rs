@@ -62,6 +62,26 @@ fn a_layer_on_a_cylinder_gets_chords_that_follow_it() {
     }
 }
 
+/// At the wall sizes of 0.1 about the axis, 0.5 away from it, and `across`: at 2e-4 they are 3.5 times √(8 h R), at 1e-3 1.6 times.
+#[test]
+fn sizes_that_no_edge_along_the_wall_can_have_are_told() {
+    let [model, start] = cube_cylinder();
+    let told = |across: f64, arguments: &[&str]| {
+        let work = Workplace::new();
+        let grown = |p: Vec3| across * (p[0].hypot(p[1]) / 0.5).powi(20).min(100.0);
+        let sizes = |p: Vec3| Sym3::from_sizes(axes(p), [grown(p), 0.1, 0.1]);
+        let metric = work.metric(&io::read_mesh(&start).unwrap().content, sizes);
+        let arguments = [&["--cad", &text(&model), "--metric", &metric, "--max-vertices", "400"], arguments].concat();
+        let output = work.command(&start, &arguments).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        said.lines().find(|line| line.contains("√(8 h R)")).map(str::to_owned)
+    };
+    let notice = told(2e-4, &[]).unwrap();
+    assert!(notice.contains("3.5") && notice.contains("--limit-chords"), "{notice}");
+    assert_eq!(told(2e-4, &["--limit-chords"]), None);
+    assert_eq!(told(1e-3, &[]), None);
+}
+
 #[test]
 fn the_complexity_is_met_after_the_cut() {
     for wanted in [500.0, 1500.0] {

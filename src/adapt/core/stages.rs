@@ -23,7 +23,7 @@ pub struct Stage {
     logs: Vec<Sym3>,
     /// Complexity of the stage's metric on the mesh.
     pub complexity: f64,
-    /// Complexity of the source's metric on the mesh, by its values at the vertices.
+    /// Complexity of the metric that the stages go to, the source's or a coarser one, by its values at the vertices.
     pub wanted: f64,
 }
 
@@ -37,11 +37,11 @@ impl Context<'_> {
         }
     }
 
-    /// The stage that brings the mesh, which has the source's metric M, nearer to it: at each vertex (M⁻¹ ∩ r⁻² M̄⁻¹)⁻¹, where M̄ is the metric
-    /// that the mesh implies. So in no direction are sizes less than the mesh's by more than r: `factor` beyond the direction that has to
-    /// shrink least. That one needs no stage, since a mesh whose edges are all too long alike is halved without harm. None for a mesh that
-    /// implies no metric.
-    pub fn stage(&self, team: Team<'_>, factor: f64) -> Option<Stage> {
+    /// The stage that brings the mesh, which has the source's metric, nearer to M, the same with sizes `coarser` times as large: at each vertex
+    /// (M⁻¹ ∩ r⁻² M̄⁻¹)⁻¹, where M̄ is the metric that the mesh implies. So in no direction are sizes less than the mesh's by more than r:
+    /// `factor` beyond the direction that has to shrink least. That one needs no stage, since a mesh whose edges are all too long alike is
+    /// halved without harm. None for a mesh that implies no metric.
+    pub fn stage(&self, team: Team<'_>, factor: f64, coarser: f64) -> Option<Stage> {
         let store = &self.store;
         let vertices = team.map(GRAIN, store.vertex_bound(), |v| store.position(VertexId(v as u32)));
         let tets = team.collect(GRAIN, store.tet_bound(), |range, tets| {
@@ -54,14 +54,14 @@ impl Context<'_> {
             if !store.is_vertex(id) {
                 return Sym3::ZERO;
             }
-            let inverse = store.log(id).times(-1.0);
+            let inverse = store.log(id).times(-1.0).plus_identity(2.0 * coarser.ln());
             // The greatest eigenvalue of M⁻¹ in the mesh's metric is right to rounding, whatever the anisotropy of both.
             let [.., greatest] = inverse.exp().congruent(&implied.times(0.5).exp()).eigen().values;
             let least = implied.plus_identity(2.0 * factor.ln() + (-greatest.ln()).max(0.0));
             inverse.intersect_logs(&least.times(-1.0)).times(-1.0)
         });
         let complexity = measure::complexity(team, store, 1, |v| logs[v.index()].trace());
-        let wanted = measure::complexity(team, store, 1, |v| store.log(v).trace());
+        let wanted = measure::complexity(team, store, 1, |v| store.log(v).trace()) / coarser.powi(3);
         Some(Stage { mesh, logs, complexity, wanted })
     }
 

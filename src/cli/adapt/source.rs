@@ -29,6 +29,9 @@ const GREATEST_COMPLEXITY: f64 = 2e8;
 /// The sizes of the geometry take at most this share of the complexity, so that some is left for the field.
 const GEOMETRY_SHARE: f64 = 0.5;
 
+/// Sizes along curved walls that are more than so many times √(8 h R) are told: where they are less, meshes are as good as others.
+const TOO_LONG: f64 = 2.0;
+
 /// What the metric is made of, besides the files of --field.
 #[derive(Clone, Default)]
 pub struct Raw {
@@ -110,12 +113,31 @@ impl InputArguments {
         }
         self.scale(team, mesh, &mut source, complexity, how.made.is_some() || how.goal.is_some())?;
         stage("complexity");
+        notices.extend(self.too_long_along_walls(team, &source, on));
         if let Some(beside) = on.beside {
             let (source, fitted) = self.fitted(team, mesh, beside, &source);
             how.fitted = Some(fitted);
             return Ok((source, how));
         }
         Ok((source, how))
+    }
+
+    /// A notice where the metric of a file or a field asks for cells along curved walls of a CAD model that no straight edges can have. An analytic
+    /// field is taken as it is.
+    fn too_long_along_walls(&self, team: Team<'_>, source: &Source, on: On<'_>) -> Option<String> {
+        let Source::Background(background) = source else { return None };
+        if self.cad.is_none() || self.limit_chords.is_some() {
+            return None;
+        }
+        let Cut { vertices, greatest } = chords::too_long(team, on.place, on.model, background.logs());
+        stage("sizes along walls");
+        (greatest > TOO_LONG).then(|| {
+            format!(
+                "sizes along curved walls are up to {} times √(8 h R), too long at {vertices} vertices: such edges dive through the layers. The mesh \
+                 gets bad cells, takes more time, and has more vertices than its complexity says; --limit-chords cuts these sizes",
+                figure(greatest)
+            )
+        })
     }
 
     /// The analytic field, or the mesh as background with sizes that are given, or with the metric made from a field; and how it was made. Of its

@@ -3,6 +3,11 @@
 //! What that saves, and how the limits were chosen: docs/decisions/stages.md.
 use super::{OUT_OF_ORDER, Pipeline, size_limits};
 use crate::adapt::core::context::Limits;
+use crate::adapt::core::stages::Stage;
+
+/// Stages bring the mesh to sizes so many times those of the source, as long as they can; the passes that follow halve its cells. What a stage
+/// inserts in vain costs an eighth then. A mesh that cannot be so coarse, as its domain is smaller, comes to the sizes themselves in stages.
+const COARSER: f64 = 2.0;
 
 /// A stage makes cells flatter by no more than this factor.
 const FACTOR: f64 = 4.0;
@@ -27,7 +32,7 @@ const PASSES: usize = 3;
 const COSINE: f64 = 0.9995;
 
 /// In a stage no insertion makes an edge shorter than this.
-const SHORTEST_NEW: f64 = 0.7;
+const SHORTEST_NEW: f64 = 0.8;
 
 /// Limits of the passes in a stage.
 fn stage_limits() -> Limits {
@@ -37,19 +42,31 @@ fn stage_limits() -> Limits {
 impl Pipeline<'_, '_> {
     /// Brings the mesh near to its metric, in stages.
     pub(super) fn come_near(&mut self) {
-        let asked_for = |pipeline: &Self, (much, factor): (f64, f64)| {
-            let stage = pipeline.context.stage(pipeline.team(), factor);
-            stage.filter(|stage| stage.wanted > much * stage.complexity)
-        };
-        if asked_for(self, ENTRY).is_none() {
+        if self.asked_for(ENTRY, 1.0).is_none() {
             return;
         }
         self.limit(stage_limits());
+        for coarser in [COARSER, 1.0] {
+            self.stages_to(coarser);
+        }
+        self.limit(size_limits());
+    }
+
+    /// The stage to sizes `coarser` times the source's, if its metric is much coarser than that.
+    fn asked_for(&self, (much, factor): (f64, f64), coarser: f64) -> Option<Stage> {
+        let stage = self.context.stage(self.team(), factor, coarser);
+        stage.filter(|stage| stage.wanted > much * stage.complexity)
+    }
+
+    /// Stages to sizes `coarser` times the source's, as long as each brings the mesh nearer to them.
+    fn stages_to(&mut self, coarser: f64) {
         let mut before = 0.0;
         for _ in 0..STAGES {
-            let Some(stage) = asked_for(self, (MUCH, FACTOR)).filter(|stage| stage.complexity > FINER * before) else {
-                break;
-            };
+            if self.growth_end.is_some() || self.observer.stop() {
+                return;
+            }
+            let stage = self.asked_for((MUCH, FACTOR), coarser).filter(|stage| stage.complexity > FINER * before);
+            let Some(stage) = stage else { return };
             before = stage.complexity;
             self.context.begin_stage(self.team(), stage);
             self.collapse();
@@ -64,11 +81,7 @@ impl Pipeline<'_, '_> {
             }
             self.context.end_stage(self.team());
             self.keep_order(OUT_OF_ORDER);
-            if self.growth_end.is_some() || self.observer.stop() {
-                break;
-            }
         }
-        self.limit(size_limits());
     }
 }
 
@@ -111,7 +124,7 @@ mod tests {
         };
         with_pipeline(&mut bench, |pipeline| {
             let source = logs(pipeline);
-            let stage = pipeline.context.stage(pipeline.team(), FACTOR).unwrap();
+            let stage = pipeline.context.stage(pipeline.team(), FACTOR, 1.0).unwrap();
             assert!(stage.wanted > 10.0 * stage.complexity, "{} {}", stage.wanted, stage.complexity);
             pipeline.context.begin_stage(pipeline.team(), stage);
             // The cells have edges of 0.2 to 0.35.
