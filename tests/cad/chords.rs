@@ -71,7 +71,8 @@ fn sizes_that_no_edge_along_the_wall_can_have_are_told() {
         let grown = |p: Vec3| across * (p[0].hypot(p[1]) / 0.5).powi(20).min(100.0);
         let sizes = |p: Vec3| Sym3::from_sizes(axes(p), [grown(p), 0.1, 0.1]);
         let metric = work.metric(&io::read_mesh(&start).unwrap().content, sizes);
-        let arguments = [&["--cad", &text(&model), "--metric", &metric, "--max-vertices", "400"], arguments].concat();
+        let model = text(&model);
+        let arguments = [&["--cad", &model, "--metric", &metric, "--max-vertices", "400"], arguments].concat();
         let output = work.command(&start, &arguments).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
         said.lines().find(|line| line.contains("√(8 h R)")).map(str::to_owned)

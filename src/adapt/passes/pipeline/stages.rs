@@ -5,15 +5,15 @@ use super::{OUT_OF_ORDER, Pipeline, size_limits};
 use crate::adapt::core::context::Limits;
 use crate::adapt::core::stages::Stage;
 
-/// Stages bring the mesh to sizes so many times those of the source, as long as they can; the passes that follow halve its cells. What a stage
-/// inserts in vain costs an eighth then. A mesh that cannot be so coarse, as its domain is smaller, comes to the sizes themselves in stages.
-const COARSER: f64 = 2.0;
+/// Stages bring the mesh to sizes so many times those of the source, as long as they can; the passes that follow refine it alike in all
+/// directions. So what stages insert in vain are few. A mesh whose domain is too small for that comes to the sizes themselves in stages.
+const COARSER: f64 = 3.0;
 
 /// A stage makes cells flatter by no more than this factor.
 const FACTOR: f64 = 4.0;
 
 /// There are stages at all where the source's complexity is the first of these times that of a stage with the second as its factor.
-const ENTRY: (f64, f64) = (1.2, 16.0);
+const ENTRY: (f64, f64) = (1.1, 16.0);
 
 /// There is another stage where the source's complexity is so many times that of the stage.
 const MUCH: f64 = 1.3;
