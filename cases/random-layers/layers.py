@@ -81,12 +81,12 @@ def drawn(seed, models):
 
 
 def one_layer(rng, low, high, diagonal, faces):
-    """A layer that meets the box from `low` to `high`."""
+    """A layer about a point of the box from `low` to `high`. The chords of its edges rise by its size across at most."""
     direction = rng.normal(size=3)
     # Half of them along an axis: there layers meet planes of the model at no angle, and others at the right one.
     if rng.random() < 0.5:
         direction = np.eye(3)[rng.integers(3)]
-    return Layer(
+    layer = Layer(
         kind=str(rng.choice(KINDS)),
         across=float(10 ** rng.uniform(*ACROSS) * diagonal),
         along=float(10 ** rng.uniform(*ALONG) * diagonal),
@@ -96,3 +96,7 @@ def one_layer(rng, low, high, diagonal, faces):
         radius=float(rng.uniform(0.05, 0.4) * diagonal),
         face=int(rng.integers(1, faces + 1)),
     )
+    if layer.kind in ("sphere", "cylinder"):
+        # Straight edges cannot be longer and lie in the layer.
+        layer.along = min(layer.along, (8 * layer.across * layer.radius) ** 0.5)
+    return layer

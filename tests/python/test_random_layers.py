@@ -30,7 +30,10 @@ class Drawn(unittest.TestCase):
         drawn = [layer for job in jobs for layer in job.layers]
         self.assertEqual({layer.kind for layer in drawn}, set(layers.KINDS))
         for layer in drawn:
-            self.assertTrue(1e-5 <= layer.across / 14**0.5 <= 1e-2 < layer.along / 14**0.5)
+            self.assertTrue(1e-5 <= layer.across / 14**0.5 <= 1e-2)
+            self.assertGreater(layer.along, layer.across)
+            if layer.kind in ("sphere", "cylinder"):
+                self.assertLessEqual(layer.along**2 / (8 * layer.radius), layer.across * (1 + 1e-12))
             self.assertTrue(1 <= layer.face <= 6)
             self.assertAlmostEqual(np.linalg.norm(layer.direction), 1)
 
