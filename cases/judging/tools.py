@@ -48,3 +48,12 @@ class Tools:
     def threads_words(self):
         """The option of threads, if any."""
         return ["--threads", self.threads] if self.threads else []
+
+
+def ended(failed, count, what, began, out):
+    """Prints what is wrong, {name: lines}, with `count` of `what` (a plural) done since `began`, time.monotonic(); returns the exit code."""
+    for name, lines in failed.items():
+        for line in lines:
+            print(f"FAILED  {name}: {line}")
+    print(f"{count - len(failed)} of {count} {what} ok in {time.monotonic() - began:.0f} s; meshes and logs: {out}")
+    return 1 if failed else 0

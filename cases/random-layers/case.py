@@ -1,8 +1,8 @@
 """Random layers on the models of geometry/: whatever a metric asks for, the mesh is valid, on the model, and made in bounded time.
 
 Each seed draws a model, one to three layers (planes, spheres, cylinders, walls; 1e-5 to 1e-2 of the model's diagonal across), a complexity and
-one to three cycles from a coarse first mesh. A line a seed: vertices a unit of complexity, unit edges and least mean ratio in the metric that the
-last cycle asked for, milliseconds of CPU time a vertex and cycle, and what was drawn. A seed fails where a command does, the mesh is not
+one to three cycles from a coarse first mesh. A line a seed: vertices, also a unit of complexity, unit edges, least and mean ratio
+in the metric that the last cycle asked for, milliseconds of CPU time a vertex and cycle, and what was drawn. A seed fails where a command does, the mesh is not
 valid or its boundary crosses itself, or a vertex is off the model. Exit code: 1 if any fails. Everything lies under out/random-layers.
 """
 
@@ -16,10 +16,10 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "cases"))
 import layers  # noqa: E402
 from judging import meshfile, represent, report  # noqa: E402
-from judging.tools import Failed, Tools  # noqa: E402
+from judging.tools import Failed, Tools, ended  # noqa: E402
 
 OUT = ROOT / "out" / "random-layers"
-# Segments a radian of the first meshes' curved faces and edges: as coarse as a chord may be that still is inside of a thin wall.
+# Segments a radian along the curved faces and edges of the first meshes, which are to be coarse.
 SEGMENTS = 2
 
 
@@ -39,10 +39,10 @@ def arguments():
 def known_models(tools):
     """{name: what `geo-adapt model --json` tells}, and a coarse first mesh of each under OUT."""
     found = {}
+    OUT.mkdir(parents=True, exist_ok=True)
     for path in sorted((ROOT / "geometry").glob("*.step")):
         found[path.stem] = json.loads(tools.run("model", path, "--json")[0])
         if not first_mesh(path.stem).is_file():
-            OUT.mkdir(parents=True, exist_ok=True)
             tools.run("bootstrap", path, "-o", first_mesh(path.stem), "--segments", SEGMENTS, "--feature-cells", "off", "-q", *tools.threads_words())
     return found
 
@@ -67,7 +67,7 @@ def adapted(tools, job, model, folder):
         meshfile.write_metric(sizes, job.metric(meshfile.read_mesh(current).points, of_wall))
         target.unlink(missing_ok=True)
         words = ["adapt", current, "-o", target, "--cad", path, "--metric", sizes, "--complexity", f"{job.complexity:.0f}"]
-        seconds += tools.run(*words, "-q", *tools.threads_words())[1]
+        seconds += tools.run(*words, *tools.threads_words())[1]
         current = target
     mesh = meshfile.read_mesh(current)
     figures = report.figures(mesh, meshfile.read_metric(current.with_suffix(".solb")))
@@ -91,15 +91,11 @@ def main():
                     f"{figures['ratio_least']:>6.3f} {figures['ratio_mean']:>6.3f} {figures['milliseconds']:>6.3f}")
         except (Failed, meshfile.FileError) as error:
             line, problems = f"{'–':>9} {'':>6} {'':>7} {'':>6} {'':>6} {'':>6}", [str(error)]
-        (folder / "log.txt").write_text("\n".join(tools.log))
+        (folder / "log.txt").write_text("\n".join(tools.log + problems))
         print(f"{seed:>6} {line}  {job.told()}{'  FAILED' * bool(problems)}", flush=True)
         if problems:
-            failed[seed] = problems
-    for seed, lines in failed.items():
-        for line in lines:
-            print(f"FAILED  seed {seed}: {line}")
-    print(f"{options.count - len(failed)} of {options.count} seeds ok in {time.monotonic() - began:.0f} s; meshes and logs: {OUT}")
-    return 1 if failed else 0
+            failed[f"seed {seed}"] = problems
+    return ended(failed, options.count, "seeds", began, OUT)
 
 
 if __name__ == "__main__":

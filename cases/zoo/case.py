@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "cases"))
 import one  # noqa: E402
-from judging.tools import Tools  # noqa: E402
+from judging.tools import Tools, ended  # noqa: E402
 
 OUT = ROOT / "out" / "zoo"
 # What the worst tetrahedron of any result must have; a solver is stopped by what is near nothing.
@@ -86,11 +86,7 @@ def main():
         print(row(name, result), flush=True)
     (OUT / "results.json").write_text(json.dumps(results, indent=1))
     failed = {name: result["problems"] for name, result in results.items() if result["problems"]}
-    for name, lines in failed.items():
-        for line in lines:
-            print(f"FAILED  {name}: {line}")
-    print(f"{len(results) - len(failed)} of {len(results)} models ok in {time.monotonic() - began:.0f} s; meshes, figures and logs: {OUT}")
-    return 1 if failed else 0
+    return ended(failed, len(results), "models", began, OUT)
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ const GREATEST_COMPLEXITY: f64 = 2e8;
 /// The sizes of the geometry take at most this share of the complexity, so that some is left for the field.
 const GEOMETRY_SHARE: f64 = 0.5;
 
-/// Sizes along curved walls that are more than so many times √(8 h R) are told: where they are less, meshes are as good as others.
+/// Sizes along curved walls that are more than so many times √(8 h R) are told. The UGAWG's polar-1 has 1.6 times, and is met by 95 % of the edges.
 const TOO_LONG: f64 = 2.0;
 
 /// What the metric is made of, besides the files of --field.

@@ -6,7 +6,7 @@ use crate::adapt::core::context::Limits;
 use crate::adapt::core::stages::Stage;
 
 /// Stages bring the mesh to sizes so many times those of the source, as long as they can; the passes that follow refine it alike in all
-/// directions. So what stages insert in vain are few. A mesh whose domain is too small for that comes to the sizes themselves in stages.
+/// directions. So stages insert little in vain. A mesh whose domain is too small for that comes to the sizes themselves in stages.
 const COARSER: f64 = 3.0;
 
 /// A stage makes cells flatter by no more than this factor.
