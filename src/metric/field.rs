@@ -340,10 +340,10 @@ pub(super) fn mean_exponential(values: [f64; 4]) -> f64 {
     let above = values.map(|value| value - least);
     // partial[i] is the term with h_k of the first i + 1 values only.
     let (mut partial, mut sum) = ([1.0; 4], 1.0);
-    for k in 1..MOST_TERMS {
+    for &reciprocal in &RECIPROCALS {
         let mut before = 0.0;
         for i in 0..4 {
-            partial[i] = before + above[i] / f64::from(k + 3) * partial[i];
+            partial[i] = before + above[i] * reciprocal * partial[i];
             before = partial[i];
         }
         sum += partial[3];
@@ -354,8 +354,15 @@ pub(super) fn mean_exponential(values: [f64; 4]) -> f64 {
     least.exp() * sum
 }
 
-/// Terms at most of [`mean_exponential`]: enough for sizes that differ by a factor of 1e20 within a tetrahedron.
-const MOST_TERMS: u32 = 600;
+/// 1/(k + 3) of the terms k = 1, 2, … of [`mean_exponential`]: enough for sizes that differ by a factor of 1e20 within a tetrahedron.
+static RECIPROCALS: [f64; 600] = {
+    let (mut reciprocals, mut i) = ([0.0; 600], 0);
+    while i < reciprocals.len() {
+        reciprocals[i] = 1.0 / (i + 4) as f64;
+        i += 1;
+    }
+    reciprocals
+};
 
 /// Factor of M that takes a field from one complexity to another: (target/present)^(2/3).
 pub fn complexity_factor(present: f64, target: f64) -> f64 {

@@ -106,7 +106,7 @@ impl<'m> Level<'m> {
     pub fn coarser(self, team: Team<'_>, balls: &Balls) -> Self {
         let surface = Surface::of(&self);
         let mut map = VertexMap::of(&self, balls, &surface);
-        let repair = MapRepair { level: &self, balls, surface: &surface };
+        let mut repair = MapRepair::of(&self, balls, &surface);
         repair.repair(&mut map);
         while apart::keep(team, &self, &surface, &mut map) {
             repair.repair(&mut map);

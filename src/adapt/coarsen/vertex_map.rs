@@ -10,7 +10,7 @@ const SHORT: f64 = 0.85;
 struct Image {
     /// The vertex that it goes onto; itself where it stays; [`OPEN`] where that is not decided.
     target: u32,
-    /// The vertex that looked at it last.
+    /// The vertex that looked at it last, or the number of that look.
     seen: u32,
     /// Fourth power of the distance to its target.
     distance: f32,
@@ -21,6 +21,8 @@ const OPEN: u32 = u32::MAX;
 /// The vertices that stay, each with those that go onto it.
 pub struct VertexMap {
     images: Vec<Image>,
+    /// Looks around vertices, counted on from the number of vertices.
+    look: u32,
 }
 
 impl VertexMap {
@@ -28,7 +30,10 @@ impl VertexMap {
     /// stays is near it; else it goes onto the nearest of these.
     pub fn of(level: &Level, balls: &Balls, surface: &Surface) -> Self {
         let count = level.points.len();
-        let mut map = Self { images: vec![Image { target: OPEN, seen: OPEN, distance: f32::INFINITY }; count] };
+        let mut map = Self {
+            images: vec![Image { target: OPEN, seen: OPEN, distance: f32::INFINITY }; count],
+            look: count as u32,
+        };
         let those = |wanted: fn(u32) -> bool| (0..count as u32).filter(move |&v| wanted(level.faces[v as usize]));
         for v in those(|face| face == FIXED).chain(those(|face| face < FIXED)) {
             if map.stays(v) {
@@ -72,6 +77,17 @@ impl VertexMap {
         if distance < image.distance {
             (image.target, image.distance) = (v, distance);
         }
+    }
+
+    /// Begins a look around a vertex.
+    pub fn look_around(&mut self) {
+        self.look = self.look.wrapping_add(1);
+    }
+
+    /// Whether this look meets a vertex for the first time.
+    #[inline(always)]
+    pub fn is_new(&mut self, v: u32) -> bool {
+        std::mem::replace(&mut self.images[v as usize].seen, self.look) != self.look
     }
 
     /// The vertex that a vertex goes onto: itself where it stays.

@@ -20,13 +20,15 @@ pub struct Limits {
     pub long: f64,
     /// Edges shorter than this are collapsed.
     pub short: f64,
-    /// No insertion makes an edge shorter than this.
+    /// No insertion makes an edge shorter than this, where the edge that is split is no longer than `long`.
     pub shortest_new: f64,
+    /// Where it is too long by a factor x, new edges may be shorter by x to the power of this.
+    pub short_for_long: f64,
     /// No collapse makes an edge longer than this.
     pub longest_new: f64,
     /// An insertion may lower the worst mean ratio of its cavity to this, but no further unless it was worse already.
     pub insert_floor: f64,
-    /// Whether a much too long edge may be split at the price of a bad tetrahedron or a short edge, which later operations repair.
+    /// Whether a much too long edge may be split at the price of a bad tetrahedron, which later operations repair.
     pub long_first: bool,
     /// Where the worst mean ratio is below the floor already, the share of it that must be left.
     pub insert_loss: f64,
@@ -64,6 +66,7 @@ impl Default for Limits {
             long: LONG,
             short: SHORT,
             shortest_new: 0.5,
+            short_for_long: 1.0,
             longest_new: LONG,
             insert_floor: 0.1,
             long_first: false,

@@ -5,8 +5,8 @@
 use super::context::Context;
 use super::ids::{TetId, VertexId};
 use super::{fill, measure};
-use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::vector::Vec3;
+use crate::mesh::adjacency::{EDGES, MatchedFaces};
+use crate::mesh::vector::{Vec3, sub};
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::implied::implied;
 use crate::metric::{Background, Sym3};
@@ -35,6 +35,20 @@ impl Context<'_> {
             None => self.source.log_at(p, hint),
             Some(stage) => stage.log_at(p, hint),
         }
+    }
+
+    /// Whether an edge is longer than `limit` in the metric of one of its ends.
+    pub fn has_edge_longer(&self, team: Team<'_>, limit: f64) -> bool {
+        let (store, square) = (&self.store, limit * limit);
+        let has_one = |t: TetId| {
+            let vertices = store.vertices(t);
+            let (points, metrics) = (vertices.map(|v| store.position(v)), vertices.map(|v| store.metric(v)));
+            EDGES.iter().any(|&[a, b]| {
+                let edge = sub(points[b], points[a]);
+                metrics[a].quadratic(edge).max(metrics[b].quadratic(edge)) > square
+            })
+        };
+        team.chunks(GRAIN, store.tet_bound(), |range| store.live_tets_in(range).any(has_one)).contains(&true)
     }
 
     /// The stage that brings the mesh, which has the source's metric, nearer to M, the same with sizes `coarser` times as large: at each vertex

@@ -56,6 +56,10 @@ const OUT_OF_ORDER: f64 = 2.0;
 /// The store is renumbered before the passes for the shapes when it has grown by this factor.
 const OUT_OF_PLACE: f64 = 1.2;
 
+/// The power of [`Limits::short_for_long`] in the size passes. With a greater one the short edges are collapsed again at great cost; with a
+/// lesser one, very long edges stay beside coarse boundaries.
+const SHORT_FOR_LONG: f64 = 0.7;
+
 /// Limits of the size passes: only what is bad is flipped and smoothed.
 fn size_limits() -> Limits {
     Limits {
@@ -63,18 +67,21 @@ fn size_limits() -> Limits {
         flip_below: 0.7,
         short: 0.65,
         shortest_new: 0.75,
+        short_for_long: SHORT_FOR_LONG,
         long_first: true,
         several_below: 0.0,
         ..Limits::default()
     }
 }
 
-/// Limits of the shape passes: nothing may become bad that is not bad already.
+/// Limits of the shape passes: nothing may become bad that is not bad already, and no new edge is much farther from unit length than the one
+/// that is split.
 fn shape_limits() -> Limits {
     Limits {
         improve_below: 0.9,
         flip_below: 0.82,
         short: 0.75,
+        shortest_new: 0.65,
         insert_floor: 0.2,
         insert_loss: 1.0,
         ..Limits::default()

@@ -7,10 +7,6 @@ use crate::adapt::core::vertex_moves::Placed;
 use crate::adapt::core::worker::Worker;
 use crate::mesh::vector::{Vec3, sub};
 
-/// Where an edge too long by a factor x is split, the least length of new edges is multiplied by x to the power of minus this. With a
-/// greater power the short edges are collapsed again at great cost; with a lesser one, very long edges stay beside coarse boundaries.
-const SHORT_FOR_LONG: f64 = 0.7;
-
 /// Where the greatest length allowed is at least this share of an edge's, the sizes at its ends are nearly met.
 const NEARLY_MET: f64 = 0.5;
 
@@ -28,21 +24,21 @@ impl<A: Access> Worker<'_, '_, A> {
         (near, facing): (VertexId, VertexId),
     ) -> Result<VertexId, Refusal> {
         let limits = &self.context.limits;
-        // A much too long edge may be split at the price of a bad tetrahedron or a short edge, which later operations repair.
-        let excess = match seed {
-            Seed::Edge(a, b) if limits.long_first => (limits.long / self.length(a, b)).min(1.0),
+        // The greatest length allowed over that of the edge, where it is too long.
+        let share = match seed {
+            Seed::Edge(a, b) => (limits.long / self.length(a, b)).min(1.0),
             _ => 1.0,
         };
-        let shortest_new = limits.shortest_new * excess.powf(SHORT_FOR_LONG);
+        let shortest_new = limits.shortest_new * share.powf(limits.short_for_long);
         if let Seed::Edge(a, b) = seed
-            && excess > NEARLY_MET
+            && share > NEARLY_MET
             && self.is_near_ring([a, b], placed.point, shortest_new, facing)
         {
             return Err(Refusal::Length);
         }
         let state = self.state_at(placed, self.store.hint(near));
         self.with_new_vertex(&state, |worker, v| {
-            worker.try_insert(seed, seeds, (v, facing), (excess, shortest_new))?;
+            worker.try_insert(seed, seeds, (v, facing), (share, shortest_new))?;
             worker.commit()
         })
     }
@@ -65,7 +61,7 @@ impl<A: Access> Worker<'_, '_, A> {
         seed: Seed,
         seeds: &[TetId],
         (v, facing): (VertexId, VertexId),
-        (excess, shortest_new): (f64, f64),
+        (share, shortest_new): (f64, f64),
     ) -> Result<(), Refusal> {
         let limits = self.context.limits;
         if let Seed::Edge(..) = seed
@@ -74,7 +70,8 @@ impl<A: Access> Worker<'_, '_, A> {
             // The vertex is joined to the ring in any case.
             return Err(Refusal::Length);
         }
-        let allowed = |worker: &Self| excess.powi(3) * limits.insert_floor.min(limits.insert_loss * worker.worst_old());
+        let of_floor = if limits.long_first { share.powi(3) } else { 1.0 };
+        let allowed = |worker: &Self| of_floor * limits.insert_floor.min(limits.insert_loss * worker.worst_old());
         let worst = self.build_star(seed, v, seeds, Bounds::default())?;
         if worst < allowed(self) {
             let larger = Bounds { wanted: limits.insert_floor, floor: 0.0 };

@@ -24,7 +24,7 @@ pub struct Effort {
 impl Effort {
     /// For a unit mesh.
     pub const FULL: Self =
-        Self { stages: true, waits: false, little: 0.05, crowded: 0.12, settled: 0.17, shapes: true, repairs: true };
+        Self { stages: true, waits: false, little: 0.05, crowded: 0.12, settled: 0.14, shapes: true, repairs: true };
 
     /// Between cuts that will move: what is bad beside them waits until then.
     pub const BETWEEN_CUTS: Self = Self { repairs: false, ..Self::FULL };
@@ -34,7 +34,7 @@ impl Effort {
 
     /// For a draft.
     pub const DRAFT: Self =
-        Self { stages: false, waits: true, little: 0.1, crowded: 0.1, settled: 0.17, shapes: false, repairs: true };
+        Self { stages: false, waits: true, little: 0.1, crowded: 0.1, settled: 0.14, shapes: false, repairs: true };
 }
 
 #[cfg(test)]

@@ -15,6 +15,10 @@ const FACTOR: f64 = 4.0;
 /// There are stages at all where the source's complexity is the first of these times that of a stage with the second as its factor.
 const ENTRY: (f64, f64) = (1.1, 16.0);
 
+/// Where sizes shrink by more than the factor of [`ENTRY`] there is an edge longer than this. The edges e of a tetrahedron in the metric in which all have length one
+/// have Σ (e·d)² = 2 along each unit vector d, so one of the six has a part of 1/√3 along it at the least.
+const LONG: f64 = ENTRY.1 * 0.57;
+
 /// There is another stage where the source's complexity is so many times that of the stage.
 const MUCH: f64 = 1.3;
 
@@ -42,7 +46,8 @@ fn stage_limits() -> Limits {
 impl Pipeline<'_, '_> {
     /// Brings the mesh near to its metric, in stages.
     pub(super) fn come_near(&mut self) {
-        if self.asked_for(ENTRY, 1.0).is_none() {
+        // Most meshes are told by their edges, at a tenth of the cost of a stage.
+        if !self.context.has_edge_longer(self.team(), LONG) || self.asked_for(ENTRY, 1.0).is_none() {
             return;
         }
         self.limit(stage_limits());
