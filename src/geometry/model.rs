@@ -249,6 +249,14 @@ impl Geometry for Model {
             Model::Discrete(model) => Evaluator::Discrete(model.evaluator()),
         }
     }
+
+    fn is_plane(&self, face: u32) -> bool {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.is_plane(face),
+            Model::Discrete(model) => model.is_plane(face),
+        }
+    }
 }
 
 /// Sends a call to the backend at hand.

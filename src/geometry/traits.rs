@@ -1,5 +1,5 @@
 //! What the adapter asks of a geometry.
-use super::Topology;
+use super::{SurfaceKind, Topology};
 use crate::mesh::vector::Vec3;
 
 /// A point on an edge.
@@ -74,6 +74,11 @@ pub trait Geometry: Sync {
 
     /// A new evaluator, for one thread.
     fn evaluator(&self) -> Self::Evaluator<'_>;
+
+    /// Whether a face lies in a plane.
+    fn is_plane(&self, face: u32) -> bool {
+        self.topology().faces[face as usize].kind == SurfaceKind::Plane
+    }
 }
 
 /// Shape queries. Indices are those of [`Topology`], from 0. Parameters outside the range are

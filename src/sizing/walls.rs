@@ -1,7 +1,7 @@
 //! The walls at the vertices of a mesh: the curved faces of the model along which thin cells of a metric may lie.
 use super::tree::Box3;
 use crate::geometry::classify::Classification;
-use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, SurfaceFrame, SurfaceKind, Topology};
+use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, Model, SurfaceFrame, Topology};
 use crate::mesh::vector::{Vec3, dot, norm, scale, sub};
 use crate::metric::frame::Frame;
 use crate::metric::{Eigen, Sym3};
@@ -134,7 +134,7 @@ impl<'a> Search<'a> {
     fn new(place: &'a Classification, model: &'a Model) -> Self {
         let topology = model.topology();
         let faces = 0..topology.faces.len() as u32;
-        let curved = faces.filter(|&face| topology.faces[face as usize].kind != SurfaceKind::Plane).collect();
+        let curved = faces.filter(|&face| !model.is_plane(face)).collect();
         Self { place, topology, curved, exact: EXACT * topology.diagonal(), own_alone: false }
     }
 

@@ -3,7 +3,7 @@ use super::ids::VertexId;
 use super::required::Required;
 use super::store::{Store, Torn};
 use super::voids::Voids;
-use crate::geometry::{Evaluate, Geometry, Model, SurfaceKind};
+use crate::geometry::{Evaluate, FaceEntity, Geometry, Model};
 use crate::mesh::vector::Vec3;
 use crate::metric::{Background, Source};
 use crate::tasks::{GRAIN, Team};
@@ -66,7 +66,7 @@ impl Default for Limits {
             long: LONG,
             short: SHORT,
             shortest_new: 0.5,
-            short_for_long: 1.0,
+            short_for_long: 0.0,
             longest_new: LONG,
             insert_floor: 0.1,
             long_first: false,
@@ -113,12 +113,12 @@ impl<'m> Context<'m> {
     /// A context on a filled store.
     pub fn new(store: Store, source: &'m Source, model: &'m Model) -> Self {
         let mut evaluator = model.evaluator();
-        let faces = model.topology().faces.iter().enumerate();
-        let planes = faces.map(|(i, face)| {
+        let faces = model.topology().faces.iter().zip(0..);
+        let normal = |(face, i): (&FaceEntity, u32)| {
             let middle = face.range.map(|[low, high]| 0.5 * (low + high));
-            (face.kind == SurfaceKind::Plane).then(|| evaluator.face_normal(i as u32, middle))
-        });
-        let planes = planes.collect();
+            model.is_plane(i).then(|| evaluator.face_normal(i, middle))
+        };
+        let planes = faces.map(normal).collect();
         let ids = (0..store.vertex_bound() as u32).map(VertexId).collect();
         Self {
             store,

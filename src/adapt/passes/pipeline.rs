@@ -82,6 +82,7 @@ fn shape_limits() -> Limits {
         flip_below: 0.82,
         short: 0.75,
         shortest_new: 0.65,
+        short_for_long: 1.0,
         insert_floor: 0.2,
         insert_loss: 1.0,
         ..Limits::default()

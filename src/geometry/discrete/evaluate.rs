@@ -16,6 +16,10 @@ impl Geometry for Discrete {
     fn evaluator(&self) -> DiscreteEvaluator<'_> {
         DiscreteEvaluator(self)
     }
+
+    fn is_plane(&self, face: u32) -> bool {
+        self.patches[face as usize].is_plane()
+    }
 }
 
 impl Evaluate for DiscreteEvaluator<'_> {

@@ -41,6 +41,11 @@ impl Patch {
         self.bounds
     }
 
+    /// Whether it lies in a plane.
+    pub fn is_plane(&self) -> bool {
+        self.plane.is_some()
+    }
+
     /// Number of its triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()
