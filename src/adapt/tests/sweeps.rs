@@ -2,6 +2,8 @@
 use super::bench::{Bench, Shape, Task, sample};
 use crate::adapt::core::ids::{FACE, TetId, VertexId};
 use crate::adapt::operations::reconnection::criteria::Criterion;
+use crate::mesh::vector::sub;
+use crate::metric::quality::edge_length;
 use crate::tasks::Team;
 use std::collections::BTreeSet;
 
@@ -27,6 +29,31 @@ fn each_was_done(done: [u64; 10]) {
 #[test]
 fn a_cube_stays_valid_while_it_is_refined() {
     each_was_done(rounds(Shape::Cube, 2, 0.4, 3));
+}
+
+/// The shortest new edge, and how many edges were split, in one sweep. None is to be shorter than 1.2, where the edge that is split is too long by no
+/// more than the power tells.
+fn split(power: f64) -> (f64, u64) {
+    let sample = sample(Shape::Cube, 4, 0.125);
+    let mut bench = Bench::new(&sample, 1, 7);
+    (bench.context.limits.shortest_new, bench.context.limits.short_for_long) = (1.2, power);
+    let old = bench.context.store.vertex_bound();
+    let done = bench.sweep(Task::Split).done;
+    let store = &bench.context.store;
+    let new = bench.edges().into_iter().filter(|edge| edge.a.index().max(edge.b.index()) >= old);
+    let lengths = new.map(|edge| {
+        let way = sub(store.position(edge.b), store.position(edge.a));
+        edge_length(way, &store.metric(edge.a), &store.metric(edge.b))
+    });
+    (lengths.fold(f64::INFINITY, f64::min), done)
+}
+
+#[test]
+fn only_a_long_edge_is_split_into_short_ones() {
+    let (shortest, few) = split(0.0);
+    assert!(shortest > 1.2 - 1e-9 && few > 0, "{shortest} {few}");
+    let (shortest, more) = split(1.0);
+    assert!(shortest < 1.1 && more > few, "{shortest} {few} {more}");
 }
 
 #[test]

@@ -35,6 +35,7 @@ fn a_cube_has_its_corners_edges_and_faces_with_normals_outward() {
     assert_eq!(classification.ridges.len(), 48);
     let mut evaluator = model.evaluator();
     for face in 0..6 {
+        assert!(model.is_plane(face));
         let [low, high] = topology.faces[face as usize].bounds;
         let middle: Vec3 = std::array::from_fn(|i| 0.5 * (low[i] + high[i]));
         let outward = unit(sub(middle, [0.5; 3]));

@@ -15,8 +15,8 @@ const FACTOR: f64 = 4.0;
 /// There are stages at all where the source's complexity is the first of these times that of a stage with the second as its factor.
 const ENTRY: (f64, f64) = (1.1, 16.0);
 
-/// Where sizes shrink by more than the factor of [`ENTRY`] there is an edge longer than this. The edges e of a tetrahedron in the metric in which all have length one
-/// have Σ (e·d)² = 2 along each unit vector d, so one of the six has a part of 1/√3 along it at the least.
+/// Where sizes shrink by more than the factor of [`ENTRY`] there is an edge longer than this: the six edges e of a unit tetrahedron have
+/// Σ (e·d)² = 2 along each unit vector d, so one of them has a part of 1/√3 along it at the least.
 const LONG: f64 = ENTRY.1 * 0.57;
 
 /// There is another stage where the source's complexity is so many times that of the stage.
@@ -93,11 +93,12 @@ impl Pipeline<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::adapt::core::ids::VertexId;
+    use crate::adapt::core::ids::{EDGE, VertexId};
     use crate::adapt::operations::reconnection::criteria::Criterion;
     use crate::adapt::schedule::work::{Kind, Silent};
     use crate::adapt::schedule::{Execution, Grains, Scheduler};
     use crate::adapt::tests::bench::{Bench, Sample, Shape, sample};
+    use crate::mesh::vector::sub;
     use crate::metric::{Background, Source, Sym3};
     use crate::tasks::{Plan, Pool};
 
@@ -144,6 +145,40 @@ mod tests {
             }
         });
         bench.check("a stage without passes");
+    }
+
+    #[test]
+    fn long_edges_tell_whether_there_are_stages() {
+        // Two metrics of much smaller cells of nearly the same shape, and three layers.
+        for (sample, has_stages) in [
+            (sample(Shape::Cube, 5, 0.05), false),
+            (sample(Shape::Cube, 5, 0.025), false),
+            (layer(2e-2), false),
+            (layer(3e-3), true),
+            (layer(1e-4), true),
+        ] {
+            let mut bench = Bench::new(&sample, 1, 3);
+            with_pipeline(&mut bench, |pipeline| {
+                let is_asked = pipeline.asked_for(ENTRY, 1.0).is_some();
+                assert_eq!(is_asked, has_stages);
+                assert!(pipeline.context.has_edge_longer(pipeline.team(), LONG) || !is_asked);
+            });
+        }
+        let sample = sample(Shape::Cube, 5, 0.05);
+        let mut bench = Bench::new(&sample, 1, 3);
+        let store = &bench.context.store;
+        let lengths = store.live_tets().flat_map(|t| {
+            let vertices = store.vertices(t);
+            EDGE.map(|[i, j]| {
+                let way = sub(store.position(vertices[j]), store.position(vertices[i]));
+                [i, j].map(|k| store.metric(vertices[k]).quadratic(way)).into_iter().fold(0.0, f64::max).sqrt()
+            })
+        });
+        let longest = lengths.fold(0.0, f64::max);
+        with_pipeline(&mut bench, |pipeline| {
+            let has = |limit: f64| pipeline.context.has_edge_longer(pipeline.team(), limit);
+            assert!(has(0.999 * longest) && !has(1.001 * longest));
+        });
     }
 
     #[test]
