@@ -354,7 +354,8 @@ pub(super) fn mean_exponential(values: [f64; 4]) -> f64 {
     least.exp() * sum
 }
 
-/// 1/(k + 3) of the terms k = 1, 2, … of [`mean_exponential`]: enough for sizes that differ by a factor of 1e20 within a tetrahedron.
+/// 1/(k + 3) for the terms k = 1, 2, … of [`mean_exponential`]. There are enough terms for sizes that differ by a factor of 1e20 within a
+/// tetrahedron.
 static RECIPROCALS: [f64; 600] = {
     let (mut reciprocals, mut i) = ([0.0; 600], 0);
     while i < reciprocals.len() {

@@ -10,7 +10,7 @@ const SHORT: f64 = 0.85;
 struct Image {
     /// The vertex that it goes onto; itself where it stays; [`OPEN`] where that is not decided.
     target: u32,
-    /// The vertex that looked at it last, or the number of that look.
+    /// Who looked at it last: a vertex, or a numbered look around one.
     seen: u32,
     /// Fourth power of the distance to its target.
     distance: f32,
@@ -21,7 +21,7 @@ const OPEN: u32 = u32::MAX;
 /// The vertices that stay, each with those that go onto it.
 pub struct VertexMap {
     images: Vec<Image>,
-    /// Looks around vertices, counted on from the number of vertices.
+    /// The number of the present look, greater than that of any vertex.
     look: u32,
 }
 

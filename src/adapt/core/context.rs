@@ -22,7 +22,7 @@ pub struct Limits {
     pub short: f64,
     /// No insertion makes an edge shorter than this, where the edge that is split is no longer than `long`.
     pub shortest_new: f64,
-    /// Where it is too long by a factor x, new edges may be shorter by x to the power of this.
+    /// Where that edge is longer by a factor x, `shortest_new` is divided by x to the power of this.
     pub short_for_long: f64,
     /// No collapse makes an edge longer than this.
     pub longest_new: f64,

@@ -3,9 +3,9 @@
 //! Where a layer is to be hundreds of times thinner than the cells, all edges of a tetrahedron are too long, those along the layer too. All
 //! are split, and later most of the new vertices are collapsed again. So the mesh comes to such a metric in stages.
 use super::context::Context;
-use super::ids::{TetId, VertexId};
+use super::ids::{EDGE, TetId, VertexId};
 use super::{fill, measure};
-use crate::mesh::adjacency::{EDGES, MatchedFaces};
+use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::vector::{Vec3, sub};
 use crate::mesh::{Elements, TetMesh};
 use crate::metric::implied::implied;
@@ -43,7 +43,7 @@ impl Context<'_> {
         let has_one = |t: TetId| {
             let vertices = store.vertices(t);
             let (points, metrics) = (vertices.map(|v| store.position(v)), vertices.map(|v| store.metric(v)));
-            EDGES.iter().any(|&[a, b]| {
+            EDGE.iter().any(|&[a, b]| {
                 let edge = sub(points[b], points[a]);
                 metrics[a].quadratic(edge).max(metrics[b].quadratic(edge)) > square
             })

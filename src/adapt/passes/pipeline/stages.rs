@@ -15,8 +15,8 @@ const FACTOR: f64 = 4.0;
 /// There are stages at all where the source's complexity is the first of these times that of a stage with the second as its factor.
 const ENTRY: (f64, f64) = (1.1, 16.0);
 
-/// Where sizes shrink by more than the factor of [`ENTRY`] there is an edge longer than this: the six edges e of a unit tetrahedron have
-/// Σ (e·d)² = 2 along each unit vector d, so one of them has a part of 1/√3 along it at the least.
+/// Where sizes are to shrink by more than the factor of [`ENTRY`], there is an edge longer than this in the metric: the six edges e of a unit
+/// tetrahedron have Σ (e·d)² = 2 along each unit vector d, so one of them has a part of 1/√3 along it at the least.
 const LONG: f64 = ENTRY.1 * 0.57;
 
 /// There is another stage where the source's complexity is so many times that of the stage.
@@ -46,7 +46,7 @@ fn stage_limits() -> Limits {
 impl Pipeline<'_, '_> {
     /// Brings the mesh near to its metric, in stages.
     pub(super) fn come_near(&mut self) {
-        // Most meshes are told by their edges, at a tenth of the cost of a stage.
+        // Where no edge is long there is no need for the metric that the mesh implies, which takes longer.
         if !self.context.has_edge_longer(self.team(), LONG) || self.asked_for(ENTRY, 1.0).is_none() {
             return;
         }
