@@ -34,6 +34,7 @@ pub fn end(folder: &Path, stop: &Stop, tell: &dyn Fn(&str)) -> Result<bool, Erro
     }
     let text = fs::read_to_string(folder.join(PID)).ok();
     let mut group = text.as_deref().and_then(Group::parse).filter(|group| group.is_there(&log));
+    let family = group.as_ref().map(Group::family).unwrap_or_default();
     group.iter().for_each(Group::ask_to_end);
     let (began, mut is_told) = (Instant::now(), false);
     while matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
@@ -52,6 +53,7 @@ pub fn end(folder: &Path, stop: &Stop, tell: &dyn Fn(&str)) -> Result<bool, Erro
         }
         std::thread::sleep(LOOK);
     }
+    family.end();
     Ok(true)
 }
 

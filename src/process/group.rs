@@ -1,6 +1,9 @@
 //! Groups of processes: ended together, and found again by a later run.
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// How long a killed process may take to end: the system gives back its memory meanwhile.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// A group of processes, by its first one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,6 +61,51 @@ impl Group {
         #[cfg(unix)]
         signal(self.id, libc::SIGKILL);
     }
+
+    /// Its processes with all that they have started, in other groups too; nothing on systems other than Linux.
+    pub fn family(&self) -> Family {
+        let mut others: Vec<_> = processes().filter_map(|id| Some((id, stat(id)?))).collect();
+        let mut found: Vec<u32> = Vec::new();
+        loop {
+            let is_one = |(_, words): &mut (u32, Vec<String>)| {
+                let is = |place: usize, id: u32| words.get(place).is_some_and(|word| *word == id.to_string());
+                is(2, self.id) || found.iter().any(|&parent| is(1, parent))
+            };
+            let new: Vec<u32> = others.extract_if(.., is_one).map(|(id, _)| id).collect();
+            if new.is_empty() {
+                break;
+            }
+            found.extend(new);
+        }
+        Family(found.into_iter().filter_map(|id| Some((id, since(id)?))).collect())
+    }
+}
+
+/// Processes by their numbers, with when they were started.
+///
+/// Those that OpenMPI's mpirun starts are in groups of their own. It ends them when it is asked to, but not where the machine is too busy
+/// for it, and not where it is killed.
+#[derive(Clone, Debug, Default)]
+pub struct Family(Vec<(u32, String)>);
+
+impl Family {
+    /// Ends those that still work, and waits until they have ended.
+    pub fn end(&self) {
+        let began = Instant::now();
+        let mut left: Vec<_> = self.0.iter().collect();
+        loop {
+            left.retain(|(id, start)| since(*id).as_ref() == Some(start));
+            if left.is_empty() || began.elapsed() > PATIENCE {
+                return;
+            }
+            for (id, _) in &left {
+                #[cfg(unix)]
+                // SAFETY: a call without memory.
+                let _ = i32::try_from(*id).map(|id| unsafe { libc::kill(id, libc::SIGKILL) });
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
 }
 
 #[cfg(unix)]
@@ -104,12 +152,16 @@ fn boot() -> Option<String> {
     std::fs::read_to_string("/proc/sys/kernel/random/boot_id").ok().map(|id| id.trim().to_owned())
 }
 
+/// All processes.
+fn processes() -> impl Iterator<Item = u32> {
+    let all = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok())
+}
+
 /// The processes of a group.
 fn members(group: u32) -> impl Iterator<Item = u32> {
-    let all = std::fs::read_dir("/proc").into_iter().flatten().flatten();
-    let numbers = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
     let group = group.to_string();
-    numbers.filter(move |&id| stat(id).is_some_and(|words| words[0] != "Z" && words.get(2) == Some(&group)))
+    processes().filter(move |&id| stat(id).is_some_and(|words| words[0] != "Z" && words.get(2) == Some(&group)))
 }
 
 /// Whether a process has a file open.
@@ -129,9 +181,7 @@ fn has_open(_: u32, _: &Path) -> bool {
 
 /// Who has a file open, other than this process, by number and command; none where the system does not tell.
 pub fn who_has_open(file: &Path) -> Option<String> {
-    let all = std::fs::read_dir("/proc").into_iter().flatten().flatten();
-    let mut numbers = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
-    let found = numbers.find(|&id| id != std::process::id() && has_open(id, file))?;
+    let found = processes().find(|&id| id != std::process::id() && has_open(id, file))?;
     Some(format!("process {found} ({})", command(found).unwrap_or_default()))
 }
 
@@ -184,5 +234,35 @@ mod tests {
             std::thread::sleep(Duration::from_millis(5));
         }
         assert!(!group.is_there(&log));
+    }
+
+    #[test]
+    fn a_family_ends_with_those_in_other_groups() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("id");
+        let mut command = Command::new("sh");
+        let inner =
+            format!("trap '' TERM; echo $$ > {0}.new; mv {0}.new {0}; while true; do sleep 0.1; done", path.display());
+        command.args(["-c", &format!("setsid sh -c \"{}\" & wait", inner.replace('$', "\\$"))]);
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut child = command.spawn().unwrap();
+        let began = std::time::Instant::now();
+        while !path.exists() {
+            assert!(began.elapsed() < Duration::from_secs(20), "it was not started");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let inner: u32 = std::fs::read_to_string(&path).unwrap().trim().parse().unwrap();
+        let group = Group::of(child.id());
+        let family = group.family();
+        assert!(
+            family.0.iter().any(|(id, _)| *id == inner) && !family.0.iter().any(|(id, _)| *id == std::process::id())
+        );
+        // A number that another process has now is left alone.
+        Family(vec![(inner, "1 of another time".into())]).end();
+        group.kill();
+        child.wait().unwrap();
+        assert!(since(inner).is_some());
+        family.end();
+        assert!(since(inner).is_none());
     }
 }

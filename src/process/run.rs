@@ -1,5 +1,5 @@
 //! Runs a program to its end.
-use super::group::{Group, end_with_parent, processor_time};
+use super::group::{Family, Group, end_with_parent, processor_time};
 use super::log::Log;
 use super::outcome::Outcome;
 use std::io;
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 const LOOK: Duration = Duration::from_millis(20);
 
 /// How long a program that was asked to end may take for it. OpenMPI's mpirun takes two seconds to end its processes, which are in groups of their
-/// own; where it is killed itself, they find out after three.
+/// own; those that it has not ended by then are ended here.
 const PATIENCE: Duration = Duration::from_secs(4);
 
 /// A program that waits for a busy machine has so many times its limit.
@@ -138,9 +138,11 @@ impl Runner<'_> {
         }
     }
 
-    /// Asks a program to end, and ends it where it does not.
+    /// Asks a program to end, and ends it where it does not, with all that it has started.
     fn end(&self, child: &mut Child, group: &Group) {
+        let mut family = Family::default();
         if self.tie != Tie::Shared {
+            family = group.family();
             group.ask_to_end();
             let asked = Instant::now();
             while asked.elapsed() < PATIENCE && !has_ended(child).unwrap_or(true) {
@@ -149,6 +151,7 @@ impl Runner<'_> {
         }
         self.kill(child, group);
         let _ = child.wait();
+        family.end();
     }
 
     fn kill(&self, child: &mut Child, group: &Group) {
