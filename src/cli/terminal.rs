@@ -81,9 +81,10 @@ pub fn check(done: io::Result<()>) -> Result<(), PrintError> {
     }
 }
 
-/// Writes a line to standard error. A failure is ignored: there is nobody to tell.
+/// Writes a line to standard error, in one piece: several processes may write to the same file. A failure is ignored: there is nobody to tell.
 pub fn tell(line: impl Display) {
-    let _ = aside(|| writeln!(io::stderr().lock(), "{line}"));
+    let line = format!("{line}\n");
+    let _ = aside(|| io::stderr().lock().write_all(line.as_bytes()));
 }
 
 /// Tells what the user should know.

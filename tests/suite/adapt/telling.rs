@@ -115,3 +115,20 @@ fn what_goes_into_a_file_has_no_colours() {
     assert!(terminal("").contains("\u{1b}[1;31merror:\u{1b}[0m none.sol"), "{}", terminal(""));
     assert!(terminal("1").contains("geo-adapt: error: none.sol") && !terminal("1").contains('\u{1b}'));
 }
+
+/// Several processes of one run write to the same file: an error in pieces would be mixed with that of another. A datagram is what one write was.
+#[cfg(unix)]
+#[test]
+fn an_error_is_written_in_one_piece() {
+    use std::os::{fd::OwnedFd, unix::net::UnixDatagram};
+    let (theirs, ours) = UnixDatagram::pair().unwrap();
+    ours.set_nonblocking(true).unwrap();
+    let stderr = std::process::Stdio::from(OwnedFd::from(theirs));
+    let run = program().args(["inspect", "/nowhere/mesh.meshb"]).stderr(stderr).output().unwrap();
+    assert_eq!(run.status.code(), Some(2));
+    let mut text = [0; 4096];
+    let length = ours.recv(&mut text).unwrap();
+    let said = std::str::from_utf8(&text[..length]).unwrap();
+    assert!(said.starts_with("geo-adapt: error: /nowhere/mesh.meshb") && said.ends_with('\n'), "{said}");
+    assert!(ours.recv(&mut text).is_err(), "more was written");
+}
