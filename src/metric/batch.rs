@@ -96,13 +96,13 @@ impl Batch {
     /// The tetrahedra with one apex p, its metric given as ln M.
     #[inline]
     pub fn shapes(&self, p: Vec3, log: &Sym3) -> Shapes {
-        self.shapes_each(&everywhere(p), &everywhere_tensor(log))
+        Shapes { cubes: cubes_at(self, p, log) }
     }
 
     /// The tetrahedra, each with an apex of its own.
     #[inline]
     pub fn shapes_each(&self, apex: &LaneVec3, log: &LaneSym3) -> Shapes {
-        Shapes { cubes: cubes(self, apex, log) }
+        Shapes { cubes: cubes_each(self, apex, log) }
     }
 }
 
@@ -189,8 +189,20 @@ fn deviator(batch: &Batch, log: &LaneSym3) -> LaneSym3 {
     s
 }
 
-/// Cubed mean ratios, 0 where the sign of the volume may be rounding.
+/// [`cubes`] with one apex: a number is broadcast faster than eight equal ones are written and read.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+fn cubes_at(batch: &Batch, apex: Vec3, log: &Sym3) -> Lanes {
+    cubes(batch, &everywhere(apex), &everywhere_tensor(log))
+}
+
+/// [`cubes`] with an apex each.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+fn cubes_each(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> Lanes {
+    cubes(batch, apex, log)
+}
+
+/// Cubed mean ratios, 0 where the sign of the volume may be rounding.
+#[inline(always)]
 fn cubes(batch: &Batch, apex: &LaneVec3, log: &LaneSym3) -> Lanes {
     let [a, b, c] = &batch.corners;
     let (pa, pb, pc) = (sub(apex, a), sub(apex, b), sub(apex, c));
@@ -250,12 +262,17 @@ impl IncidentEdges {
     /// Lengths of the edges to p, with the metric M there, by the log law of METHOD.md §1.3 (as [`super::quality::mean_length`]).
     #[inline]
     pub fn lengths(&self, p: Vec3, metric: &Sym3) -> [f64; LANES] {
-        lengths(self, &everywhere(p), &everywhere_tensor(metric)).0
+        lengths_to(self, p, metric).0
     }
 }
 
-/// The lengths of the edges to p, with the metric there.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+fn lengths_to(edges: &IncidentEdges, p: Vec3, metric: &Sym3) -> Lanes {
+    lengths(edges, &everywhere(p), &everywhere_tensor(metric))
+}
+
+/// The lengths of the edges to p, with the metric there.
+#[inline(always)]
 pub(super) fn lengths(edges: &IncidentEdges, p: &LaneVec3, metric: &LaneSym3) -> Lanes {
     let v = sub(&edges.ends, p);
     let here = dot(&v, &apply(metric, &v)).max(Lanes::all(f64::MIN_POSITIVE)).sqrt();

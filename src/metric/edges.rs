@@ -18,22 +18,20 @@ impl Default for TetLanes {
 }
 
 impl TetLanes {
-    /// The squared lengths of each edge in the metrics of its two ends, in the order of [`EDGES`].
+    /// Writes the squared lengths of each edge in the metrics of its two ends, in the order of [`EDGES`].
     #[inline]
-    pub fn squared_lengths(&self) -> [[Lanes; 2]; 6] {
-        squared_lengths(self)
+    pub fn squared_lengths(&self, lengths: &mut [[Lanes; 2]; 6]) {
+        squared_lengths(self, lengths);
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn squared_lengths(tets: &TetLanes) -> [[Lanes; 2]; 6] {
+fn squared_lengths(tets: &TetLanes, lengths: &mut [[Lanes; 2]; 6]) {
     // A plain loop: closures are not compiled for the features of this function.
-    let mut lengths = [[Lanes::ZERO; 2]; 6];
     for (lengths, [i, j]) in lengths.iter_mut().zip(EDGES) {
         let v = sub(&tets.points[j], &tets.points[i]);
         *lengths = [quadratic(&tets.metrics[i], &v), quadratic(&tets.metrics[j], &v)];
     }
-    lengths
 }
 
 /// vᵀMv, to the bit as [`Sym3::quadratic`](super::Sym3::quadratic).
@@ -62,7 +60,8 @@ mod tests {
                 (0..6).for_each(|i| tets.metrics[k][i].0[lane] = number(31 * lane + 17 * k + i + 500));
             }
         }
-        let found = tets.squared_lengths();
+        let mut found = [[Lanes::ZERO; 2]; 6];
+        tets.squared_lengths(&mut found);
         for lane in 0..LANES {
             let point = |k: usize| tets.points[k].map(|x| x.0[lane]);
             let metric = |k: usize| Sym3(tets.metrics[k].map(|x| x.0[lane]));

@@ -226,13 +226,14 @@ pub fn cross(a: &LaneVec3, b: &LaneVec3) -> LaneVec3 {
 /// The same vector in all lanes.
 #[inline(always)]
 pub fn everywhere(v: Vec3) -> LaneVec3 {
-    v.map(Lanes::all)
+    [Lanes::all(v[0]), Lanes::all(v[1]), Lanes::all(v[2])]
 }
 
 /// The same tensor in all lanes.
 #[inline(always)]
 pub fn everywhere_tensor(m: &Sym3) -> LaneSym3 {
-    m.0.map(Lanes::all)
+    let m = m.0;
+    [Lanes::all(m[0]), Lanes::all(m[1]), Lanes::all(m[2]), Lanes::all(m[3]), Lanes::all(m[4]), Lanes::all(m[5])]
 }
 
 /// tr(A B).

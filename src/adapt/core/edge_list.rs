@@ -139,7 +139,7 @@ fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: Wanted) -> V
     let mut found: Vec<Classed> = Vec::new();
     let mut recent = [u32::MAX; RECENT];
     let mut changed = store.live_tets_in(tets).filter(|&t| store.stamp(t) >= since).fuse();
-    let mut lanes = TetLanes::default();
+    let (mut lanes, mut lengths) = (TetLanes::default(), [[Lanes::ZERO; 2]; 6]);
     let mut some = [TetId::NONE; LANES];
     loop {
         let mut count = 0;
@@ -154,8 +154,9 @@ fn listed_in(store: &Store, tets: Range<usize>, since: u32, wanted: Wanted) -> V
             count += 1;
         }
         // Lanes beyond the count hold tetrahedra of before.
-        for ([i, j], [at_i, at_j]) in EDGES.into_iter().zip(lanes.squared_lengths()) {
-            if !wanted.may_be(at_i, at_j) {
+        lanes.squared_lengths(&mut lengths);
+        for ([i, j], [at_i, at_j]) in EDGES.into_iter().zip(&lengths) {
+            if !wanted.may_be(*at_i, *at_j) {
                 continue;
             }
             for (lane, &t) in some[..count].iter().enumerate() {
