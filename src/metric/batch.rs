@@ -133,6 +133,10 @@ struct Exponential {
 fn exponential(s: &LaneSym3, s2: &LaneSym3) -> Exponential {
     let p = (s2[0] + s2[2] + s2[5]) * (1.0 / 6.0);
     let r = det(s) * 0.5;
+    if !p.any_above(SERIES * SERIES) {
+        // As where sizes are the same in all directions.
+        return Exponential { a: series(&p, &r), root: Lanes::ZERO, spread: Lanes::ZERO };
+    }
     let least = Lanes::all(SERIES * SERIES);
     let safe = p.max(least);
     // The roots of x³ = 3p x + 2r: the isolated one, then y ≤ z.
@@ -149,7 +153,8 @@ fn exponential(s: &LaneSym3, s2: &LaneSym3) -> Exponential {
     let spread = close.max(x.abs() * 1.5 + close * 0.5);
     let a = if p.any_below(SERIES * SERIES) {
         let series = series(&p, &r);
-        [0, 1, 2].map(|i| p.above(SERIES * SERIES, newton[i], series[i]))
+        let chosen = |i: usize| p.above(SERIES * SERIES, newton[i], series[i]);
+        [chosen(0), chosen(1), chosen(2)]
     } else {
         newton
     };
@@ -181,7 +186,10 @@ fn cosine_of_third(t: Lanes) -> Lanes {
 /// The traceless part of the mean of ln M.
 #[inline(always)]
 fn deviator(batch: &Batch, log: &LaneSym3) -> LaneSym3 {
-    let mut s: LaneSym3 = std::array::from_fn(|i| (batch.log_sum[i] + log[i]) * 0.25);
+    let mut s = *log;
+    for i in 0..6 {
+        s[i] = (batch.log_sum[i] + log[i]) * 0.25;
+    }
     let mean = (s[0] + s[2] + s[5]) * (1.0 / 3.0);
     for i in [0, 2, 5] {
         s[i] = s[i] - mean;

@@ -19,8 +19,12 @@ pub fn form(s: &LaneSym3, root: Lanes, vectors: &[LaneVec3; 6]) -> Lanes {
         / (apart.abs() + hypotenuse).max(Lanes::all(f64::MIN_POSITIVE));
     let cosine = Lanes::all(1.0) / (t * t + 1.0).sqrt();
     let (sine, shift) = (t * cosine, t * b);
-    let first: LaneVec3 = std::array::from_fn(|i| cosine * u[i] - sine * w[i]);
-    let second: LaneVec3 = std::array::from_fn(|i| sine * u[i] + cosine * w[i]);
+    // No closures: they are not compiled for the features of the kernel.
+    let (mut first, mut second) = (u, u);
+    for i in 0..3 {
+        first[i] = cosine * u[i] - sine * w[i];
+        second[i] = sine * u[i] + cosine * w[i];
+    }
     let of_axis = dot(&axis, &apply(s, &axis));
     let (mut along_first, mut along_second, mut along_axis) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
     for v in vectors {
@@ -42,11 +46,13 @@ fn null_vector(s: &LaneSym3, root: Lanes) -> LaneVec3 {
     for candidate in [cross(&rows[1], &rows[2]), cross(&rows[2], &rows[0])] {
         let square = dot(&candidate, &candidate);
         let more = square - greatest;
-        best = std::array::from_fn(|i| more.above(0.0, candidate[i], best[i]));
+        for i in 0..3 {
+            best[i] = more.above(0.0, candidate[i], best[i]);
+        }
         greatest = more.above(0.0, square, greatest);
     }
     let over = Lanes::all(1.0) / greatest.sqrt();
-    best.map(|x| x * over)
+    [best[0] * over, best[1] * over, best[2] * over]
 }
 
 /// Two unit vectors that make an orthonormal frame with the unit vector n.
