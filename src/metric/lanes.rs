@@ -3,6 +3,10 @@
 //! Plain arrays whose operations the compiler turns into vector instructions; the kernels that use them are compiled for the
 //! baseline, for AVX2 and for AVX-512, and chosen at run time (`multiversion`). The elementary functions are polynomials
 //! of our own: a call of the library's functions would take one number at a time.
+//!
+//! Look at the disassembly of a kernel that is new or changed. A closure given to `map` or `from_fn` may become a function of its own, for the
+//! baseline; what is the same in all lanes comes as a number and is spread inside; and where whole `Lanes` become a mixture of gathers and single
+//! numbers, a loop over the lanes may not (docs/decisions/kernel-speed.md).
 use super::Sym3;
 use crate::mesh::vector::Vec3;
 use multiversion::multiversion;
