@@ -81,7 +81,7 @@ pub fn check(done: io::Result<()>) -> Result<(), PrintError> {
     }
 }
 
-/// Writes a line to standard error, in one piece: several processes may write to the same file. A failure is ignored: there is nobody to tell.
+/// Writes a line to standard error in one call, so that lines of several processes do not mix. A failure is ignored: there is nobody to tell.
 pub fn tell(line: impl Display) {
     let line = format!("{line}\n");
     let _ = aside(|| io::stderr().lock().write_all(line.as_bytes()));

@@ -134,7 +134,7 @@ fn exponential(s: &LaneSym3, s2: &LaneSym3) -> Exponential {
     let p = (s2[0] + s2[2] + s2[5]) * (1.0 / 6.0);
     let r = det(s) * 0.5;
     if !p.any_above(SERIES * SERIES) {
-        // As where sizes are the same in all directions.
+        // All are nearly isotropic.
         return Exponential { a: series(&p, &r), root: Lanes::ZERO, spread: Lanes::ZERO };
     }
     let least = Lanes::all(SERIES * SERIES);
@@ -197,7 +197,7 @@ fn deviator(batch: &Batch, log: &LaneSym3) -> LaneSym3 {
     s
 }
 
-/// [`cubes`] with one apex: a number is broadcast faster than eight equal ones are written and read.
+/// [`cubes`] with one apex, passed as numbers: eight equal ones would be written to memory and read again.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn cubes_at(batch: &Batch, apex: Vec3, log: &Sym3) -> Lanes {
     cubes(batch, &everywhere(apex), &everywhere_tensor(log))
@@ -274,6 +274,7 @@ impl IncidentEdges {
     }
 }
 
+/// [`lengths`] with p and its metric passed as numbers.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn lengths_to(edges: &IncidentEdges, p: Vec3, metric: &Sym3) -> Lanes {
     lengths(edges, &everywhere(p), &everywhere_tensor(metric))

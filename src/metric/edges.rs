@@ -27,7 +27,7 @@ impl TetLanes {
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn squared_lengths(tets: &TetLanes, lengths: &mut [[Lanes; 2]; 6]) {
-    // A plain loop: closures are not compiled for the features of this function.
+    // A loop: closures are not compiled for the features of the kernel.
     for (lengths, [i, j]) in lengths.iter_mut().zip(EDGES) {
         let v = sub(&tets.points[j], &tets.points[i]);
         *lengths = [quadratic(&tets.metrics[i], &v), quadratic(&tets.metrics[j], &v)];

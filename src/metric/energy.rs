@@ -82,8 +82,8 @@ fn weights(count: usize) -> Lanes {
 /// With v = ∇V/V and s = ∇S/S its gradient is (3s − 2v)/Q³ and its Hessian (6 (v − s)(v − s)ᵀ + 18 M̂/S)/Q³, which is positive definite: each
 /// tetrahedron's part is convex.
 ///
-/// A loop over the lanes, whose body the compiler vectorizes as it is. Of operations on whole [`Lanes`] it makes a mixture of gathers and single
-/// numbers here, seven times as slow with AVX-512.
+/// The compiler vectorizes the loop over the lanes. From operations on whole [`Lanes`] it made gathers here, and operations on single numbers,
+/// which took several times as long with AVX-512.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn add_tets(sum: &mut Energy, triangles: &Batch, metrics: &LaneSym3, energies: &Lanes) {
     let ([p0, p1, p2], own) = (sum.at, sum.metric.0);

@@ -4,9 +4,11 @@
 //! baseline, for AVX2 and for AVX-512, and chosen at run time (`multiversion`). The elementary functions are polynomials
 //! of our own: a call of the library's functions would take one number at a time.
 //!
-//! Look at the disassembly of a kernel that is new or changed. A closure given to `map` or `from_fn` may become a function of its own, for the
-//! baseline; what is the same in all lanes comes as a number and is spread inside; and where whole `Lanes` become a mixture of gathers and single
-//! numbers, a loop over the lanes may not (docs/decisions/kernel-speed.md).
+//! Look at the disassembly of a kernel that is new or changed (docs/decisions/kernel-speed.md):
+//!
+//! - A closure for `map` or `from_fn` may be compiled for the baseline. Write a loop, or the elements one by one.
+//! - What is the same in all lanes is passed as a number.
+//! - Operations on whole `Lanes` may become gathers. A loop over the lanes may then be vectorized.
 use super::Sym3;
 use crate::mesh::vector::Vec3;
 use multiversion::multiversion;

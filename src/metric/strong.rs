@@ -19,7 +19,7 @@ pub fn form(s: &LaneSym3, root: Lanes, vectors: &[LaneVec3; 6]) -> Lanes {
         / (apart.abs() + hypotenuse).max(Lanes::all(f64::MIN_POSITIVE));
     let cosine = Lanes::all(1.0) / (t * t + 1.0).sqrt();
     let (sine, shift) = (t * cosine, t * b);
-    // No closures: they are not compiled for the features of the kernel.
+    // A loop: closures are not compiled for the features of the kernel.
     let (mut first, mut second) = (u, u);
     for i in 0..3 {
         first[i] = cosine * u[i] - sine * w[i];

@@ -65,26 +65,26 @@ impl Group {
     /// Its processes with all that they have started, in other groups too; nothing on systems other than Linux.
     pub fn family(&self) -> Family {
         let mut others: Vec<_> = processes().filter_map(|id| Some((id, stat(id)?))).collect();
-        let mut found: Vec<u32> = Vec::new();
+        let mut found: Vec<(u32, Vec<String>)> = Vec::new();
         loop {
             let is_one = |(_, words): &mut (u32, Vec<String>)| {
                 let is = |place: usize, id: u32| words.get(place).is_some_and(|word| *word == id.to_string());
-                is(2, self.id) || found.iter().any(|&parent| is(1, parent))
+                is(2, self.id) || found.iter().any(|&(parent, _)| is(1, parent))
             };
-            let new: Vec<u32> = others.extract_if(.., is_one).map(|(id, _)| id).collect();
+            let new: Vec<_> = others.extract_if(.., is_one).collect();
             if new.is_empty() {
                 break;
             }
             found.extend(new);
         }
-        Family(found.into_iter().filter_map(|id| Some((id, since(id)?))).collect())
+        Family(found.into_iter().filter_map(|(id, words)| Some((id, start(&words)?))).collect())
     }
 }
 
 /// Processes by their numbers, with when they were started.
 ///
-/// Those that OpenMPI's mpirun starts are in groups of their own. It ends them when it is asked to, but not where the machine is too busy
-/// for it, and not where it is killed.
+/// OpenMPI's mpirun starts its processes in groups of their own. It ends them when it is asked to, unless the machine is so busy that it is
+/// killed before.
 #[derive(Clone, Debug, Default)]
 pub struct Family(Vec<(u32, String)>);
 
@@ -141,9 +141,14 @@ fn stat(id: u32) -> Option<Vec<String>> {
     Some(text.rsplit_once(')')?.1.split_ascii_whitespace().map(str::to_owned).collect())
 }
 
-/// Of a process that works: one that has ended and was not waited for does not.
+/// When a process was started; none where it has ended, even if nobody has waited for it.
 fn since(id: u32) -> Option<String> {
-    let words = stat(id).filter(|words| words[0] != "Z")?;
+    start(&stat(id)?)
+}
+
+/// The same from what [`stat`] says.
+fn start(words: &[String]) -> Option<String> {
+    (words.first()? != "Z").then_some(())?;
     Some(format!("{} {}", words.get(19)?, boot()?))
 }
 

@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 /// Longest time between two looks at a program. One that has just begun is looked at sooner.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// How long a program that was asked to end may take for it. OpenMPI's mpirun takes two seconds to end its processes, which are in groups of their
-/// own; those that it has not ended by then are ended here.
+/// How long a program that was asked to end may take for it. OpenMPI's mpirun takes two seconds to end its processes, which are in
+/// groups of their own.
 const PATIENCE: Duration = Duration::from_secs(4);
 
 /// A program that waits for a busy machine has so many times its limit.
