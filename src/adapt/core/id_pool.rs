@@ -2,16 +2,22 @@
 use super::ids::{TetId, VertexId};
 use super::refusal::Refusal;
 use super::store::Store;
+use crate::tasks::Team;
 use std::ops::Range;
 
 /// Fresh ids are taken from the store in blocks of this size.
 pub const ID_BLOCK: usize = 64;
+
+/// Blocks that a task marks as free.
+const BLOCKS: usize = 64;
 
 /// Ids that a thread, or a part of the mesh, may use. Those given back last are used first.
 #[derive(Default)]
 pub struct IdPool {
     vertices: Vec<VertexId>,
     tets: Vec<TetId>,
+    /// Blocks of the vertices and of the tetrahedra that others have passed over: used before fresh ones.
+    blocks: [Vec<Range<u32>>; 2],
     stripes: Option<[Stripe; 2]>,
 }
 
@@ -41,17 +47,17 @@ impl IdPool {
     }
 
     fn fresh_vertices(&mut self, store: &Store) -> Option<Range<u32>> {
-        match &mut self.stripes {
+        self.blocks[0].pop().or_else(|| match &mut self.stripes {
             None => store.take_vertices(ID_BLOCK),
             Some([vertices, _]) => store.take_vertices_at(vertices.advance(), ID_BLOCK),
-        }
+        })
     }
 
     fn fresh_tets(&mut self, store: &Store) -> Option<Range<u32>> {
-        match &mut self.stripes {
+        self.blocks[1].pop().or_else(|| match &mut self.stripes {
             None => store.take_tets(ID_BLOCK),
             Some([_, tets]) => store.take_tets_at(tets.advance(), ID_BLOCK),
-        }
+        })
     }
 
     /// Makes sure that `count` tetrahedron ids are at hand.
@@ -73,6 +79,7 @@ impl IdPool {
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.tets.clear();
+        self.blocks = Default::default();
     }
 
     /// Gives a vertex id back.
@@ -92,37 +99,42 @@ impl IdPool {
         let mut share = |part: usize| Self {
             vertices: split_last(&mut self.vertices, parts - part),
             tets: split_last(&mut self.tets, parts - part),
+            blocks: self.blocks.each_mut().map(|blocks| split_last(blocks, parts - part)),
             stripes: Some(bounds.map(|bound| Stripe { next: bound + part * ID_BLOCK, step: parts * ID_BLOCK })),
         };
         (0..parts).map(&mut share).collect()
     }
 
-    /// Joins the pools that were split off, and adds the fresh ids that were passed over.
-    pub fn merge(&mut self, store: &Store, parts: Vec<Self>) {
-        let farthest = |kind: usize| {
-            let ends = parts.iter().enumerate().filter_map(|(part, pool)| {
-                let stripe = pool.stripes?[kind];
-                // In whole rounds of all parts.
-                Some(stripe.next - part * ID_BLOCK)
-            });
-            ends.max().unwrap_or(0)
-        };
-        let ends = [farthest(0), farthest(1)];
-        for (part, mut pool) in parts.into_iter().enumerate() {
-            while let Some([vertices, _]) = &mut pool.stripes
-                && vertices.next - part * ID_BLOCK < ends[0]
-            {
-                let block = store.take_vertices_at(vertices.advance(), ID_BLOCK);
-                pool.vertices.extend(block.into_iter().flatten().map(VertexId));
-            }
-            while let Some([_, tets]) = &mut pool.stripes
-                && tets.next - part * ID_BLOCK < ends[1]
-            {
-                let block = store.take_tets_at(tets.advance(), ID_BLOCK);
-                pool.tets.extend(block.into_iter().flatten().map(TetId));
-            }
+    /// Joins the pools that were split off, and adds the fresh blocks that were passed over.
+    pub fn merge(&mut self, team: Team<'_>, store: &Store, parts: Vec<Self>) {
+        let mut stripes = Vec::with_capacity(parts.len());
+        for mut pool in parts {
             self.vertices.append(&mut pool.vertices);
             self.tets.append(&mut pool.tets);
+            self.blocks.iter_mut().zip(&mut pool.blocks).for_each(|(all, blocks)| all.append(blocks));
+            stripes.extend(pool.stripes);
+        }
+        for (kind, blocks) in self.blocks.iter_mut().enumerate() {
+            let mut passed_over = Vec::new();
+            // All stripes go as far as the longest.
+            let rounds = |stripe: &Stripe, part: usize| stripe.next - part * ID_BLOCK;
+            let end = stripes.iter().enumerate().map(|(part, stripe)| rounds(&stripe[kind], part)).max().unwrap_or(0);
+            for (part, stripe) in stripes.iter_mut().enumerate() {
+                while rounds(&stripe[kind], part) < end {
+                    passed_over.push(stripe[kind].advance());
+                }
+            }
+            let take = |start: &usize| match kind {
+                0 => store.take_vertices_at(*start, ID_BLOCK),
+                _ => store.take_tets_at(*start, ID_BLOCK),
+            };
+            blocks.extend(
+                team.chunks(BLOCKS, passed_over.len(), |range| {
+                    passed_over[range].iter().filter_map(take).collect::<Vec<_>>()
+                })
+                .into_iter()
+                .flatten(),
+            );
         }
     }
 }
@@ -154,12 +166,13 @@ mod tests {
                 parts[part].vertex(&store).unwrap();
             }
         }
-        all.merge(&store, parts);
-        let free: BTreeSet<_> = all.tets.iter().copied().collect();
-        assert_eq!(free.len(), all.tets.len());
+        all.merge(Team::alone(), &store, parts);
+        let blocks = all.blocks.clone().map(|blocks| blocks.into_iter().flatten().collect::<Vec<_>>());
+        let free: BTreeSet<_> = all.tets.iter().copied().chain(blocks[1].iter().copied().map(TetId)).collect();
+        assert_eq!(free.len(), all.tets.len() + blocks[1].len());
         assert!(free.is_disjoint(&used));
         assert_eq!(free.len() + used.len(), store.tet_bound(), "every id below the bound is used or free");
-        assert_eq!(all.vertices.len() + 650, store.vertex_bound());
+        assert_eq!(all.vertices.len() + blocks[0].len() + 650, store.vertex_bound());
     }
 
     #[test]

@@ -201,15 +201,15 @@ impl Store {
         }
     }
 
-    /// Makes room for at least so many more vertices and tetrahedra, and where that takes growth for several times as many if there is
-    /// memory for it, so that it is seldom: untouched pages cost none. Whether there was memory for what is needed: if not, what has no
-    /// room is refused. Between sweeps only.
-    pub fn reserve(&mut self, team: Team<'_>, vertices: usize, tets: usize) -> bool {
+    /// Makes room for at least so many more vertices and tetrahedra, and where that takes growth for several times as many, and for `expected`
+    /// vertices and tetrahedra in all, if there is memory for it, so that it is seldom: untouched pages cost none. Whether there was memory
+    /// for what is needed: if not, what has no room is refused. Between sweeps only.
+    pub fn reserve(&mut self, team: Team<'_>, [vertices, tets]: [usize; 2], expected: [usize; 2]) -> bool {
         let used = self.vertex_bound();
         let needed = used + vertices;
         if needed > self.vertices.len() {
             // Ids go as far as the vertices' own array, so the others grow before it.
-            let has_grown = capacities(needed, used + 3 * needed).any(|room| {
+            let has_grown = capacities(needed, expected[0].max(used + 3 * needed)).any(|room| {
                 self.make_owners(room)
                     && rehouse(team, &mut self.places, used, room)
                     && rehouse(team, &mut self.vertices, used, room)
@@ -221,7 +221,8 @@ impl Store {
         let used = self.tet_bound();
         let needed = used + tets;
         needed <= self.tets.len()
-            || capacities(needed, used + 3 * needed).any(|room| rehouse(team, &mut self.tets, used, room))
+            || capacities(needed, expected[1].max(used + 3 * needed))
+                .any(|room| rehouse(team, &mut self.tets, used, room))
     }
 
     /// For a mesh that will have so many vertices and tetrahedra, writes to each page of the records that it does not use yet, on all threads. The

@@ -22,15 +22,16 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 /// Their numbers fit in a byte.
 pub const MOST_PARTS: usize = 128;
 
-/// Least items a part in the first round, where that leaves more than [`FEW`] parts. In larger parts fewer items meet another part.
+/// Least items a part in the first round, where that leaves more than [`FEW`] parts: so many flips, or what takes as long
+/// ([`Operation::EFFORT`]). In larger parts fewer items meet another part.
 /// Few in the unit tests, whose meshes are small.
 const ITEMS: usize = if cfg!(test) { 12 } else { 4096 };
 
 /// Short lists have so many parts, if each gets [`FEWEST_ITEMS`].
 const FEW: usize = 32;
 
-/// Least items a part.
-const FEWEST_ITEMS: usize = if cfg!(test) { 6 } else { 1024 };
+/// Least items a part, as those.
+const FEWEST_ITEMS: usize = if cfg!(test) { 6 } else { 512 };
 
 /// When less than this share of all items is left, one thread does the rest.
 const LITTLE: f64 = 0.003;
@@ -54,6 +55,9 @@ const KNOWN_AHEAD: usize = 16;
 const WAITS: u32 = u32::MAX;
 const GONE: u32 = u32::MAX - 1;
 
+/// An item and its number.
+type Numbered<O> = (u32, <O as Operation>::Item);
+
 /// What a part has of its own in a round, and its results.
 struct Part {
     id_pool: IdPool,
@@ -74,7 +78,7 @@ pub fn run<'m, O: Operation>(
 ) -> Counts {
     let mut counts = Counts::default();
     let mut left: Vec<u32> = (0..items.len() as u32).collect();
-    let (mut parts, mut shared) = (first_parts(items.len()), false);
+    let (mut parts, mut shared) = (first_parts(O::EFFORT * items.len()), false);
     loop {
         if parts < 2 || (left.len() as f64) < LITTLE * items.len() as f64 {
             let rest: Vec<_> = left.iter().map(|&i| items[i as usize]).collect();
@@ -93,7 +97,7 @@ pub fn run<'m, O: Operation>(
         }
         // What is left lies between the parts of this round, and is cut elsewhere in the next. Fewer and larger parts have less between them.
         let most = if 2 * left.len() > before { parts / 2 } else { parts };
-        parts = most.min(power(left.len() / FEWEST_ITEMS));
+        parts = most.min(power(O::EFFORT * left.len() / FEWEST_ITEMS));
         shared = true;
     }
 }
@@ -143,7 +147,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         let team = Team::new(self.pool, self.plan);
         self.assign_owners(&Parts::of(team, store, self.left.len(), |at| self.item(self.left[at]), self.parts));
         let parts_of = self.parts_of_items();
-        let (sorted, starts, mut again) = self.sorted(&parts_of, counts);
+        let (sorted, starts, waiting) = self.sorted(&parts_of, counts);
         let id_pools = threads[0].state.id_pool.split(store, self.parts);
         let part = |id_pool| Part { id_pool, unprojected: Vec::new(), counts: Counts::default(), again: Vec::new() };
         let parts: Vec<_> = id_pools.into_iter().map(|id_pool| Mutex::new(part(id_pool))).collect();
@@ -159,6 +163,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
             }
         });
         let parts: Vec<_> = parts.into_iter().map(|part| part.into_inner().expect("no part failed")).collect();
+        let mut again = team.map(GRAIN, waiting.len(), |at| waiting[at].0);
         let mut id_pools = Vec::with_capacity(parts.len());
         for part in parts {
             counts.add(&part.counts);
@@ -166,7 +171,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
             threads[0].state.unprojected.extend(part.unprojected);
             id_pools.push(part.id_pool);
         }
-        threads[0].state.id_pool.merge(store, id_pools);
+        threads[0].state.id_pool.merge(team, store, id_pools);
         team.sort(&mut again);
         again
     }
@@ -226,8 +231,8 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         between
     }
 
-    /// The items' numbers sorted by part, where each part begins, and the items that wait. Items that are gone are counted as `Stale`.
-    fn sorted(&self, parts_of: &[u32], counts: &mut Counts) -> (Vec<u32>, Vec<usize>, Vec<u32>) {
+    /// The items with their numbers, sorted by part, where each part begins, and those that wait. Items that are gone are counted as `Stale`.
+    fn sorted(&self, parts_of: &[u32], counts: &mut Counts) -> (Vec<Numbered<O>>, Vec<usize>, Vec<Numbered<O>>) {
         // Each task deals a share out, by places: the parts', then that of those that wait, then that of those that are gone.
         let place = |part: u32| (part as usize).min(self.parts) + usize::from(part == GONE);
         let places = self.parts + 2;
@@ -237,10 +242,10 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
             // Counted two places on: while the items are dealt out, each start moves to the next one's place.
             parts_of[range.clone()].iter().for_each(|&part| starts[place(part) + 2] += 1);
             (1..starts.len()).for_each(|at| starts[at] += starts[at - 1]);
-            let mut dealt = vec![0; range.len()];
+            let mut dealt = vec![(0, self.items[0]); range.len()];
             for (&number, &part) in self.left[range.clone()].iter().zip(&parts_of[range]) {
                 let at = &mut starts[place(part) + 1];
-                dealt[*at as usize] = number;
+                dealt[*at as usize] = (number, self.item(number));
                 *at += 1;
             }
             (starts, dealt)
@@ -248,7 +253,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         let slices = |place: usize| {
             shares.iter().map(move |(starts, dealt)| &dealt[starts[place] as usize..starts[place + 1] as usize])
         };
-        let count = |place: usize| slices(place).map(<[u32]>::len).sum::<usize>();
+        let count = |place: usize| slices(place).map(<[Numbered<O>]>::len).sum::<usize>();
         let mut starts = vec![0; self.parts + 1];
         (0..self.parts).for_each(|part| starts[part + 1] = starts[part] + count(part));
         (0..count(self.parts + 1)).for_each(|_| counts.record(Err(Refusal::Stale)));
@@ -259,7 +264,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     /// Does the items of one part.
     fn work(
         &self,
-        numbers: &[u32],
+        items: &[Numbered<O>],
         index: usize,
         part: &mut Part,
         thread: &mut ThreadContext<'_, 'm, O>,
@@ -269,12 +274,12 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         let own = std::mem::take(&mut state.unprojected);
         std::mem::swap(&mut state.id_pool, &mut part.id_pool);
         let mut worker = Worker::new(self.context, state, Owned::new(index));
-        for start in (0..numbers.len()).step_by(STRIDE) {
-            let some = &numbers[start..numbers.len().min(start + STRIDE)];
+        for start in (0..items.len()).step_by(STRIDE) {
+            let some = &items[start..items.len().min(start + STRIDE)];
             let waiting = part.again.len();
-            for (at, &number) in (start..).zip(some) {
-                fetch_ahead(&self.context.store, |n| numbers.get(at + n).map(|&number| self.item(number)));
-                let result = self.operation.attempt(&mut worker, scratch, self.item(number));
+            for (at, &(number, item)) in (start..).zip(some) {
+                fetch_ahead(&self.context.store, |n| items.get(at + n).map(|&(_, item)| item));
+                let result = self.operation.attempt(&mut worker, scratch, item);
                 part.counts.record(result);
                 if result == Err(Refusal::Conflict) {
                     part.again.push(number);

@@ -155,6 +155,9 @@ pub trait Operation: Sync {
     /// Whether it needs all tetrahedra at the vertices of its item.
     const WHOLE_BALLS: bool;
 
+    /// How many times as long as a try of a flip its try takes, about.
+    const EFFORT: usize = 1;
+
     /// Tries it on one item.
     fn attempt<A: Access>(
         &self,

@@ -140,9 +140,9 @@ fn renumbering_leaves_a_valid_mesh_without_dead_records() {
         assert!(places(&bench) == before);
         // At once again nothing changes, and work can go on.
         assert!(bench.context.reorder(Team::alone()).unwrap().into_iter().zip(0..).all(|(v, old)| v.0 == old));
-        bench.context.store.reserve(Team::alone(), 1000, 6000);
+        bench.context.store.reserve(Team::alone(), [1000, 6000], [0; 2]);
         bench.context.store.trim();
-        bench.context.store.reserve(Team::alone(), 1000, 6000);
+        bench.context.store.reserve(Team::alone(), [1000, 6000], [0; 2]);
         bench.sweep(Task::Split);
         bench.sweep(Task::Smooth);
     }

@@ -8,7 +8,7 @@ const LINE: usize = 64;
 
 /// Asks for the cache line that holds an address. Any address will do: where there is nothing, nothing happens.
 #[inline(always)]
-fn fetch<T>(at: *const T) {
+pub(super) fn fetch<T>(at: *const T) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch reads nothing that the program sees, and faults at no address.
     unsafe {

@@ -1,6 +1,7 @@
 //! Renumbering along a space-filling curve: what is near in space comes near in memory, and dead records go.
 //!
 //! Tetrahedra are most of the memory. They are moved by halves of their records, through a list half as large as they are.
+use super::fetch::fetch;
 use super::{PlaceRecord, ROOM, Store, TetRecord, VertexRecord, rehouse, roomy};
 use crate::adapt::core::ids::{TetId, VertexId};
 use crate::adapt::core::numbering::{by_first, inverse};
@@ -15,6 +16,9 @@ pub struct Torn;
 
 /// Memory is given back when at least one in so many records is dead.
 const DEAD: usize = 8;
+
+/// Records are asked for when they are so many places ahead.
+const AHEAD: usize = 12;
 
 impl Store {
     /// Numbers the mesh along the Hilbert curve; returns for each old vertex id the new one (`NONE` for dead ones). Blocks of ids
@@ -79,7 +83,8 @@ impl Store {
         let room = if many_dead { 2 * order.len() + ROOM } else { self.vertices.len() };
         let mut vertices: Vec<VertexRecord> = roomy(order.len(), room);
         team.fill(GRAIN, &mut vertices[..order.len()], |start, chunk| {
-            for (to, &old) in chunk.iter_mut().zip(&order[start..]) {
+            for (new, (to, &old)) in (start..).zip(chunk.iter_mut().zip(&order[start..])) {
+                fetch_ahead(&self.vertices, order, new, AHEAD);
                 *to = self.vertices[old as usize].moved();
             }
         });
@@ -91,7 +96,8 @@ impl Store {
         places.truncate(self.owners.len());
         self.vertices.truncate(self.owners.len());
         team.fill(GRAIN, &mut places[..order.len()], |start, chunk| {
-            for (to, &old) in chunk.iter_mut().zip(&order[start..]) {
+            for (new, (to, &old)) in (start..).zip(chunk.iter_mut().zip(&order[start..])) {
+                fetch_ahead(&self.places, order, new, AHEAD);
                 *to = self.places[old as usize].moved(number);
             }
         });
@@ -105,12 +111,19 @@ impl Store {
     fn move_tets(&mut self, team: Team<'_>, order: &[u32], number: &[VertexId], tet_number: &[TetId]) {
         let Self { tets, vertices, .. } = self;
         let renumbered = |n: u32| if n == TetId::NONE.0 { n } else { tet_number[n as usize].0 };
-        let links = team.map(GRAIN, order.len(), |new| {
+        // The list holds one half, then the other: a second list would be new memory, which the system fills with zeroes first.
+        let mut halves = team.map(GRAIN, order.len(), |new| {
+            fetch_ahead(tets, order, new, 2 * AHEAD);
+            if let Some(&next) = order.get(new + AHEAD) {
+                let TetRecord { vertices, neighbours, .. } = &tets[next as usize];
+                load(vertices).iter().for_each(|v| fetch(number.as_ptr().wrapping_add(*v as usize)));
+                load(neighbours).iter().for_each(|n| fetch(tet_number.as_ptr().wrapping_add(*n as usize)));
+            }
             let TetRecord { vertices, neighbours, .. } = &tets[order[new] as usize];
             (load(vertices).map(|v| number[v as usize].0), load(neighbours).map(renumbered))
         });
         team.fill(GRAIN, &mut tets[..order.len()], |start, chunk| {
-            for (tet, (to, (of, neighbours))) in (start as u32..).zip(chunk.iter_mut().zip(&links[start..])) {
+            for (tet, (to, (of, neighbours))) in (start as u32..).zip(chunk.iter_mut().zip(&halves[start..])) {
                 (to.vertices, to.neighbours) = (of.map(AtomicU32::new), neighbours.map(AtomicU32::new));
                 for v in *of {
                     let first = &vertices[v as usize].tet;
@@ -120,17 +133,25 @@ impl Store {
                 }
             }
         });
-        drop(links);
-        let marks = team.map(GRAIN, order.len(), |new| {
+        team.remap(GRAIN, &mut halves, order.len(), |new| {
+            fetch_ahead(tets, order, new, AHEAD);
             let TetRecord { tags, region, quality, stamp, moved, .. } = &tets[order[new] as usize];
             (load(tags), [region, quality, stamp, moved].map(|field| field.load(Relaxed)))
         });
         team.fill(GRAIN, &mut tets[..order.len()], |start, chunk| {
-            for (to, (tags, fields)) in chunk.iter_mut().zip(&marks[start..]) {
+            for (to, (tags, fields)) in chunk.iter_mut().zip(&halves[start..]) {
                 to.tags = tags.map(AtomicU32::new);
                 [to.region, to.quality, to.stamp, to.moved] = fields.map(AtomicU32::new);
             }
         });
+    }
+}
+
+/// Asks for the record that is moved to the place so many behind this one.
+#[inline(always)]
+fn fetch_ahead<T>(records: &[T], order: &[u32], new: usize, ahead: usize) {
+    if let Some(&old) = order.get(new + ahead) {
+        fetch(&raw const records[old as usize]);
     }
 }
 

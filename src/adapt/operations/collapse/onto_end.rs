@@ -28,6 +28,7 @@ impl Operation for Collapse {
     type Item = EdgeItem;
     type Scratch = CollapseScratch;
     const WHOLE_BALLS: bool = true;
+    const EFFORT: usize = 4;
 
     fn attempt<A: Access>(
         &self,

@@ -33,6 +33,9 @@ const TETS_A_VERTEX: usize = 12;
 /// A mesh has so many tetrahedra a vertex.
 const USUAL_TETS: f64 = 5.6;
 
+/// Ids of so many times the records that are expected are in use in the end, with those of dead ones.
+const SPARE: f64 = 1.3;
+
 /// With this share of the vertices that it may have, a mesh has them all: of the last edges most are refused.
 const FULL: f64 = 0.995;
 
@@ -145,7 +148,9 @@ impl Pipeline<'_, '_> {
         let vertices = 2 * new + slack;
         let tets = TETS_A_VERTEX * new + store.tet_bound() / 4 + slack;
         let room = store.room();
-        if (room.0 < vertices || room.1 < tets) && !store.reserve(team, vertices, tets) {
+        let most = self.expected.min(self.max_vertices as f64);
+        let expected = [most, USUAL_TETS * most].map(|count| (SPARE * count) as usize);
+        if (room.0 < vertices || room.1 < tets) && !store.reserve(team, [vertices, tets], expected) {
             // Without memory the mesh stays as large as it is.
             self.growth_end.get_or_insert(GrowthEnd::Memory);
         }
@@ -258,11 +263,23 @@ mod tests {
         let sample = sample(Shape::Cube, 2, 0.5);
         let mut bench = Bench::new(&sample, 1, 3);
         let room = bench.context.store.room();
-        assert!(!bench.context.store.reserve(Team::alone(), 1 << 42, 1000));
-        assert!(!bench.context.store.reserve(Team::alone(), 0, 1 << 42));
+        assert!(!bench.context.store.reserve(Team::alone(), [1 << 42, 1000], [0; 2]));
+        assert!(!bench.context.store.reserve(Team::alone(), [0, 1 << 42], [0; 2]));
         assert_eq!(bench.context.store.room(), room);
         bench.check("a reserve without memory");
-        assert!(bench.context.store.reserve(Team::alone(), 1 << 16, 1 << 16));
+        assert!(bench.context.store.reserve(Team::alone(), [1 << 16, 1 << 16], [0; 2]));
+    }
+
+    #[test]
+    fn a_store_that_grows_gets_room_for_what_is_expected() {
+        let sample = sample(Shape::Cube, 2, 0.5);
+        let mut bench = Bench::new(&sample, 1, 3);
+        let store = &mut bench.context.store;
+        let expected = [1_000_000, 6_000_000];
+        assert!(store.reserve(Team::alone(), [1 << 17, 1 << 20], expected));
+        let room = store.room();
+        assert!(room.0 + store.vertex_bound() >= expected[0] && room.1 + store.tet_bound() >= expected[1], "{room:?}");
+        bench.check("a reserve for what is expected");
     }
 
     #[test]
@@ -275,7 +292,7 @@ mod tests {
         }
         let sample = sample(Shape::Cube, 2, 0.5);
         let mut bench = Bench::new(&sample, 1, 3);
-        assert!(bench.context.store.reserve(Team::alone(), most / 2, 1 << 16));
+        assert!(bench.context.store.reserve(Team::alone(), [most / 2, 1 << 16], [0; 2]));
         assert!(bench.context.store.room().0 >= most / 2);
         bench.check("a reserve with little memory");
     }
