@@ -69,16 +69,24 @@ fn class(fourth_power: f64) -> u16 {
 /// Ranks that [`in_order`] tells apart.
 pub const RANKS: usize = 4 * CLASSES as usize;
 
+/// Edges that a thread sorts at the least.
+const SHARE: usize = if cfg!(test) { 64 } else { 1 << 13 };
+
+/// Ranges of the ranks that are looked through side by side.
+const RANGES: usize = 64;
+
 /// The edges in the order of their ranks, which are less than [`RANKS`]. Edges of one rank, whose lengths hardly differ, stay in the
 /// order of the mesh, so that consecutive items are near in memory. Each thread sorts a part of the edges by counting.
 pub fn in_order(team: Team<'_>, edges: &[Classed], rank: impl Fn(&Classed) -> u32 + Sync) -> Vec<EdgeItem> {
-    let share = edges.len().div_ceil(team.threads()).max(1);
+    let share = edges.len().div_ceil(team.threads()).max(SHARE);
     let parts = team.chunks(share, edges.len(), |range| sorted_by_rank(&edges[range], &rank));
     if let [_] = parts[..] {
         return parts.into_iter().flat_map(|(_, items)| items).collect();
     }
     let of_rank = |rank: usize| parts.iter().map(move |(starts, items)| &items[starts[rank]..starts[rank + 1]]);
-    let slices: Vec<_> = (0..RANKS).flat_map(of_rank).filter(|items| !items.is_empty()).collect();
+    let slices = team.collect(RANKS / RANGES, RANKS, |ranks, found| {
+        found.extend(ranks.flat_map(of_rank).filter(|items| !items.is_empty()));
+    });
     team.join_slices(slices.iter().copied())
 }
 

@@ -77,7 +77,7 @@ pub fn run<'m, O: Operation>(
     advance: Advance<'_>,
 ) -> Counts {
     let mut counts = Counts::default();
-    let mut left: Vec<u32> = (0..items.len() as u32).collect();
+    let mut left = Team::new(pool, plan).map(GRAIN, items.len(), |item| item as u32);
     let (mut parts, mut shared) = (first_parts(O::EFFORT * items.len()), false);
     loop {
         if parts < 2 || (left.len() as f64) < LITTLE * items.len() as f64 {

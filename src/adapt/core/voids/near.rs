@@ -113,7 +113,11 @@ struct Walls {
 
 impl Walls {
     fn of(team: Team<'_>, context: &Context<'_>) -> Self {
-        let (cuts, all): (Vec<_>, Vec<_>) = walls(team, &context.store).into_iter().partition(|wall| wall.face == CUT);
+        let is_cut = |wall: &Wall| wall.face == CUT;
+        let walls = walls(team, &context.store);
+        // Most meshes are no part of a larger one.
+        let has_cuts = walls.iter().any(is_cut);
+        let (cuts, all) = if has_cuts { walls.into_iter().partition(is_cut) } else { (Vec::new(), walls) };
         let normals = normals(team, context, &all);
         Self { all, normals, cuts }
     }
