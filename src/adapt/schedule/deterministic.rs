@@ -30,7 +30,7 @@ const ITEMS: usize = if cfg!(test) { 12 } else { 4096 };
 /// Short lists have so many parts, if each gets [`FEWEST_ITEMS`].
 const FEW: usize = 32;
 
-/// Least items a part, as those.
+/// Least items a part, whatever they take.
 const FEWEST_ITEMS: usize = if cfg!(test) { 6 } else { 512 };
 
 /// When less than this share of all items is left, one thread does the rest.
@@ -78,7 +78,7 @@ pub fn run<'m, O: Operation>(
 ) -> Counts {
     let mut counts = Counts::default();
     let mut left = Team::new(pool, plan).map(GRAIN, items.len(), |item| item as u32);
-    let (mut parts, mut shared) = (first_parts(O::EFFORT * items.len()), false);
+    let (mut parts, mut shared) = (first_parts(items.len(), O::EFFORT), false);
     loop {
         if parts < 2 || (left.len() as f64) < LITTLE * items.len() as f64 {
             let rest: Vec<_> = left.iter().map(|&i| items[i as usize]).collect();
@@ -97,7 +97,7 @@ pub fn run<'m, O: Operation>(
         }
         // What is left lies between the parts of this round, and is cut elsewhere in the next. Fewer and larger parts have less between them.
         let most = if 2 * left.len() > before { parts / 2 } else { parts };
-        parts = most.min(power(O::EFFORT * left.len() / FEWEST_ITEMS));
+        parts = most.min(power(left.len() / FEWEST_ITEMS));
         shared = true;
     }
 }
@@ -116,8 +116,8 @@ fn owner(store: &Store, v: VertexId) -> u8 {
 }
 
 /// How many parts the first round has: large ones, but a few even for short lists.
-fn first_parts(items: usize) -> usize {
-    power(items / ITEMS).max(FEW.min(power(items / FEWEST_ITEMS))).min(MOST_PARTS)
+fn first_parts(items: usize, effort: usize) -> usize {
+    power(effort * items / ITEMS).max(FEW.min(power(items / FEWEST_ITEMS))).min(MOST_PARTS)
 }
 
 /// The greatest power of two that is no more than n, and no less than 1.
