@@ -16,7 +16,7 @@ const BLOCKS: usize = 64;
 pub struct IdPool {
     vertices: Vec<VertexId>,
     tets: Vec<TetId>,
-    /// Blocks of the vertices and of the tetrahedra that others have passed over: used before fresh ones.
+    /// Blocks of vertex ids and of tetrahedron ids that no part has used: they are used before fresh ones.
     blocks: [Vec<Range<u32>>; 2],
     stripes: Option<[Stripe; 2]>,
 }
@@ -116,11 +116,11 @@ impl IdPool {
         }
         for (kind, blocks) in self.blocks.iter_mut().enumerate() {
             let mut passed_over = Vec::new();
-            // All stripes go as far as the longest.
-            let rounds = |stripe: &Stripe, part: usize| stripe.next - part * ID_BLOCK;
-            let end = stripes.iter().enumerate().map(|(part, stripe)| rounds(&stripe[kind], part)).max().unwrap_or(0);
+            // Stripes begin a block apart; all go on to the end of the longest.
+            let end_of = |stripe: &Stripe, part: usize| stripe.next - part * ID_BLOCK;
+            let end = stripes.iter().enumerate().map(|(part, stripe)| end_of(&stripe[kind], part)).max().unwrap_or(0);
             for (part, stripe) in stripes.iter_mut().enumerate() {
-                while rounds(&stripe[kind], part) < end {
+                while end_of(&stripe[kind], part) < end {
                     passed_over.push(stripe[kind].advance());
                 }
             }
@@ -128,13 +128,10 @@ impl IdPool {
                 0 => store.take_vertices_at(*start, ID_BLOCK),
                 _ => store.take_tets_at(*start, ID_BLOCK),
             };
-            blocks.extend(
-                team.chunks(BLOCKS, passed_over.len(), |range| {
-                    passed_over[range].iter().filter_map(take).collect::<Vec<_>>()
-                })
-                .into_iter()
-                .flatten(),
-            );
+            let taken = team.chunks(BLOCKS, passed_over.len(), |range| -> Vec<_> {
+                passed_over[range].iter().filter_map(take).collect()
+            });
+            blocks.extend(taken.into_iter().flatten());
         }
     }
 }

@@ -201,9 +201,9 @@ impl Store {
         }
     }
 
-    /// Makes room for at least so many more vertices and tetrahedra, and where that takes growth for several times as many, and for `expected`
-    /// vertices and tetrahedra in all, if there is memory for it, so that it is seldom: untouched pages cost none. Whether there was memory
-    /// for what is needed: if not, what has no room is refused. Between sweeps only.
+    /// Makes room for at least so many more vertices and tetrahedra. An array that must grow gets room for several times as many, and for the
+    /// number that is `expected` in all, if there is memory for it: so it seldom grows, and untouched pages cost no memory. Returns whether
+    /// there was memory for what is needed; if not, what has no room is refused. Between sweeps only.
     pub fn reserve(&mut self, team: Team<'_>, [vertices, tets]: [usize; 2], expected: [usize; 2]) -> bool {
         let used = self.vertex_bound();
         let needed = used + vertices;

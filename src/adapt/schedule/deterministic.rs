@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 /// Their numbers fit in a byte.
 pub const MOST_PARTS: usize = 128;
 
-/// Least items a part in the first round, where that leaves more than [`FEW`] parts: so many flips, or what takes as long
+/// Least flips a part in the first round, where that leaves more than [`FEW`] parts; of items that take longer fewer are enough
 /// ([`Operation::EFFORT`]). In larger parts fewer items meet another part.
 /// Few in the unit tests, whose meshes are small.
 const ITEMS: usize = if cfg!(test) { 12 } else { 4096 };
@@ -30,7 +30,7 @@ const ITEMS: usize = if cfg!(test) { 12 } else { 4096 };
 /// Short lists have so many parts, if each gets [`FEWEST_ITEMS`].
 const FEW: usize = 32;
 
-/// Least items a part, whatever they take.
+/// Least items a part, however long they take.
 const FEWEST_ITEMS: usize = if cfg!(test) { 6 } else { 512 };
 
 /// When less than this share of all items is left, one thread does the rest.

@@ -155,7 +155,7 @@ pub trait Operation: Sync {
     /// Whether it needs all tetrahedra at the vertices of its item.
     const WHOLE_BALLS: bool;
 
-    /// How many times as long as a try of a flip its try takes, about.
+    /// About how many flips are tried in the time that one try of it takes.
     const EFFORT: usize = 1;
 
     /// Tries it on one item.

@@ -33,7 +33,7 @@ const TETS_A_VERTEX: usize = 12;
 /// A mesh has so many tetrahedra a vertex.
 const USUAL_TETS: f64 = 5.6;
 
-/// Ids of so many times the records that are expected are in use in the end, with those of dead ones.
+/// Room is made for so many times the vertices and tetrahedra that are expected: some ids are those of dead ones.
 const SPARE: f64 = 1.3;
 
 /// With this share of the vertices that it may have, a mesh has them all: of the last edges most are refused.
