@@ -33,6 +33,14 @@ impl Refusal {
         if self == Refusal::Conflict { self } else { Refusal::Shape }
     }
 
+    /// What the next attempt comes to, unless a thread is in the way.
+    ///
+    /// # Errors
+    /// `Conflict`, or the refusal of the next attempt.
+    pub fn or_try(self, next: impl FnOnce() -> Result<(), Refusal>) -> Result<(), Refusal> {
+        if self == Refusal::Conflict { Err(self) } else { next() }
+    }
+
     /// All kinds, in the order of their counters.
     pub const ALL: [Refusal; 10] = [
         Refusal::Conflict,
@@ -46,6 +54,22 @@ impl Refusal {
         Refusal::Full,
         Refusal::Crossing,
     ];
+}
+
+/// Tries one after another until one is done, or a thread is in the way.
+///
+/// # Errors
+/// The refusal of the last that was tried; `Shape` when there was none.
+#[inline(always)]
+pub fn first_done(tried: impl IntoIterator<Item = Result<(), Refusal>>) -> Result<(), Refusal> {
+    let mut last = Err(Refusal::Shape);
+    for result in tried {
+        last = result;
+        if matches!(result, Ok(()) | Err(Refusal::Conflict)) {
+            break;
+        }
+    }
+    last
 }
 
 /// Counts of one operation over one or more sweeps.

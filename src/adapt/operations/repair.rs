@@ -2,10 +2,11 @@
 use crate::adapt::core::access::Access;
 use crate::adapt::core::edge_list::EdgeItem;
 use crate::adapt::core::ids::{ACROSS, EDGE, TetId, VertexId};
-use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::refusal::{Refusal, first_done};
 use crate::adapt::core::star::{Bounds, Seed};
 use crate::adapt::core::worker::Worker;
 use crate::adapt::operations::collapse::onto_end::CollapseScratch;
+use crate::adapt::operations::smoothing::patch::SmoothingPatch;
 use crate::adapt::schedule::Operation;
 use crate::mesh::vector::lerp;
 use std::ops::RangeInclusive;
@@ -13,9 +14,10 @@ use std::ops::RangeInclusive;
 /// The worst mean ratio of a larger cavity must grow by this factor.
 const GAIN: f64 = 1.05;
 
-/// Below this mean ratio an edge may be split for the shape alone. Where two edges of the model run side by side, nearer than the metric's
-/// sizes (a blunt trailing edge), their vertices must face each other, and a vertex may be missing for that.
-pub const SPLIT_BELOW: f64 = 0.35;
+/// Below this mean ratio an edge may be split for the shape alone, or a vertex moved for this tetrahedron alone. Where two edges of the model
+/// run side by side, nearer than the metric's sizes (a blunt trailing edge), their vertices must face each other, and a vertex may be missing
+/// for that.
+pub const BAD: f64 = 0.35;
 
 /// By a split for the shape the worst mean ratio must grow by this factor: smoothing gains the rest.
 pub const SPLIT_GAIN: f64 = 1.001;
@@ -23,18 +25,25 @@ pub const SPLIT_GAIN: f64 = 1.001;
 /// Where along an edge it may be split for the shape.
 const BETWEEN: RangeInclusive<f64> = 0.1..=0.9;
 
+/// What repair needs at hand. Allocated once.
+#[derive(Default)]
+pub struct RepairScratch {
+    collapse: CollapseScratch,
+    patch: SmoothingPatch,
+}
+
 /// Repairs the worst tetrahedra.
 pub struct Repair;
 
 impl Operation for Repair {
     type Item = TetId;
-    type Scratch = CollapseScratch;
+    type Scratch = RepairScratch;
     const WHOLE_BALLS: bool = false;
 
     fn attempt<A: Access>(
         &self,
         worker: &mut Worker<'_, '_, A>,
-        scratch: &mut CollapseScratch,
+        scratch: &mut RepairScratch,
         item: TetId,
     ) -> Result<(), Refusal> {
         worker.repair(scratch, item)
@@ -43,29 +52,25 @@ impl Operation for Repair {
 
 impl<A: Access> Worker<'_, '_, A> {
     /// Repairs one bad tetrahedron: a larger cavity becomes a star about one of its vertices, or a vertex goes onto any neighbour, if
-    /// the worst tetrahedron becomes clearly better by it.
-    pub fn repair(&mut self, scratch: &mut CollapseScratch, t: TetId) -> Result<(), Refusal> {
+    /// the worst tetrahedron becomes clearly better by it. Where nothing of that helps a very bad one, an edge is split or a vertex moved. The
+    /// move comes last: it gains little by little, and what gains more is often refused after it.
+    pub fn repair(&mut self, scratch: &mut RepairScratch, t: TetId) -> Result<(), Refusal> {
         let vertices = self.claim_current_tet(t)?;
         let quality = self.store.quality(t);
         if quality >= self.context.limits.improve_below {
             return Err(Refusal::Stale);
         }
         let floor = (GAIN * quality).max(1e-9);
-        for v in vertices {
-            match self.retetrahedralize_ball(v, floor) {
-                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
-                Err(_) => {}
-                Ok(()) => return Ok(()),
-            }
+        let mut result = first_done(vertices.into_iter().map(|v| self.retetrahedralize_ball(v, floor)));
+        result = result.or_else(|refusal| {
+            refusal.or_try(|| first_done(vertices.into_iter().map(|v| self.remove(&mut scratch.collapse, v, floor))))
+        });
+        if quality >= BAD {
+            return result;
         }
-        for v in vertices {
-            match self.remove(scratch, v, floor) {
-                Err(Refusal::Conflict) => return Err(Refusal::Conflict),
-                Err(_) => {}
-                Ok(()) => return Ok(()),
-            }
-        }
-        if quality < SPLIT_BELOW { self.split_longest_edge(t, vertices) } else { Err(Refusal::Shape) }
+        result
+            .or_else(|refusal| refusal.or_try(|| self.split_longest_edge(t, vertices)))
+            .or_else(|refusal| refusal.or_try(|| self.move_for_worst(&mut scratch.patch, t)))
     }
 
     /// Splits the longest edge of a tetrahedron that can be split, at the point closest to another of its vertices or in the middle. The
@@ -79,10 +84,9 @@ impl<A: Access> Worker<'_, '_, A> {
             let opposite = ACROSS[i][j].map(|x| self.closest_between(vertices[x], a, b));
             let between = opposite.into_iter().filter(|(share, _)| BETWEEN.contains(share)).map(|(_, point)| point);
             for point in between.chain([middle]) {
-                match self.split_at(EdgeItem { a, b, tet: t }, point) {
-                    Err(Refusal::Conflict) => return Err(Refusal::Conflict),
-                    Err(_) => {}
-                    Ok(()) => return Ok(()),
+                let result = self.split_at(EdgeItem { a, b, tet: t }, point);
+                if matches!(result, Ok(()) | Err(Refusal::Conflict)) {
+                    return result;
                 }
             }
         }

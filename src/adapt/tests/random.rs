@@ -12,6 +12,7 @@ use crate::adapt::operations::projection::RemoveUnprojected;
 use crate::adapt::operations::reconnection::criteria::Criterion;
 use crate::adapt::operations::reconnection::sweep::Reconnect;
 use crate::adapt::operations::repair::Repair;
+use crate::adapt::operations::smoothing::patch::SmoothingPatch;
 use crate::adapt::operations::smoothing::vertex::Smooth;
 use crate::adapt::schedule::Operation;
 use crate::geometry::Entity;
@@ -56,6 +57,9 @@ fn attempt(bench: &mut Bench<'_>, kind: u8, pick: usize) -> Result<(), Refusal> 
             worker.store.tick();
             attempt_once(&Thin, &mut worker, vertex)
         }
+        8 => worker
+            .claim_current_tet(edge.tet)
+            .and_then(|_| worker.move_for_worst(&mut SmoothingPatch::default(), edge.tet)),
         _ => attempt_once(&RemoveUnprojected, &mut worker, vertex),
     };
     worker.access.release(worker.store);
@@ -80,7 +84,7 @@ fn run(shape: Shape, long: f64, operations: Vec<(u8, usize)>) {
 }
 
 fn operations() -> impl Strategy<Value = Vec<(u8, usize)>> {
-    proptest::collection::vec((0..9u8, any::<usize>()), 1..60)
+    proptest::collection::vec((0..10u8, any::<usize>()), 1..60)
 }
 
 proptest! {

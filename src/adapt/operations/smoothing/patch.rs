@@ -16,6 +16,8 @@ const LEAST_CUBE: f64 = 1e-18;
 /// A vertex with the triangles opposite to it and the vertices joined to it. Allocated once.
 #[derive(Default)]
 pub struct SmoothingPatch {
+    /// Surface triangles at the vertex (outward), with their tags.
+    pub triangles: Vec<([VertexId; 3], u32)>,
     batches: Vec<Batch>,
     incident: Vec<IncidentEdges>,
     tets: usize,

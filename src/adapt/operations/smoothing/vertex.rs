@@ -7,7 +7,7 @@ use super::patch::SmoothingPatch;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ball::Ball;
 use crate::adapt::core::ids::VertexId;
-use crate::adapt::core::refusal::Refusal;
+use crate::adapt::core::refusal::{Refusal, first_done};
 use crate::adapt::core::vertex_moves::{Placed, VertexState};
 use crate::adapt::core::worker::Worker;
 use crate::adapt::schedule::Operation;
@@ -46,45 +46,47 @@ impl Operation for Smooth {
 impl<A: Access> Worker<'_, '_, A> {
     /// Smooths one vertex whose worst tetrahedron is below the limit.
     pub fn smooth(&mut self, patch: &mut SmoothingPatch, v: VertexId) -> Result<(), Refusal> {
+        self.with_patch(patch, v, |worker, patch, ball| worker.descend(patch, v, ball))
+    }
+
+    /// Lays out the ball of a vertex that may be moved, if its worst tetrahedron is below the limit, lists its surface triangles, and calls
+    /// `shift`.
+    ///
+    /// # Errors
+    /// `Geometry` when the vertex must not move, `Stale` when its tetrahedra are good or it is gone, else those of `shift`.
+    pub fn with_patch(
+        &mut self,
+        patch: &mut SmoothingPatch,
+        v: VertexId,
+        shift: impl FnOnce(&mut Self, &mut SmoothingPatch, &Ball) -> Result<(), Refusal>,
+    ) -> Result<(), Refusal> {
         self.claim_live(v)?;
-        let entity = self.store.entity(v);
-        if matches!(entity, Entity::Vertex(_)) || self.context.is_frozen(v) {
+        if matches!(self.store.entity(v), Entity::Vertex(_)) || self.context.is_frozen(v) {
             return Err(Refusal::Geometry);
         }
         let mut ball = std::mem::take(&mut self.state.ball);
-        let result = self.gather_ball(v, &mut ball).and_then(|()| self.smooth_in(patch, v, &ball));
+        let result = self.gather_ball(v, &mut ball).and_then(|()| {
+            if self.worst_of(&ball.tets) >= self.context.limits.improve_below {
+                return Err(Refusal::Stale);
+            }
+            patch.triangles.clear();
+            self.list_surface(v, &ball.tets, &mut patch.triangles);
+            patch.fill(self.store, v, &ball.tets, &ball.link);
+            shift(self, patch, &ball)
+        });
         self.state.ball = ball;
         result
     }
 
-    fn smooth_in(&mut self, patch: &mut SmoothingPatch, v: VertexId, ball: &Ball) -> Result<(), Refusal> {
-        if self.worst_of(&ball.tets) >= self.context.limits.improve_below {
-            return Err(Refusal::Stale);
-        }
-        let mut triangles = std::mem::take(&mut self.state.star.surface);
-        triangles.clear();
-        self.list_surface(v, &ball.tets, &mut triangles);
-        patch.fill(self.store, v, &ball.tets, &ball.link);
-        let moved = self.descend(v, ball, &triangles, patch);
-        self.state.star.surface = triangles;
-        moved
-    }
-
     /// Tries Newton's step, whole and shortened; where a tetrahedron is flat, steps towards the pliant point instead.
-    fn descend(
-        &mut self,
-        v: VertexId,
-        ball: &Ball,
-        triangles: &[([VertexId; 3], u32)],
-        patch: &mut SmoothingPatch,
-    ) -> Result<(), Refusal> {
+    fn descend(&mut self, patch: &mut SmoothingPatch, v: VertexId, ball: &Ball) -> Result<(), Refusal> {
         let held = self.vertex_state(v);
         let from = held.placed.point;
         let Some(model) = patch.model(from, &held.metric) else {
             let limit = patch.energy(from, &held.log, &held.metric) * (1.0 - GAIN);
             let to = patch.pliant(from, &held.metric);
             let targets = STEPS.map(|step| lerp(from, to, step));
-            return self.move_to_one(v, &held, targets, ball, triangles, patch, limit);
+            return self.move_to_one(v, &held, targets, ball, patch, limit);
         };
         let step = self.newton_step(&held.placed, &model);
         let limit = model.energy * (1.0 - 0.5 * GAIN);
@@ -97,29 +99,20 @@ impl<A: Access> Worker<'_, '_, A> {
         let length = held.metric.quadratic(step).sqrt();
         let step = scale(step, (LONGEST / length).min(1.0));
         let targets = [1.0, 0.4].map(|part| add(from, scale(step, part)));
-        self.move_to_one(v, &held, targets, ball, triangles, patch, limit)
+        self.move_to_one(v, &held, targets, ball, patch, limit)
     }
 
     /// Moves the vertex to the first of the targets that is possible.
-    #[allow(clippy::too_many_arguments)]
     fn move_to_one(
         &mut self,
         v: VertexId,
         held: &VertexState,
         targets: [Vec3; 2],
         ball: &Ball,
-        triangles: &[([VertexId; 3], u32)],
         patch: &mut SmoothingPatch,
         limit: f64,
     ) -> Result<(), Refusal> {
-        let mut result = Err(Refusal::Shape);
-        for target in targets {
-            result = self.move_to(v, held, target, ball, triangles, patch, limit);
-            if matches!(result, Ok(()) | Err(Refusal::Conflict)) {
-                break;
-            }
-        }
-        result
+        first_done(targets.into_iter().map(|target| self.move_to(v, held, target, ball, patch, limit)))
     }
 
     /// −H⁻¹g within the tangent space of the entity.
@@ -147,14 +140,12 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     /// Moves the vertex to the closest point of its entity, if the energy is below `limit` there and the surface deviates no more than before.
-    #[allow(clippy::too_many_arguments)]
     fn move_to(
         &mut self,
         v: VertexId,
         held: &VertexState,
         target: Vec3,
         ball: &Ball,
-        triangles: &[([VertexId; 3], u32)],
         patch: &mut SmoothingPatch,
         limit: f64,
     ) -> Result<(), Refusal> {
@@ -168,21 +159,34 @@ impl<A: Access> Worker<'_, '_, A> {
         if patch.with_lengths(placed.point, &metric) >= limit {
             return Err(Refusal::Shape);
         }
-        let to = VertexState { placed, log, metric, hint };
+        self.move_fairly(v, &VertexState { placed, log, metric, hint }, ball, patch)
+    }
+
+    /// Moves the vertex to the place that was tried last, if the surface deviates no more than before.
+    ///
+    /// # Errors
+    /// `Shape` where the surface holds it back: that is how it is counted. Else those of a move in its ball.
+    pub fn move_fairly(
+        &mut self,
+        v: VertexId,
+        to: &VertexState,
+        ball: &Ball,
+        patch: &SmoothingPatch,
+    ) -> Result<(), Refusal> {
+        let triangles = &patch.triangles;
         let mut moved = Err(Refusal::Normal);
         // Mostly the triangles are within the limits there, whatever they are now.
         if let Some(side) = if triangles.is_empty() { Some(1.0) } else { self.clear_side(triangles) } {
-            moved = self.move_in_ball(v, &to, &ball.tets, patch.mean_ratios(), |worker| {
+            moved = self.move_in_ball(v, to, &ball.tets, patch.mean_ratios(), |worker| {
                 worker.are_within_limits(side, triangles)
             });
         }
         if moved == Err(Refusal::Normal) {
             let before = self.worst_deviation(triangles);
-            moved = self.move_in_ball(v, &to, &ball.tets, patch.mean_ratios(), |worker| {
+            moved = self.move_in_ball(v, to, &ball.tets, patch.mean_ratios(), |worker| {
                 worker.compare_with(before, triangles, 0.0).is_ok()
             });
         }
-        // Where the surface holds it back the shapes get no better: that is how it is counted.
         moved.map_err(|refusal| if refusal == Refusal::Normal { Refusal::Shape } else { refusal })
     }
 }

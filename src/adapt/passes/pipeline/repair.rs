@@ -3,7 +3,7 @@ use super::{Pipeline, shape_limits};
 use crate::adapt::core::context::{LONG, Limits};
 use crate::adapt::core::ids::TetId;
 use crate::adapt::operations::reconnection::criteria::Criterion;
-use crate::adapt::operations::repair::{Repair, SPLIT_BELOW, SPLIT_GAIN};
+use crate::adapt::operations::repair::{BAD, Repair, SPLIT_GAIN};
 use crate::adapt::schedule::work::Kind;
 
 /// Tetrahedra below this mean ratio are repaired.
@@ -12,11 +12,9 @@ const REPAIR_BELOW: f64 = 0.5;
 /// Rounds of repair.
 const ROUNDS: usize = 3;
 
-/// Rounds that may follow where tetrahedra are so bad that edges are split for their shape: a split often makes room for another.
-const FURTHER_ROUNDS: usize = 5;
-
-/// They go on while at least this share of the tetrahedra is repaired.
-const FURTHER_SHARE: f64 = 0.02;
+/// Most rounds that may follow while a very bad tetrahedron is repaired: edges are split and vertices moved for these, and one often makes room
+/// for another.
+const FURTHER_ROUNDS: usize = 20;
 
 /// In a run, repair tries at most this share of the tetrahedra of the mesh, and [`REPAIR_FEW`]. It is dear: one costs as much as to look
 /// at some thousand flips. Where a metric can be met, fewer tetrahedra are below the limit; where it cannot, repair would not end.
@@ -37,19 +35,19 @@ impl Pipeline<'_, '_> {
             flip_below: REPAIR_BELOW,
             longest_new: 1.3 * LONG,
             shortest_new: 0.0,
-            insert_floor: SPLIT_BELOW,
+            insert_floor: BAD,
             insert_loss: SPLIT_GAIN,
             ball: REPAIR_BALL,
             ..shape_limits()
         });
         for round in 0..ROUNDS + FURTHER_ROUNDS {
-            let (limit, share) = if round < ROUNDS { (REPAIR_BELOW, 0.0) } else { (SPLIT_BELOW, FURTHER_SHARE) };
+            let limit = if round < ROUNDS { REPAIR_BELOW } else { BAD };
             let mut items = self.tets(|store, t| store.quality(t) < limit);
             let store = &self.context.store;
             self.team().sort_by(&mut items, |x, y| store.quality(*x).total_cmp(&store.quality(*y)).then(x.cmp(y)));
             self.no_more_than_repaired(&mut items);
             let done = if self.observer.stop() { 0 } else { self.sweep(Kind::Repair, &Repair, &items).done };
-            if done == 0 || (done as f64) < share * items.len() as f64 {
+            if done == 0 {
                 break;
             }
             self.reconnect(Criterion::MeanRatio, 2);
