@@ -1,14 +1,17 @@
 //! Work of OpenCASCADE in a child process, which is this same program. On a damaged file OpenCASCADE can crash, or never come back, and
 //! neither can be caught within a process.
 //!
+//! It is started anew, or forked where the work begins before there is a second thread: that saves the time that OpenCASCADE takes to load.
+//!
 //! The child writes what is wrong with its input, if anything, into a file. How it ended tells the rest ([`Outcome`]): an interrupt, the end
 //! of memory, a limit of time, or else a crash.
 use super::interrupt::{self, Interrupted};
 use super::workplace::Workplace;
 use crate::memory::end;
-use crate::process::{Outcome, Runner, Tie, is_exhausted, own};
+use crate::process::{Outcome, Program, Runner, Tie, is_exhausted, own};
 use std::error::Error;
 use std::ffi::{OsStr, OsString};
+use std::io;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::sync::atomic::Ordering;
@@ -20,8 +23,14 @@ const LIMIT: &str = "GEO_ADAPT_CAD_TIME_LIMIT";
 /// Where it says nothing: many times what the largest models take.
 const USUAL_LIMIT: f64 = 600.0;
 
+/// The file that a child leaves its answer in.
+const ANSWER: &str = "answer.txt";
+
 /// Exit code of the system's loader where the program cannot be loaded. Ours was loaded once already.
 const NOT_LOADED: i32 = 127;
+
+/// What a child does with its arguments; an error tells what is wrong with the input.
+pub type Work = fn(&[OsString]) -> Result<(), String>;
 
 /// What there is to do.
 pub struct Task<'a> {
@@ -58,13 +67,40 @@ impl Task<'_> {
     /// # Errors
     /// When the child came to no end of its own: why, and the remedy.
     pub fn run(&self, place: &Workplace) -> Result<Answer, Box<dyn Error>> {
-        let answer = place.file("answer.txt");
         let Ok(program) = own() else { return Ok(Answer::NotStarted) };
         let mut command = Command::new(program);
-        command.arg(self.name).arg(&answer).args(self.arguments);
+        command.arg(self.name).arg(place.file(ANSWER)).args(self.arguments);
+        self.end_of(place, |runner| runner.run(&mut command, |_| ()))
+    }
+
+    /// Has a child begin with the work, and does not wait for it. It is forked, so there must be one thread ([`may_fork`]).
+    ///
+    /// # Errors
+    /// When there can be no child.
+    ///
+    /// [`may_fork`]: crate::process::may_fork
+    pub fn begin(&self, place: &Workplace, work: Work) -> io::Result<Program> {
+        let (answer, arguments) = (place.file(ANSWER), self.arguments.iter().map(OsString::from).collect::<Vec<_>>());
+        Program::fork(Tie::Bound, move || code_of(work, &answer, &arguments))
+    }
+
+    /// Waits for a child that has begun.
+    ///
+    /// # Errors
+    /// As [`Task::run`].
+    pub fn finish(&self, place: &Workplace, program: Program) -> Result<Answer, Box<dyn Error>> {
+        self.end_of(place, |runner| runner.wait_for(program))
+    }
+
+    /// What comes of a child that `run` waits for.
+    fn end_of(
+        &self,
+        place: &Workplace,
+        run: impl FnOnce(&Runner<'_>) -> io::Result<Outcome>,
+    ) -> Result<Answer, Box<dyn Error>> {
         let stop = interrupt::end_at_once();
         let runner = Runner { tie: Tie::Bound, limit: Some(limit()?), stop, log: None };
-        let outcome = match runner.run(&mut command, |_| ()) {
+        let outcome = match run(&runner) {
             Ok(_) if stop.load(Ordering::SeqCst) => Outcome::Interrupted,
             Ok(outcome) => outcome,
             Err(error) if is_exhausted(&error) => {
@@ -75,7 +111,7 @@ impl Task<'_> {
             Err(_) => return Ok(Answer::NotStarted),
         };
         if outcome == Outcome::Code(i32::from(super::BAD_INPUT))
-            && let Ok(text) = std::fs::read_to_string(answer)
+            && let Ok(text) = std::fs::read_to_string(place.file(ANSWER))
         {
             return Ok(Answer::Refused(text));
         }
@@ -129,18 +165,23 @@ fn limit() -> Result<Duration, String> {
 }
 
 /// If this process is a child for the work of this name: does it with the arguments, leaves the answer, and tells the exit code.
-pub fn answer(name: &str, work: impl FnOnce(&[OsString]) -> Result<(), String>) -> Option<ExitCode> {
+pub fn answer(name: &str, work: Work) -> Option<ExitCode> {
     let mut arguments = std::env::args_os().skip(1);
     if arguments.next()? != name {
         return None;
     }
     let answer = arguments.next()?;
-    let Err(refusal) = work(&arguments.collect::<Vec<_>>()) else { return Some(ExitCode::SUCCESS) };
+    Some(ExitCode::from(code_of(work, Path::new(&answer), &arguments.collect::<Vec<_>>())))
+}
+
+/// Does the work of a child, leaves the answer in a file, and returns the exit code.
+fn code_of(work: Work, answer: &Path, arguments: &[OsString]) -> u8 {
+    let Err(refusal) = work(arguments) else { return 0 };
     // OpenCASCADE answers an allocation that failed by an error like any other, or leaves something out.
     if end::has_been_short() {
         end::leave(None);
     }
     // Without the answer the exit code says that there is something wrong all the same.
     let _ = std::fs::write(answer, refusal);
-    Some(ExitCode::from(super::BAD_INPUT))
+    super::BAD_INPUT
 }

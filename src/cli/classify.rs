@@ -7,7 +7,7 @@ use crate::geometry::discrete::complete_boundary;
 use crate::geometry::on_mesh;
 use crate::tasks::{Plan, Team};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Arguments of `geo-adapt classify`.
@@ -27,6 +27,13 @@ pub struct Arguments {
     /// states for an entity]
     #[arg(long, value_name = "T", value_parser = super::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
+}
+
+impl Arguments {
+    /// The CAD model.
+    pub fn model(&self) -> Option<&Path> {
+        self.cad.as_deref()
+    }
 }
 
 /// Runs the subcommand.

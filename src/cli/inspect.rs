@@ -87,6 +87,13 @@ struct Inspection {
     walls: Vec<OfWall>,
 }
 
+impl Arguments {
+    /// The CAD model.
+    pub fn model(&self) -> Option<&Path> {
+        self.cad.as_deref()
+    }
+}
+
 /// Runs the subcommand: code 0 for a valid mesh (that fits the model, if one is given), else 1.
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { mesh, metric, cad, surface, .. } = arguments;

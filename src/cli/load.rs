@@ -5,24 +5,27 @@ use super::table;
 use super::waiting::Waiting;
 use super::workplace::Workplace;
 use crate::geometry::{Error, Geometry, Model, names};
+use crate::process::{Program, may_fork};
 use std::error;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The file for what a child has read.
+const TARGET: &str = "model.bin";
 
 /// First argument of the child; then the model and the file for what was read.
 const CHILD: &str = "read-model-and-exit";
 
 /// If this process is the child of [`model`]: reads the file, writes what it has read, and tells the exit code.
 pub fn child() -> Option<ExitCode> {
-    child::answer(CHILD, |arguments| {
-        let [file, target] = arguments else { return Err("a model and a target are wanted".into()) };
-        read(file, target)
-    })
+    child::answer(CHILD, read)
 }
 
-fn read(file: &OsString, target: &OsString) -> Result<(), String> {
+/// The work of the child.
+fn read(arguments: &[OsString]) -> Result<(), String> {
+    let [file, target] = arguments else { return Err("a model and a target are wanted".into()) };
     let model = Model::read(Path::new(file)).map_err(|error| match error {
         // The parent names the file.
         Error::Model { message, .. } => message,
@@ -64,6 +67,43 @@ fn from_file(path: &Path) -> Result<Model, Box<dyn error::Error>> {
     }
 }
 
+/// A child that reads a model before it is asked for. It is ended where nobody asks.
+pub struct Begun;
+
+/// The path of that model, and the child.
+static BEGUN: Mutex<Option<(PathBuf, Reading)>> = Mutex::new(None);
+
+/// A child that reads, and its files, which go after it.
+struct Reading {
+    program: Program,
+    place: Workplace,
+}
+
+impl Begun {
+    /// Begins to read a model that will be asked for, if a process may be forked for that. What is wrong is told when it is asked for.
+    pub fn with(path: &Path) -> Self {
+        let is_kept = lock(&KEPT).as_ref().is_some_and(|(name, _)| name == path);
+        if !is_kept && is_to_be_read(path) && may_fork() {
+            *lock(&BEGUN) = Workplace::new().ok().and_then(|place| {
+                let target = place.file(TARGET);
+                let program = task(path, &[path.as_os_str(), target.as_os_str()]).begin(&place, read).ok()?;
+                Some((path.to_owned(), Reading { program, place }))
+            });
+        }
+        Self
+    }
+}
+
+impl Drop for Begun {
+    fn drop(&mut self) {
+        *lock(&BEGUN) = None;
+    }
+}
+
+fn lock<T>(what: &Mutex<T>) -> MutexGuard<'_, T> {
+    what.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// A model that was read before it was asked for, and the path that it will be asked for by.
 static KEPT: Mutex<Option<(PathBuf, Model)>> = Mutex::new(None);
 
@@ -74,21 +114,20 @@ static KEPT: Mutex<Option<(PathBuf, Model)>> = Mutex::new(None);
 #[cfg(all(feature = "serve", target_os = "linux"))]
 pub fn keep(path: &Path) -> Result<(), Box<dyn error::Error>> {
     let model = from_file(path)?;
-    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some((path.to_owned(), model));
+    *lock(&KEPT) = Some((path.to_owned(), model));
     Ok(())
 }
 
 /// The model that is kept is what will be asked for by this path, once.
 #[cfg(all(feature = "serve", target_os = "linux"))]
 pub fn call(path: &Path) {
-    if let Some((name, _)) = &mut *KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
+    if let Some((name, _)) = &mut *lock(&KEPT) {
         *name = path.to_owned();
     }
 }
 
 fn kept(path: &Path) -> Option<Model> {
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    kept.take_if(|(name, _)| name == path).map(|(_, model)| model)
+    lock(&KEPT).take_if(|(name, _)| name == path).map(|(_, model)| model)
 }
 
 /// Gives a model the names and colours of the file beside it ([`names::beside_model`]), which come before those in the model itself.
@@ -118,21 +157,38 @@ pub fn give_names(model: &mut Model, path: &Path) -> Result<(), Box<dyn error::E
     Ok(())
 }
 
-/// What a child has read; none where there is no child to be had, or nothing to read.
-fn in_child(path: &Path) -> Result<Option<Model>, Box<dyn error::Error>> {
-    if !cfg!(feature = "occt") || !path.is_file() {
-        return Ok(None);
-    }
-    let Ok(place) = Workplace::new() else { return Ok(None) };
-    let target = place.file("model.bin");
-    let task = Task {
+fn is_to_be_read(path: &Path) -> bool {
+    cfg!(feature = "occt") && path.is_file()
+}
+
+/// The task of a child that reads a model; its arguments are that and the target.
+fn task<'a>(path: &'a Path, arguments: &'a [&'a OsStr; 2]) -> Task<'a> {
+    Task {
         name: CHILD,
-        arguments: &[path.as_os_str(), target.as_os_str()],
+        arguments,
         file: path,
         doing: "reading it",
         crash: "is damaged: OpenCASCADE crashes on it; export it again from the program that made it",
+    }
+}
+
+/// What a child has read; none where there is no child to be had, or nothing to read.
+fn in_child(path: &Path) -> Result<Option<Model>, Box<dyn error::Error>> {
+    if !is_to_be_read(path) {
+        return Ok(None);
+    }
+    let begun = lock(&BEGUN).take_if(|(name, _)| name == path).map(|(_, reading)| reading);
+    let (program, place) = match begun {
+        Some(Reading { program, place }) => (Some(program), place),
+        None => match Workplace::new() {
+            Ok(place) => (None, place),
+            Err(_) => return Ok(None),
+        },
     };
-    match task.run(&place)? {
+    let target = place.file(TARGET);
+    let arguments = [path.as_os_str(), target.as_os_str()];
+    let task = task(path, &arguments);
+    match program.map_or_else(|| task.run(&place), |program| task.finish(&place, program))? {
         Answer::Done if target.is_file() => Ok(Model::read_saved(&target).ok()),
         Answer::Refused(message) => Err(Error::Model { path: path.into(), message }.into()),
         Answer::Done | Answer::NotStarted => Ok(None),

@@ -3,6 +3,7 @@ use crate::tasks::{self, Pool};
 use crate::{geometry, memory, ranks};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
+use std::path::Path;
 use std::process::ExitCode;
 use terminal::{note, print, say, tell};
 use waiting::Waiting;
@@ -58,6 +59,17 @@ struct Arguments {
     place: remote::Where,
     #[command(subcommand)]
     command: Command,
+}
+
+impl Arguments {
+    /// The CAD model that this process reads, and surely.
+    fn reads_here(&self) -> Option<&Path> {
+        #[cfg(feature = "serve")]
+        if self.place.server.is_some() {
+            return None;
+        }
+        self.command.model().filter(|_| !ranks::is_one_of_several())
+    }
 }
 
 #[derive(Subcommand)]
@@ -120,6 +132,17 @@ impl Command {
         }
     }
 
+    /// The CAD model that it reads once it has looked at its other inputs.
+    fn model(&self) -> Option<&Path> {
+        match self {
+            Self::Adapt(arguments) => arguments.model(),
+            Self::Classify(arguments) => arguments.model(),
+            Self::Inspect(arguments) => arguments.model(),
+            Self::Model(arguments) => Some(arguments.model()),
+            _ => None,
+        }
+    }
+
     /// What the terminal says while it works, of a command that has no progress of its own.
     fn line(&self) -> Option<Waiting> {
         let what = match self {
@@ -178,6 +201,8 @@ pub fn main() -> ExitCode {
     };
     arguments.how.set();
     notices.iter().for_each(note);
+    // Before there is a second thread.
+    let _begun = arguments.reads_here().map(load::Begun::with);
     interrupt::listen();
     if !matches!(arguments.command, Command::Adapt(_) | Command::Ranks) && ranks::is_one_of_several() {
         terminal::error(

@@ -1,4 +1,5 @@
 //! Runs a program to its end.
+use super::fork::work_instead;
 use super::group::{Family, Group, end_with_parent, processor_time};
 use super::log::Log;
 use super::outcome::Outcome;
@@ -26,6 +27,31 @@ pub enum Tie {
     Loose,
     /// In our group: whoever ends that group ends us both.
     Shared,
+}
+
+impl Tie {
+    #[cfg(unix)]
+    fn set(self, command: &mut Command) {
+        use std::os::unix::process::CommandExt;
+        if self != Self::Shared {
+            command.process_group(0);
+        }
+        if self == Self::Bound && cfg!(target_os = "linux") {
+            let parent = std::process::id();
+            // SAFETY: it makes system calls only.
+            unsafe {
+                command.pre_exec(move || {
+                    // A shell starts what runs in the background deaf to interrupts; our children hear them.
+                    libc::signal(libc::SIGINT, libc::SIG_DFL);
+                    end_with_parent(parent);
+                    Ok(())
+                })
+            };
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn set(self, _: &mut Command) {}
 }
 
 /// How a program is run.
@@ -76,96 +102,125 @@ impl Runner<'_> {
     /// When it cannot be started.
     pub fn run(&self, command: &mut Command, started: impl FnOnce(&Group)) -> io::Result<Outcome> {
         let _counted = Counted::new();
-        let sink = || self.log.map_or_else(|| Ok(Stdio::null()), Log::sink);
-        command.stdin(Stdio::null()).stdout(sink()?).stderr(sink()?);
-        self.tie(command);
-        let mut child = command.spawn()?;
-        let group = Group::of(child.id());
-        started(&group);
-        let outcome = self.wait(&mut child, &group);
-        if outcome.is_err() {
-            // Nothing is left behind, whatever went wrong.
-            self.end(&mut child, &group);
-        }
-        outcome
+        let program = Program::start(command, self.tie, self.log)?;
+        started(&program.group);
+        self.wait_for(program)
     }
 
-    #[cfg(unix)]
-    fn tie(&self, command: &mut Command) {
-        use std::os::unix::process::CommandExt;
-        if self.tie != Tie::Shared {
-            command.process_group(0);
-        }
-        if self.tie == Tie::Bound && cfg!(target_os = "linux") {
-            let parent = std::process::id();
-            // SAFETY: it makes system calls only.
-            unsafe {
-                command.pre_exec(move || {
-                    // A shell starts what runs in the background deaf to interrupts; our children hear them.
-                    libc::signal(libc::SIGINT, libc::SIG_DFL);
-                    end_with_parent(parent);
-                    Ok(())
-                })
-            };
-        }
+    /// Waits until a program that was started has ended, with all of its group.
+    ///
+    /// # Errors
+    /// When the system does not tell how it ended.
+    pub fn wait_for(&self, mut program: Program) -> io::Result<Outcome> {
+        let _counted = Counted::new();
+        // Where this fails nothing is left behind: the program is ended as it is dropped.
+        let outcome = self.wait(&mut program)?;
+        program.is_over = true;
+        Ok(outcome)
     }
 
-    #[cfg(not(unix))]
-    fn tie(&self, _: &mut Command) {}
-
-    fn wait(&self, child: &mut Child, group: &Group) -> io::Result<Outcome> {
+    fn wait(&self, program: &mut Program) -> io::Result<Outcome> {
         let began = Instant::now();
         loop {
-            if has_ended(child)? {
-                let used = processor_time(child.id());
+            let id = program.child.id();
+            if has_ended(&program.child)? {
+                let used = processor_time(id);
                 // While the child was not waited for, its number is its group's: what is left there ends too.
-                self.kill(child, group);
-                let outcome = Outcome::of(child.wait()?);
+                program.kill();
+                let outcome = Outcome::of(program.child.wait()?);
                 let is_late = used.zip(system_limit()).is_some_and(|(used, limit)| is_late(used, limit));
                 // The system kills what goes on beyond its last limit of time.
                 return Ok(if outcome == Outcome::Killed && is_late { Outcome::OutOfTime } else { outcome });
             }
             let elapsed = began.elapsed();
             if self.stop.load(Ordering::SeqCst) {
-                self.end(child, group);
+                program.end();
                 return Ok(Outcome::Interrupted);
             }
-            if let Some(limit) = self.limit.filter(|&limit| is_over(child.id(), elapsed, limit)) {
-                self.end(child, group);
+            if let Some(limit) = self.limit.filter(|&limit| is_over(id, elapsed, limit)) {
+                program.end();
                 return Ok(Outcome::TooLong(limit));
             }
             std::thread::sleep(LOOK.min(elapsed / 8 + Duration::from_micros(500)));
         }
     }
+}
 
-    /// Asks a program to end, and ends it where it does not, with all that it has started.
-    fn end(&self, child: &mut Child, group: &Group) {
+/// A program that was started. Where nobody waits for it, it is ended when this is dropped.
+pub struct Program {
+    child: Child,
+    group: Group,
+    tie: Tie,
+    is_over: bool,
+}
+
+impl Program {
+    /// Starts a program; what it says goes into the log.
+    ///
+    /// # Errors
+    /// When it cannot be started.
+    pub fn start(command: &mut Command, tie: Tie, log: Option<&Log>) -> io::Result<Self> {
+        let sink = || log.map_or_else(|| Ok(Stdio::null()), Log::sink);
+        command.stdin(Stdio::null()).stdout(sink()?).stderr(sink()?);
+        tie.set(command);
+        Self::spawn(command, tie)
+    }
+
+    /// Forks a process that does this work and ends with the exit code. There must be one thread ([`super::may_fork`]).
+    ///
+    /// # Errors
+    /// When it cannot be forked.
+    pub fn fork(tie: Tie, work: impl Fn() -> u8 + Send + Sync + 'static) -> io::Result<Self> {
+        // No program is started, whatever its name.
+        let mut command = Command::new("/");
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        tie.set(&mut command);
+        work_instead(&mut command, work);
+        Self::spawn(&mut command, tie)
+    }
+
+    fn spawn(command: &mut Command, tie: Tie) -> io::Result<Self> {
+        let child = command.spawn()?;
+        Ok(Self { group: Group::of(child.id()), child, tie, is_over: false })
+    }
+
+    /// Asks it to end, and ends it where it does not, with all that it has started.
+    fn end(&mut self) {
         let mut family = Family::default();
         if self.tie != Tie::Shared {
-            family = group.family();
-            group.ask_to_end();
+            family = self.group.family();
+            self.group.ask_to_end();
             let asked = Instant::now();
-            while asked.elapsed() < PATIENCE && !has_ended(child).unwrap_or(true) {
+            while asked.elapsed() < PATIENCE && !has_ended(&self.child).unwrap_or(true) {
                 std::thread::sleep(LOOK / 4);
             }
         }
-        self.kill(child, group);
-        let _ = child.wait();
+        self.kill();
+        let _ = self.child.wait();
         family.end();
+        self.is_over = true;
     }
 
-    fn kill(&self, child: &mut Child, group: &Group) {
+    fn kill(&mut self) {
         if self.tie != Tie::Shared {
-            group.kill();
+            self.group.kill();
         }
         // Not of a group, where there are none.
-        let _ = child.kill();
+        let _ = self.child.kill();
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        if !self.is_over {
+            self.end();
+        }
     }
 }
 
 /// Whether a program has ended; it is not waited for, so its number stays its own.
 #[cfg(unix)]
-fn has_ended(child: &mut Child) -> io::Result<bool> {
+fn has_ended(child: &Child) -> io::Result<bool> {
     let mut info = std::mem::MaybeUninit::<libc::siginfo_t>::zeroed();
     let options = libc::WEXITED | libc::WNOHANG | libc::WNOWAIT;
     // SAFETY: waitid writes to a record of its own kind, which is ours; all zeroes are a value of it.

@@ -73,11 +73,7 @@ fn reader(of: &Child) -> u32 {
     loop {
         let all = std::fs::read_dir("/proc").unwrap().flatten();
         let mut ids = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
-        let is_ours = |id: &u32| {
-            let command = std::fs::read(format!("/proc/{id}/cmdline")).unwrap_or_default();
-            process(*id).is_some_and(|(_, parent)| parent == of.id())
-                && String::from_utf8_lossy(&command).contains("read-model-and-exit")
-        };
+        let is_ours = |id: &u32| process(*id).is_some_and(|(_, parent)| parent == of.id());
         if let Some(found) = ids.find(is_ours) {
             return found;
         }

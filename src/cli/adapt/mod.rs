@@ -32,7 +32,7 @@ use files::Targets;
 use input::{Given, Input, InputArguments, OnModel};
 use progress::Progress;
 use report::{Asked, Report};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -177,6 +177,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
+    /// The CAD model.
+    pub fn model(&self) -> Option<&Path> {
+        self.input.cad.as_deref()
+    }
+
     /// What the report says was asked for.
     fn asked(&self, threads: usize) -> Asked {
         let (input, output) = (self.input.mesh.clone(), self.output.clone());

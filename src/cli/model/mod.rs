@@ -10,7 +10,7 @@ use crate::geometry::names;
 use listing::Listing;
 use naming::Naming;
 use placing::PlaceArguments;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 pub use text::{about, counts};
 
@@ -28,6 +28,13 @@ pub struct Arguments {
     name: Vec<Naming>,
     #[command(flatten)]
     place: PlaceArguments,
+}
+
+impl Arguments {
+    /// The CAD model.
+    pub fn model(&self) -> &Path {
+        &self.file
+    }
 }
 
 /// Runs the subcommand.

@@ -71,6 +71,7 @@ mod tests {
     use super::GAIN;
     use crate::adapt::core::access::{Access, Speculative};
     use crate::adapt::core::ids::TetId;
+    use crate::adapt::core::refusal::Refusal;
     use crate::adapt::core::store::Store;
     use crate::adapt::core::worker::Worker;
     use crate::adapt::operations::smoothing::patch::SmoothingPatch;
@@ -81,6 +82,13 @@ mod tests {
         ratios.min_by(|x, y| x.0.total_cmp(&y.0)).unwrap()
     }
 
+    fn move_for_worst(bench: &mut Bench<'_>, t: TetId) -> Result<(), Refusal> {
+        let mut worker = Worker::new(&bench.context, &mut bench.states[0], Speculative::new(0));
+        let moved = worker.claim_current_tet(t).and_then(|_| worker.move_for_worst(&mut SmoothingPatch::default(), t));
+        worker.access.release(worker.store);
+        moved
+    }
+
     #[test]
     fn the_worst_tetrahedron_of_a_mesh_becomes_better_move_by_move() {
         for shape in [Shape::Cube, Shape::TwoRegions, Shape::Round] {
@@ -89,10 +97,7 @@ mod tests {
             let first = worst(&bench.context.store).0;
             for moves in 0..100 {
                 let (before, t) = worst(&bench.context.store);
-                let mut worker = Worker::new(&bench.context, &mut bench.states[0], Speculative::new(0));
-                let moved =
-                    worker.claim_current_tet(t).and_then(|_| worker.move_for_worst(&mut SmoothingPatch::default(), t));
-                worker.access.release(worker.store);
+                let moved = move_for_worst(&mut bench, t);
                 bench.check(&format!("{shape:?} after {moves} moves"));
                 if moved.is_err() {
                     break;
