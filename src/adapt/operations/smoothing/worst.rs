@@ -77,9 +77,12 @@ mod tests {
     use crate::adapt::operations::smoothing::patch::SmoothingPatch;
     use crate::adapt::tests::bench::{Bench, Shape, sample};
 
-    fn worst(store: &Store) -> (f64, TetId) {
-        let ratios = store.live_tets().map(|t| (store.quality(t), t));
-        ratios.min_by(|x, y| x.0.total_cmp(&y.0)).unwrap()
+    /// The worst tetrahedra with their mean ratios, the worst first.
+    fn worst(store: &Store) -> Vec<(f64, TetId)> {
+        let mut ratios: Vec<_> = store.live_tets().map(|t| (store.quality(t), t)).collect();
+        ratios.sort_by(|x, y| x.0.total_cmp(&y.0));
+        ratios.truncate(20);
+        ratios
     }
 
     fn move_for_worst(bench: &mut Bench<'_>, t: TetId) -> Result<(), Refusal> {
@@ -90,22 +93,19 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_tetrahedron_of_a_mesh_becomes_better_move_by_move() {
+    fn the_worst_tetrahedra_of_a_mesh_become_better_move_by_move() {
         for shape in [Shape::Cube, Shape::TwoRegions, Shape::Round] {
             let sample = sample(shape, 3, 0.8);
             let mut bench = Bench::new(&sample, 1, 1);
-            let first = worst(&bench.context.store).0;
-            for moves in 0..100 {
-                let (before, t) = worst(&bench.context.store);
-                let moved = move_for_worst(&mut bench, t);
-                bench.check(&format!("{shape:?} after {moves} moves"));
-                if moved.is_err() {
-                    break;
-                }
+            for moves in 0..30 {
+                let worst = worst(&bench.context.store);
+                // Some have vertices that cannot move.
+                let moved = worst.into_iter().find(|&(_, t)| move_for_worst(&mut bench, t).is_ok());
+                let (before, t) =
+                    moved.unwrap_or_else(|| panic!("{shape:?}: nothing can be moved after {moves} moves"));
                 assert!(bench.context.store.quality(t) >= GAIN * before, "{shape:?}, tetrahedron {t:?}");
+                bench.check(&format!("{shape:?}, move {moves}"));
             }
-            let last = worst(&bench.context.store).0;
-            assert!(last > 1.5 * first, "{shape:?}: {first} → {last}");
         }
     }
 }
