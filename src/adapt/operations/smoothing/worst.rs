@@ -97,7 +97,7 @@ mod tests {
         for shape in [Shape::Cube, Shape::TwoRegions, Shape::Round] {
             let sample = sample(shape, 3, 0.8);
             let mut bench = Bench::new(&sample, 1, 1);
-            for moves in 0..30 {
+            for moves in 0..12 {
                 let worst = worst(&bench.context.store);
                 // Some have vertices that cannot move.
                 let moved = worst.into_iter().find(|&(_, t)| move_for_worst(&mut bench, t).is_ok());
