@@ -401,7 +401,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     /// For each vertex whether one of its tetrahedra is wanted.
     fn at_tets(&self, wanted: impl Fn(&Store, TetId) -> bool + Sync) -> Vec<AtomicBool> {
         let store = &self.context.store;
-        let at: Vec<_> = (0..store.vertex_bound()).map(|_| AtomicBool::new(false)).collect();
+        let at: Vec<AtomicBool> = bytemuck::allocation::zeroed_vec(store.vertex_bound());
         self.team().for_each(GRAIN, store.tet_bound(), |range| {
             for t in store.live_tets_in(range).filter(|&t| wanted(store, t)) {
                 store.vertices(t).iter().for_each(|v| at[v.index()].store(true, Relaxed));

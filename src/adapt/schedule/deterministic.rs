@@ -34,7 +34,7 @@ const FEW: usize = 32;
 const FEWEST_ITEMS: usize = if cfg!(test) { 6 } else { 512 };
 
 /// When less than this share of all items is left, one thread does the rest.
-const LITTLE: f64 = 0.003;
+const LITTLE: f64 = 0.001;
 
 /// Vertices or tetrahedra that are looked at in one task.
 const GRAIN: usize = 1 << 13;
@@ -217,8 +217,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     /// For each vertex whether it has a neighbour in another part.
     fn between(&self) -> Vec<AtomicBool> {
         let store = &self.context.store;
-        let mut between = Vec::new();
-        between.resize_with(store.vertex_bound(), AtomicBool::default);
+        let between: Vec<AtomicBool> = bytemuck::allocation::zeroed_vec(store.vertex_bound());
         self.pool.task_for(Plan { grain: GRAIN, ..self.plan }, store.tet_bound(), |_, range| {
             for t in store.live_tets_in(range) {
                 let vertices = store.vertices(t);
