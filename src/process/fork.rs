@@ -1,4 +1,5 @@
 //! Work in a process of its own that starts no program.
+use std::io;
 use std::process::Command;
 
 /// Whether this process may fork one that does some of its work: it has one thread, so no lock of another is held in the new one.
@@ -13,7 +14,9 @@ pub(super) fn work_instead(command: &mut Command, work: impl Fn() -> u8 + Send +
     let work = move || {
         // Until a program begins here, the parent waits at a pipe for what went wrong. So that it goes on, that is closed, with all else.
         // SAFETY: a system call on files that the work does not use.
-        unsafe { libc::syscall(libc::SYS_close_range, 3, u32::MAX, 0) };
+        if unsafe { libc::syscall(libc::SYS_close_range, 3, u32::MAX, 0) } != 0 {
+            return Err(io::Error::last_os_error());
+        }
         let code = std::panic::catch_unwind(std::panic::AssertUnwindSafe(&work));
         // SAFETY: the process ends, with nothing to be written. After a panic with the exit code that one has.
         unsafe { libc::_exit(code.map_or(101, i32::from)) }

@@ -1,7 +1,8 @@
 //! Other programs. Everything that this program starts, it starts here.
 //!
 //! [`Runner`] starts a program and waits for it. At an interrupt or a limit of time it ends the program with all that this has started. It
-//! returns how the program ended ([`Outcome`]). A [`Program`] may be started first and waited for later. [`Group`] is a group of processes that a later run finds again, [`Log`] a file for what programs say.
+//! returns how the program ended ([`Outcome`]). A [`Program`] may be started first and waited for later. [`Group`] is a group of processes that a
+//! later run finds again, [`Log`] a file for what programs say.
 mod fork;
 mod group;
 mod log;

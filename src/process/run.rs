@@ -123,7 +123,7 @@ impl Runner<'_> {
         let began = Instant::now();
         loop {
             let id = program.child.id();
-            if has_ended(&program.child)? {
+            if has_ended(&mut program.child)? {
                 let used = processor_time(id);
                 // While the child was not waited for, its number is its group's: what is left there ends too.
                 program.kill();
@@ -191,7 +191,7 @@ impl Program {
             family = self.group.family();
             self.group.ask_to_end();
             let asked = Instant::now();
-            while asked.elapsed() < PATIENCE && !has_ended(&self.child).unwrap_or(true) {
+            while asked.elapsed() < PATIENCE && !has_ended(&mut self.child).unwrap_or(true) {
                 std::thread::sleep(LOOK / 4);
             }
         }
@@ -220,7 +220,7 @@ impl Drop for Program {
 
 /// Whether a program has ended; it is not waited for, so its number stays its own.
 #[cfg(unix)]
-fn has_ended(child: &Child) -> io::Result<bool> {
+fn has_ended(child: &mut Child) -> io::Result<bool> {
     let mut info = std::mem::MaybeUninit::<libc::siginfo_t>::zeroed();
     let options = libc::WEXITED | libc::WNOHANG | libc::WNOWAIT;
     // SAFETY: waitid writes to a record of its own kind, which is ours; all zeroes are a value of it.

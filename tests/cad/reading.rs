@@ -176,6 +176,19 @@ fn a_limit_of_time_is_told_with_the_way_to_raise_it() {
 }
 
 #[test]
+fn a_model_that_nobody_asks_for_is_read_no_further() {
+    let place = Place::new();
+    let mut command = program();
+    command.arg("adapt").arg(place.path("none.mesh")).arg("--cad").arg(place.path("many.step"));
+    command.args(["--analytic", "polar-1", "-o"]).arg(place.path("out.mesh")).env("TMPDIR", place.path("tmp"));
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let output = ends(child);
+    let told = stderr(&output);
+    assert!(output.status.code() == Some(2) && told.contains("none.mesh") && !told.contains("many.step"), "{told}");
+    assert!(place.left().is_empty(), "{:?}", place.left());
+}
+
+#[test]
 fn a_killed_run_leaves_no_child_and_the_next_one_clears_its_files() {
     let place = Place::new();
     let mut child = place.command().spawn().unwrap();
