@@ -7,7 +7,7 @@ use crate::geometry::discrete::complete_boundary;
 use crate::geometry::on_mesh;
 use crate::tasks::{Plan, Team};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Arguments of `geo-adapt classify`.
@@ -17,7 +17,7 @@ pub struct Arguments {
     mesh: PathBuf,
     /// The model: .step, .stp, .iges, .igs, .brep or .egads
     #[arg(long, value_name = "MODEL", required_unless_present = "surface")]
-    cad: Option<PathBuf>,
+    pub(super) cad: Option<PathBuf>,
     #[command(flatten)]
     surface: SurfaceArguments,
     /// Where the mesh with its association goes: .mesh or .meshb; other formats that `convert` writes hold no association
@@ -27,13 +27,6 @@ pub struct Arguments {
     /// states for an entity]
     #[arg(long, value_name = "T", value_parser = super::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-}
-
-impl Arguments {
-    /// The CAD model.
-    pub fn model(&self) -> Option<&Path> {
-        self.cad.as_deref()
-    }
 }
 
 /// Runs the subcommand.

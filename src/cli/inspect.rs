@@ -38,7 +38,7 @@ pub struct Arguments {
     analytic: Option<Analytic>,
     /// The CAD model the mesh lies on: .step, .stp, .iges, .igs, .brep or .egads
     #[arg(long, value_name = "MODEL")]
-    cad: Option<PathBuf>,
+    pub(super) cad: Option<PathBuf>,
     /// Checks and measures the mesh from its file within this memory: 500MB, 4GiB. For .meshb with a metric in .solb, without a model; all else
     /// is checked as without it. The boundary must fit
     #[arg(long, value_name = "SIZE", value_parser = bytes, conflicts_with_all = ["cad", "surface"])]
@@ -85,13 +85,6 @@ struct Inspection {
     cad: Option<Cad>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     walls: Vec<OfWall>,
-}
-
-impl Arguments {
-    /// The CAD model.
-    pub fn model(&self) -> Option<&Path> {
-        self.cad.as_deref()
-    }
 }
 
 /// Runs the subcommand: code 0 for a valid mesh (that fits the model, if one is given), else 1.

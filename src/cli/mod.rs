@@ -62,7 +62,7 @@ struct Arguments {
 }
 
 impl Arguments {
-    /// The CAD model that this process reads, and surely.
+    /// The CAD model that this process reads; none where a service reads it, or several processes do.
     fn reads_here(&self) -> Option<&Path> {
         #[cfg(feature = "serve")]
         if self.place.server.is_some() {
@@ -135,10 +135,10 @@ impl Command {
     /// The CAD model that it reads once it has looked at its other inputs.
     fn model(&self) -> Option<&Path> {
         match self {
-            Self::Adapt(arguments) => arguments.model(),
-            Self::Classify(arguments) => arguments.model(),
-            Self::Inspect(arguments) => arguments.model(),
-            Self::Model(arguments) => Some(arguments.model()),
+            Self::Adapt(arguments) => arguments.input.cad.as_deref(),
+            Self::Classify(arguments) => arguments.cad.as_deref(),
+            Self::Inspect(arguments) => arguments.cad.as_deref(),
+            Self::Model(arguments) => Some(&arguments.file),
             _ => None,
         }
     }
@@ -201,7 +201,7 @@ pub fn main() -> ExitCode {
     };
     arguments.how.set();
     notices.iter().for_each(note);
-    // Before there is a second thread.
+    // Now, since a process is forked for it: an interrupt is listened to by a second thread.
     let _begun = arguments.reads_here().map(load::Begun::with);
     interrupt::listen();
     if !matches!(arguments.command, Command::Adapt(_) | Command::Ranks) && ranks::is_one_of_several() {

@@ -12,7 +12,7 @@ pub fn may_fork() -> bool {
 pub(super) fn work_instead(command: &mut Command, work: impl Fn() -> u8 + Send + Sync + 'static) {
     use std::os::unix::process::CommandExt;
     let work = move || {
-        // Until a program begins here, the parent waits at a pipe for what went wrong. So that it goes on, that is closed, with all else.
+        // The parent reads a pipe until a program is loaded here. With all files the pipe is closed, so the parent goes on.
         // SAFETY: a system call on files that the work does not use.
         if unsafe { libc::syscall(libc::SYS_close_range, 3, u32::MAX, 0) } != 0 {
             return Err(io::Error::last_os_error());

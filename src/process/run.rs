@@ -102,9 +102,9 @@ impl Runner<'_> {
     /// When it cannot be started.
     pub fn run(&self, command: &mut Command, started: impl FnOnce(&Group)) -> io::Result<Outcome> {
         let _counted = Counted::new();
-        let program = Program::start(command, self.tie, self.log)?;
+        let mut program = Program::start(command, self.tie, self.log)?;
         started(&program.group);
-        self.wait_for(program)
+        self.wait(&mut program)
     }
 
     /// Waits until a program that was started has ended, with all of its group.
@@ -113,12 +113,10 @@ impl Runner<'_> {
     /// When the system does not tell how it ended.
     pub fn wait_for(&self, mut program: Program) -> io::Result<Outcome> {
         let _counted = Counted::new();
-        // Where this fails nothing is left behind: the program is ended as it is dropped.
-        let outcome = self.wait(&mut program)?;
-        program.is_over = true;
-        Ok(outcome)
+        self.wait(&mut program)
     }
 
+    /// Where this fails nothing is left behind: the program is ended when it is dropped.
     fn wait(&self, program: &mut Program) -> io::Result<Outcome> {
         let began = Instant::now();
         loop {
@@ -128,6 +126,7 @@ impl Runner<'_> {
                 // While the child was not waited for, its number is its group's: what is left there ends too.
                 program.kill();
                 let outcome = Outcome::of(program.child.wait()?);
+                program.is_over = true;
                 let is_late = used.zip(system_limit()).is_some_and(|(used, limit)| is_late(used, limit));
                 // The system kills what goes on beyond its last limit of time.
                 return Ok(if outcome == Outcome::Killed && is_late { Outcome::OutOfTime } else { outcome });

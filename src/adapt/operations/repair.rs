@@ -61,8 +61,8 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Stale);
         }
         let floor = (GAIN * quality).max(1e-9);
-        let mut result = first_done(vertices.into_iter().map(|v| self.retetrahedralize_ball(v, floor)));
-        result = result.or_else(|refusal| {
+        let star = first_done(vertices.into_iter().map(|v| self.retetrahedralize_ball(v, floor)));
+        let result = star.or_else(|refusal| {
             refusal.or_try(|| first_done(vertices.into_iter().map(|v| self.remove(&mut scratch.collapse, v, floor))))
         });
         if quality >= BAD {

@@ -32,7 +32,7 @@ use files::Targets;
 use input::{Given, Input, InputArguments, OnModel};
 use progress::Progress;
 use report::{Asked, Report};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -41,7 +41,7 @@ use std::time::Instant;
 #[command(defer(field::only_with_field))]
 pub struct Arguments {
     #[command(flatten)]
-    input: InputArguments,
+    pub(super) input: InputArguments,
     /// Where the adapted mesh goes, in any format that `convert` writes; its metric is the field `metric` of the file, or where that holds no
     /// fields (.mesh, .meshb, .su2, .ugrid, OpenFOAM) beside it as .solb
     #[arg(short, long, visible_short_alias = 'x', value_name = "OUT")]
@@ -177,11 +177,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
-    /// The CAD model.
-    pub fn model(&self) -> Option<&Path> {
-        self.input.cad.as_deref()
-    }
-
     /// What the report says was asked for.
     fn asked(&self, threads: usize) -> Asked {
         let (input, output) = (self.input.mesh.clone(), self.output.clone());

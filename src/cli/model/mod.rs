@@ -10,7 +10,7 @@ use crate::geometry::names;
 use listing::Listing;
 use naming::Naming;
 use placing::PlaceArguments;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 pub use text::{about, counts};
 
@@ -18,7 +18,7 @@ pub use text::{about, counts};
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The model: .step, .stp, .iges, .igs, .brep or .egads
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// Print JSON. There too everything counts from 1
     #[arg(long)]
     json: bool,
@@ -28,13 +28,6 @@ pub struct Arguments {
     name: Vec<Naming>,
     #[command(flatten)]
     place: PlaceArguments,
-}
-
-impl Arguments {
-    /// The CAD model.
-    pub fn model(&self) -> &Path {
-        &self.file
-    }
 }
 
 /// Runs the subcommand.

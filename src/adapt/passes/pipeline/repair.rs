@@ -40,9 +40,12 @@ impl Pipeline<'_, '_> {
             ball: REPAIR_BALL,
             ..shape_limits()
         });
+        let mut since = 0;
         for round in 0..ROUNDS + FURTHER_ROUNDS {
             let limit = if round < ROUNDS { REPAIR_BELOW } else { BAD };
-            let mut items = self.tets(|store, t| store.quality(t) < limit);
+            // What was refused is tried again where something has changed.
+            let mut items = self.tets(|store, t| store.quality(t) < limit && store.moved(t) >= since);
+            since = self.context.store.clock() + 1;
             let store = &self.context.store;
             self.team().sort_by(&mut items, |x, y| store.quality(*x).total_cmp(&store.quality(*y)).then(x.cmp(y)));
             self.no_more_than_repaired(&mut items);
