@@ -18,6 +18,8 @@ const LEAST_CUBE: f64 = 1e-18;
 pub struct SmoothingPatch {
     /// Surface triangles at the vertex (outward), with their tags.
     pub triangles: Vec<([VertexId; 3], u32)>,
+    /// The worst mean ratio of the tetrahedra as they are.
+    pub worst: f64,
     batches: Vec<Batch>,
     incident: Vec<IncidentEdges>,
     tets: usize,

@@ -2,7 +2,7 @@
 //!
 //! The energy of [`super::patch`] is convex about a vertex as long as the metric is held, so one Newton step comes near its minimum, and
 //! how much the step would save is known before anything is tried. A step is taken only if the energy falls with the metric
-//! of the new place, no tetrahedron is inverted (exact), and the surface does not deviate more from its model.
+//! of the new place, no tetrahedron is inverted (exact), none that is very bad becomes worse, and the surface does not deviate more from its model.
 use super::patch::SmoothingPatch;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ball::Ball;
@@ -10,6 +10,7 @@ use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::refusal::{Refusal, first_done};
 use crate::adapt::core::vertex_moves::{Placed, VertexState};
 use crate::adapt::core::worker::Worker;
+use crate::adapt::operations::repair::BAD;
 use crate::adapt::schedule::Operation;
 use crate::geometry::{Entity, Evaluate};
 use crate::mesh::vector::{Vec3, add, dot, lerp, scale, unit};
@@ -66,7 +67,8 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let mut ball = std::mem::take(&mut self.state.ball);
         let result = self.gather_ball(v, &mut ball).and_then(|()| {
-            if self.worst_of(&ball.tets) >= self.context.limits.improve_below {
+            patch.worst = self.worst_of(&ball.tets);
+            if patch.worst >= self.context.limits.improve_below {
                 return Err(Refusal::Stale);
             }
             patch.triangles.clear();
@@ -139,7 +141,8 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Moves the vertex to the closest point of its entity, if the energy is below `limit` there and the surface deviates no more than before.
+    /// Moves the vertex to the closest point of its entity, if the energy is below `limit` there, no very bad tetrahedron becomes worse, and the
+    /// surface deviates no more than before.
     fn move_to(
         &mut self,
         v: VertexId,
@@ -156,7 +159,9 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Shape);
         }
         let metric = log.exp();
-        if patch.with_lengths(placed.point, &metric) >= limit {
+        // A very bad tetrahedron becomes no worse: else smoothing takes back what repair has moved for it.
+        let loses = patch.worst < BAD && patch.mean_ratios().any(|ratio| ratio < patch.worst);
+        if loses || patch.with_lengths(placed.point, &metric) >= limit {
             return Err(Refusal::Shape);
         }
         self.move_fairly(v, &VertexState { placed, log, metric, hint }, ball, patch)
@@ -188,5 +193,43 @@ impl<A: Access> Worker<'_, '_, A> {
             });
         }
         moved.map_err(|refusal| if refusal == Refusal::Normal { Refusal::Shape } else { refusal })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::core::access::Speculative;
+    use crate::adapt::core::store::Store;
+    use crate::adapt::tests::bench::{Bench, Shape, sample};
+
+    fn worst_at(store: &Store, v: VertexId) -> f64 {
+        store.live_tets().filter(|&t| store.vertices(t).contains(&v)).map(|t| store.quality(t)).fold(1.0, f64::min)
+    }
+
+    fn smooth(bench: &mut Bench<'_>, v: VertexId) -> Result<(), Refusal> {
+        let mut worker = Worker::new(&bench.context, &mut bench.states[0], Speculative::new(0));
+        let moved = worker.smooth(&mut SmoothingPatch::default(), v);
+        worker.access.release(worker.store);
+        moved
+    }
+
+    #[test]
+    fn smoothing_makes_no_very_bad_tetrahedron_worse() {
+        let mut moved_at_bad = 0;
+        for shape in [Shape::Cube, Shape::TwoRegions, Shape::Round] {
+            let sample = sample(shape, 3, 0.8);
+            let mut bench = Bench::new(&sample, 1, 1);
+            for v in (0..bench.context.store.vertex_bound() as u32).map(VertexId) {
+                let before = worst_at(&bench.context.store, v);
+                if smooth(&mut bench, v).is_ok() && before < BAD {
+                    let after = worst_at(&bench.context.store, v);
+                    assert!(after >= before, "{shape:?}, vertex {v:?}: {before} → {after}");
+                    moved_at_bad += 1;
+                }
+            }
+            bench.check(&format!("{shape:?}, smoothing"));
+        }
+        assert!(moved_at_bad > 10, "{moved_at_bad} vertices of very bad tetrahedra moved");
     }
 }

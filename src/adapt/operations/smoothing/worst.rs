@@ -51,7 +51,7 @@ impl<A: Access> Worker<'_, '_, A> {
         place: Vec3,
         t: TetId,
     ) -> Result<(), Refusal> {
-        let worst = self.worst_of(&ball.tets);
+        let worst = patch.worst;
         if worst < self.store.quality(t) {
             return Err(Refusal::Shape);
         }
