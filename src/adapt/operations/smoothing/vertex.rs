@@ -2,7 +2,8 @@
 //!
 //! The energy of [`super::patch`] is convex about a vertex as long as the metric is held, so one Newton step comes near its minimum, and
 //! how much the step would save is known before anything is tried. A step is taken only if the energy falls with the metric
-//! of the new place, no tetrahedron is inverted (exact), none that is very bad becomes worse, and the surface does not deviate more from its model.
+//! of the new place, no tetrahedron is inverted (exact), the worst one becomes no worse if it is very bad, and the surface does not deviate more
+//! from its model.
 use super::patch::SmoothingPatch;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ball::Ball;
@@ -141,7 +142,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Moves the vertex to the closest point of its entity, if the energy is below `limit` there, no very bad tetrahedron becomes worse, and the
+    /// Moves the vertex to the closest point of its entity, if the energy is below `limit` there, a very bad worst tetrahedron becomes no worse, and the
     /// surface deviates no more than before.
     fn move_to(
         &mut self,
@@ -159,7 +160,7 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Shape);
         }
         let metric = log.exp();
-        // A very bad tetrahedron becomes no worse: else smoothing takes back what repair has moved for it.
+        // Else smoothing takes back what repair has moved.
         let loses = patch.worst < BAD && patch.mean_ratios().any(|ratio| ratio < patch.worst);
         if loses || patch.with_lengths(placed.point, &metric) >= limit {
             return Err(Refusal::Shape);
