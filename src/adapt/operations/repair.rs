@@ -7,17 +7,13 @@ use crate::adapt::core::star::{Bounds, Seed};
 use crate::adapt::core::worker::Worker;
 use crate::adapt::operations::collapse::onto_end::CollapseScratch;
 use crate::adapt::operations::smoothing::patch::SmoothingPatch;
+use crate::adapt::operations::smoothing::worst::BAD;
 use crate::adapt::schedule::Operation;
 use crate::mesh::vector::lerp;
 use std::ops::RangeInclusive;
 
 /// The worst mean ratio of a larger cavity must grow by this factor.
 const GAIN: f64 = 1.05;
-
-/// Below this mean ratio an edge may be split for the shape alone, or a vertex moved for this tetrahedron alone. Where two edges of the model
-/// run side by side, nearer than the metric's sizes (a blunt trailing edge), their vertices must face each other, and a vertex may be missing
-/// for that.
-pub const BAD: f64 = 0.35;
 
 /// By a split for the shape the worst mean ratio must grow by this factor: smoothing gains the rest.
 pub const SPLIT_GAIN: f64 = 1.001;

@@ -2,16 +2,16 @@
 //!
 //! The energy of [`super::patch`] is convex about a vertex as long as the metric is held, so one Newton step comes near its minimum, and
 //! how much the step would save is known before anything is tried. A step is taken only if the energy falls with the metric
-//! of the new place, no tetrahedron is inverted (exact), the worst one becomes no worse if it is very bad, and the surface does not deviate more
-//! from its model.
+//! of the new place, no tetrahedron is inverted (exact), and the surface does not deviate more from its model. Where the worst tetrahedron is very
+//! bad ([`BAD`]) it must not become worse.
 use super::patch::SmoothingPatch;
+use super::worst::BAD;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ball::Ball;
 use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::refusal::{Refusal, first_done};
 use crate::adapt::core::vertex_moves::{Placed, VertexState};
 use crate::adapt::core::worker::Worker;
-use crate::adapt::operations::repair::BAD;
 use crate::adapt::schedule::Operation;
 use crate::geometry::{Entity, Evaluate};
 use crate::mesh::vector::{Vec3, add, dot, lerp, scale, unit};
@@ -142,8 +142,8 @@ impl<A: Access> Worker<'_, '_, A> {
         }
     }
 
-    /// Moves the vertex to the closest point of its entity, if the energy is below `limit` there, a very bad worst tetrahedron becomes no worse, and the
-    /// surface deviates no more than before.
+    /// Moves the vertex to the closest point of its entity, if the energy is below `limit` there and the surface deviates no more than before. The
+    /// worst tetrahedron, where it is very bad, must not become worse.
     fn move_to(
         &mut self,
         v: VertexId,
@@ -160,7 +160,7 @@ impl<A: Access> Worker<'_, '_, A> {
             return Err(Refusal::Shape);
         }
         let metric = log.exp();
-        // Else smoothing takes back what repair has moved.
+        // Without this, smoothing takes back what repair has moved.
         let loses = patch.worst < BAD && patch.mean_ratios().any(|ratio| ratio < patch.worst);
         if loses || patch.with_lengths(placed.point, &metric) >= limit {
             return Err(Refusal::Shape);

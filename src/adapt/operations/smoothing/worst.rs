@@ -8,6 +8,11 @@ use crate::adapt::core::refusal::{Refusal, first_done};
 use crate::adapt::core::worker::Worker;
 use crate::mesh::vector::{Vec3, add, cross, dot, lerp, scale, sub};
 
+/// Below this mean ratio a tetrahedron is very bad: a vertex may be moved for it alone, or an edge split. Where the worst ratio at a vertex is below
+/// it, smoothing must not lower that. Where two edges of the model run side by side, nearer than the metric's sizes (a blunt trailing edge), their
+/// vertices must face each other, and a vertex may be missing for that.
+pub const BAD: f64 = 0.35;
+
 /// By a move the worst mean ratio must grow by this factor: many small ones are needed.
 const GAIN: f64 = 1.01;
 

@@ -3,7 +3,8 @@ use super::{Pipeline, shape_limits};
 use crate::adapt::core::context::{LONG, Limits};
 use crate::adapt::core::ids::TetId;
 use crate::adapt::operations::reconnection::criteria::Criterion;
-use crate::adapt::operations::repair::{BAD, Repair, SPLIT_GAIN};
+use crate::adapt::operations::repair::{Repair, SPLIT_GAIN};
+use crate::adapt::operations::smoothing::worst::BAD;
 use crate::adapt::schedule::work::Kind;
 
 /// Tetrahedra below this mean ratio are repaired.
