@@ -10,6 +10,7 @@
 mod apart;
 mod level;
 mod repair;
+mod rounds;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -69,11 +70,11 @@ pub fn coarsened(
     if !is_crowded(team, mesh, &logs) {
         return None;
     }
-    let mut level = Level::of(mesh, place, logs, required);
+    let mut level = Level::of(team, mesh, place, logs, required);
     let mut hints = Vec::new();
     loop {
         let before = level.points.len();
-        let balls = level.balls();
+        let balls = level.balls(team);
         if hints.is_empty() {
             hints = balls.firsts();
         }

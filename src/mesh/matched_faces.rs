@@ -1,6 +1,6 @@
 //! Which tetrahedra share a face.
 use super::adjacency::{FACES, NONE, sorted3};
-use crate::tasks::{GRAIN, Rows, Team};
+use crate::tasks::{GRAIN, Rows, Team, plain, zeros};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// A face of more than two tetrahedra.
@@ -28,14 +28,18 @@ impl MatchedFaces {
     /// nodes that are near each other have near numbers.
     pub fn of(team: Team<'_>, tets: &[[u32; 4]]) -> Self {
         let sides = sides_by_least_node(team, tets);
-        let neighbours: Vec<_> = (0..tets.len()).map(|_| [NONE; 4].map(AtomicU32::new)).collect();
+        // Of each side its neighbour ^ NONE, so that zeroed memory says NONE.
+        let across = zeros(4 * tets.len());
         let crowds = team.chunks(GRAIN, sides.len(), |range| {
             let mut table = Table::default();
             // All faces are matched, even when one has too many tetrahedra.
-            let crowds = range.filter_map(|v| table.match_at(v as u32, &sides, tets, &neighbours));
+            let crowds = range.filter_map(|v| table.match_at(v as u32, &sides, tets, &across));
             crowds.reduce(|first, _| first)
         });
-        let neighbours = neighbours.into_iter().map(|across| across.map(AtomicU32::into_inner)).collect();
+        let mut neighbours: Vec<[u32; 4]> = bytemuck::allocation::cast_vec(plain(across));
+        team.fill(GRAIN, &mut neighbours, |_, some| {
+            some.as_flattened_mut().iter_mut().for_each(|across| *across ^= NONE)
+        });
         Self { neighbours, crowded: crowds.into_iter().flatten().next() }
     }
 }
@@ -95,13 +99,7 @@ impl Table {
     }
 
     /// Matches the faces whose least node is v; returns the first one of more than two tetrahedra.
-    fn match_at(
-        &mut self,
-        v: u32,
-        sides: &Rows,
-        tets: &[[u32; 4]],
-        neighbours: &[[AtomicU32; 4]],
-    ) -> Option<OverSharedFace> {
+    fn match_at(&mut self, v: u32, sides: &Rows, tets: &[[u32; 4]], across: &[AtomicU32]) -> Option<OverSharedFace> {
         let sides = sides.row(v as usize);
         self.clear(sides.len());
         let mut crowded: Option<OverSharedFace> = None;
@@ -114,9 +112,8 @@ impl Table {
             match slot.count {
                 1 => (slot.key, slot.side) = ([b, c], side),
                 2 => {
-                    let (other, across) = (slot.side as usize / 4, slot.side as usize % 4);
-                    neighbours[tet][face].store(other as u32, Relaxed);
-                    neighbours[other][across].store(tet as u32, Relaxed);
+                    across[side as usize].store(slot.side / 4 ^ NONE, Relaxed);
+                    across[slot.side as usize].store(side / 4 ^ NONE, Relaxed);
                 }
                 tets => {
                     let crowd = OverSharedFace { nodes: [v, b, c], tets: tets as usize };

@@ -92,7 +92,7 @@ struct NearBoundary {
 
 impl NearBoundary {
     fn of(team: Team<'_>, tets: &[[u32; 4]], vertices: usize, neighbours: &[[u32; 4]]) -> Self {
-        let marks: Vec<AtomicBool> = (0..vertices).map(|_| AtomicBool::new(false)).collect();
+        let marks: Vec<AtomicBool> = bytemuck::allocation::zeroed_vec(vertices);
         team.for_each(GRAIN, tets.len(), |range| {
             for t in range.filter(|&t| neighbours[t].contains(&NONE)) {
                 for face in (0..4).filter(|&i| neighbours[t][i] == NONE) {

@@ -39,6 +39,7 @@ mod sort;
 mod stage;
 mod strategy;
 mod team;
+mod words;
 
 pub use plan::{Backend, Plan, Strategy};
 pub use pool::{Error, Pool};
@@ -47,6 +48,7 @@ pub use scope::{Scope, Task};
 pub use simulation::{section, threads_to_simulate, told as simulation_told};
 pub use stage::{stage, tell_stages};
 pub use team::{GRAIN, Team};
+pub use words::{plain, zeros};
 
 // The locks of the slots; tests/parking_protocol.rs has loom's in their place.
 use std::sync;

@@ -1,6 +1,7 @@
 //! Rows of different lengths, one after the other (compressed rows): items by keys, the neighbours of vertices, the sides of edges.
 use super::team::{GRAIN, Team};
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use super::words::{plain, zeros};
+use std::sync::atomic::Ordering::Relaxed;
 
 /// Rows of 32-bit numbers, fewer than 2³² in all.
 pub struct Rows {
@@ -75,7 +76,7 @@ impl Rows {
                 }
             }
         });
-        Self { starts, entries: entries.into_iter().map(AtomicU32::into_inner).collect() }
+        Self { starts, entries: plain(entries) }
     }
 
     /// Each task deals a share of the items out to ranges of the keys; then each range is sorted, with counts of its own keys alone.
@@ -152,11 +153,6 @@ impl Rows {
     pub fn into_entries(self) -> Vec<u32> {
         self.entries
     }
-}
-
-/// Zeroed memory, which costs nothing until it is used.
-fn zeros(count: usize) -> Vec<AtomicU32> {
-    bytemuck::allocation::zeroed_vec(count)
 }
 
 /// Where the entries of each key begin, and the end of the last, from the counts of the parts, each shape (keys,); those become where the

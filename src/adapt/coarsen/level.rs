@@ -10,7 +10,7 @@ use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, sub};
 use crate::metric::Sym3;
-use crate::tasks::{Rows, Team};
+use crate::tasks::{GRAIN, Rows, Team};
 use std::borrow::Cow;
 
 /// Marks a vertex inside.
@@ -19,14 +19,23 @@ pub const INSIDE: u32 = u32::MAX;
 /// Marks a vertex that stays: on a vertex or an edge of the model, required, or beside something required.
 pub const FIXED: u32 = u32::MAX - 1;
 
+/// A vertex, as lengths of edges need it.
+#[derive(Clone, Copy)]
+pub struct Corner {
+    /// Its position.
+    pub point: Vec3,
+    /// M.
+    metric: Sym3,
+}
+
 /// The mesh as plain arrays. The first level borrows those of the input.
 pub struct Level<'m> {
     /// Positions.
     pub points: Cow<'m, [Vec3]>,
     /// ln M.
     pub logs: Cow<'m, [Sym3]>,
-    /// M.
-    pub metrics: Vec<Sym3>,
+    /// Positions once more, with M beside them.
+    pub corners: Vec<Corner>,
     /// For each vertex the model face that it lies on, [`INSIDE`] or [`FIXED`].
     pub faces: Vec<u32>,
     /// For each vertex its number in the input.
@@ -47,9 +56,9 @@ pub struct Level<'m> {
 pub struct Balls(Rows);
 
 impl Balls {
-    /// Lists the tetrahedra at each of so many vertices.
-    pub fn of<const N: usize>(elements: &[[u32; N]], vertices: usize) -> Self {
-        Self(Rows::at_nodes(Team::alone(), elements, vertices))
+    /// Lists the elements at each of so many vertices.
+    pub fn of<const N: usize>(team: Team<'_>, elements: &[[u32; N]], vertices: usize) -> Self {
+        Self(Rows::at_nodes(team, elements, vertices))
     }
 
     /// The tetrahedra at a vertex.
@@ -66,7 +75,13 @@ impl Balls {
 
 impl<'m> Level<'m> {
     /// The first level: the input.
-    pub fn of(mesh: &'m TetMesh, place: &'m Classification, logs: Cow<'m, [Sym3]>, required: &Required) -> Self {
+    pub fn of(
+        team: Team<'_>,
+        mesh: &'m TetMesh,
+        place: &'m Classification,
+        logs: Cow<'m, [Sym3]>,
+        required: &Required,
+    ) -> Self {
         let mut faces: Vec<u32> = place
             .entities
             .iter()
@@ -85,7 +100,7 @@ impl<'m> Level<'m> {
         }
         Self {
             points: Cow::Borrowed(&mesh.vertices),
-            metrics: logs.iter().map(Sym3::exp).collect(),
+            corners: team.map(GRAIN, logs.len(), |v| Corner { point: mesh.vertices[v], metric: logs[v].exp() }),
             logs,
             faces,
             origin: (0..mesh.vertices.len() as u32).collect(),
@@ -98,53 +113,40 @@ impl<'m> Level<'m> {
     }
 
     /// The tetrahedra at each vertex.
-    pub fn balls(&self) -> Balls {
-        Balls::of(&self.tets, self.points.len())
+    pub fn balls(&self, team: Team<'_>) -> Balls {
+        Balls::of(team, &self.tets, self.points.len())
     }
 
     /// The level after one round.
     pub fn coarser(self, team: Team<'_>, balls: &Balls) -> Self {
-        let surface = Surface::of(&self);
-        let mut map = VertexMap::of(&self, balls, &surface);
-        let mut repair = MapRepair::of(&self, balls, &surface);
-        repair.repair(&mut map);
-        while apart::keep(team, &self, &surface, &mut map) {
-            repair.repair(&mut map);
+        let surface = Surface::of(team, &self);
+        let map = VertexMap::of(team, &self, balls, &surface);
+        let repair = MapRepair::of(team, &self, balls, &surface, &map);
+        repair.repair();
+        while apart::keep(team, &self, &surface, &map) {
+            repair.repair();
         }
-        self.mapped(&map)
+        self.mapped(team, &map)
     }
 
     /// What is left when vertices have gone onto others.
-    fn mapped(self, map: &VertexMap) -> Self {
-        let stays: Vec<u32> = (0..self.points.len() as u32).filter(|&v| map.target(v) == v).collect();
+    fn mapped(self, team: Team<'_>, map: &VertexMap) -> Self {
+        let stays = team.collect(GRAIN, self.points.len(), |range, stays| {
+            stays.extend((range.start as u32..range.end as u32).filter(|&v| map.target(v) == v));
+        });
         let mut number = vec![u32::MAX; self.points.len()];
         stays.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
-        let (mut tets, mut regions) = (Vec::new(), Vec::new());
-        for (nodes, &region) in self.tets.iter().zip(&*self.regions) {
-            let nodes = map.map(nodes);
-            if is_proper(&nodes) {
-                tets.push(nodes.map(|v| number[v as usize]));
-                regions.push(region);
-            }
-        }
-        let (mut triangles, mut triangle_origin) = (Vec::new(), Vec::new());
-        for (nodes, &origin) in self.triangles.iter().zip(&self.triangle_origin) {
-            let nodes = map.map(nodes);
-            if is_proper(&nodes) {
-                triangles.push(nodes.map(|v| number[v as usize]));
-                triangle_origin.push(origin);
-            }
-        }
+        let (tets, triangles) = (map.left(team, &self.tets), map.left(team, &self.triangles));
         Self {
-            points: stays.iter().map(|&v| self.points[v as usize]).collect(),
-            logs: stays.iter().map(|&v| self.logs[v as usize]).collect(),
-            metrics: stays.iter().map(|&v| self.metrics[v as usize]).collect(),
-            faces: stays.iter().map(|&v| self.faces[v as usize]).collect(),
-            origin: stays.iter().map(|&v| self.origin[v as usize]).collect(),
-            tets: Cow::Owned(tets),
-            regions: Cow::Owned(regions),
-            triangles: Cow::Owned(triangles),
-            triangle_origin,
+            points: Cow::Owned(of_those(team, &stays, &self.points)),
+            logs: Cow::Owned(of_those(team, &stays, &self.logs)),
+            corners: of_those(team, &stays, &self.corners),
+            faces: of_those(team, &stays, &self.faces),
+            origin: of_those(team, &stays, &self.origin),
+            tets: Cow::Owned(renumbered(team, map, &number, &tets, &self.tets)),
+            regions: Cow::Owned(of_those(team, &tets, &self.regions)),
+            triangles: Cow::Owned(renumbered(team, map, &number, &triangles, &self.triangles)),
+            triangle_origin: of_those(team, &triangles, &self.triangle_origin),
             of_face: self.of_face,
         }
     }
@@ -152,9 +154,31 @@ impl<'m> Level<'m> {
     /// Squares of the lengths of an edge in the metrics of its ends.
     #[inline(always)]
     pub fn squares(&self, a: u32, b: u32) -> [f64; 2] {
-        let e = sub(self.points[b as usize], self.points[a as usize]);
-        [a, b].map(|v| self.metrics[v as usize].quadratic(e))
+        squares(&self.corners[a as usize], &self.corners[b as usize])
     }
+}
+
+/// As [`Level::squares`].
+#[inline(always)]
+pub fn squares(a: &Corner, b: &Corner) -> [f64; 2] {
+    let e = sub(b.point, a.point);
+    [a.metric.quadratic(e), b.metric.quadratic(e)]
+}
+
+/// The values of those of these numbers.
+fn of_those<T: Copy + Send + Sync>(team: Team<'_>, those: &[u32], values: &[T]) -> Vec<T> {
+    team.map(GRAIN, those.len(), |at| values[those[at] as usize])
+}
+
+/// The elements of these numbers, with the new numbers of the targets of their vertices.
+fn renumbered<const N: usize>(
+    team: Team<'_>,
+    map: &VertexMap,
+    number: &[u32],
+    those: &[u32],
+    elements: &[[u32; N]],
+) -> Vec<[u32; N]> {
+    team.map(GRAIN, those.len(), |at| map.map(&elements[those[at] as usize]).map(|v| number[v as usize]))
 }
 
 /// Whether no two nodes are the same.

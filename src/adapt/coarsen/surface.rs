@@ -2,6 +2,7 @@
 use super::level::{Balls, FIXED, Level, is_proper};
 use super::vertex_map::VertexMap;
 use crate::mesh::vector::{Vec3, add, area2, dot, scale, unit};
+use crate::tasks::Team;
 
 /// Least cosine between the normals of a triangle and of the one that it comes from, and of the surface at its vertices.
 const LEAST_COSINE: f64 = 0.94;
@@ -22,7 +23,7 @@ const NONE: u32 = u32::MAX;
 
 impl Surface {
     /// Of a level.
-    pub fn of(level: &Level) -> Self {
+    pub fn of(team: Team<'_>, level: &Level) -> Self {
         let mut slots = vec![NONE; level.points.len()];
         let mut count = 0;
         for &v in level.triangles.iter().flatten() {
@@ -32,7 +33,7 @@ impl Surface {
             }
         }
         let triangles: Vec<[u32; 3]> = level.triangles.iter().map(|nodes| nodes.map(|v| slots[v as usize])).collect();
-        let balls = Balls::of(&triangles, count as usize);
+        let balls = Balls::of(team, &triangles, count as usize);
         let mut normals = vec![[0.0; 3]; count as usize];
         for (nodes, at) in level.triangles.iter().zip(&triangles) {
             let normal = normal(level, nodes);

@@ -7,7 +7,7 @@ use crate::mesh::samples::cube;
 use crate::mesh::validity::check;
 use crate::mesh::vector::Vec3;
 use crate::metric::Background;
-use crate::tasks::Team;
+use crate::tasks::{Plan, Pool, Team};
 use proptest::prelude::*;
 
 /// The same size everywhere.
@@ -94,6 +94,24 @@ proptest! {
             prop_assert!(mesh.tets.nodes[coarse.hints[v] as usize].contains(&old));
         }
         prop_assert!(fill::fill_known(Team::alone(), &coarse.mesh, &coarse.place, &source, coarse.known()).is_ok());
+    }
+}
+
+#[test]
+fn coarse_is_the_same_whatever_the_number_of_threads() {
+    // Rounded, so that triangles turn too.
+    for mesh in [shaken(14, 3), rounded(shaken(14, 4)), cube(14)] {
+        let (place, source) = (placed(&mesh), of_size(&mesh, 0.9));
+        let of_threads = |threads: usize| {
+            let pool = Pool::new(threads).unwrap();
+            let team = Team::new(&pool, Plan::default());
+            let coarse = coarsened(team, &mesh, &place, &source, &Required::default(), None).expect("it is crowded");
+            (coarse.mesh, coarse.origin, coarse.hints)
+        };
+        let of_one = of_threads(1);
+        for threads in [2, 3, 8] {
+            assert!(of_threads(threads) == of_one, "{threads} threads");
+        }
     }
 }
 

@@ -1,99 +1,106 @@
 //! Which vertices stay, and onto which of them the others go.
-use super::level::{Balls, FIXED, INSIDE, Level};
+use super::level::{Balls, FIXED, INSIDE, Level, is_proper};
+use super::rounds;
 use super::surface::Surface;
+use crate::tasks::{GRAIN, Team};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
 /// Edges shorter than this in the metrics of both ends may vanish.
 const SHORT: f64 = 0.85;
 
-/// What becomes of a vertex.
-#[derive(Clone, Copy)]
-struct Image {
-    /// The vertex that it goes onto; itself where it stays; [`OPEN`] where that is not decided.
-    target: u32,
-    /// Who looked at it last: a vertex, or a numbered look around one.
-    seen: u32,
-    /// Fourth power of the distance to its target.
-    distance: f32,
-}
-
 const OPEN: u32 = u32::MAX;
 
-/// The vertices that stay, each with those that go onto it.
+/// What becomes of the vertices: some stay, the others go onto them. Several threads may change it, each what it says of other vertices.
 pub struct VertexMap {
-    images: Vec<Image>,
-    /// The number of the present look, greater than that of any vertex.
-    look: u32,
+    /// For each vertex the one that it goes onto; itself where it stays; [`OPEN`] where that is not decided.
+    targets: Vec<AtomicU32>,
+    /// Fourth powers of the distances to these, as the bits of an `f32`.
+    ways: Vec<AtomicU32>,
+}
+
+/// A word a vertex.
+fn words(count: usize, word: u32) -> Vec<AtomicU32> {
+    (0..count).map(|_| AtomicU32::new(word)).collect()
 }
 
 impl VertexMap {
-    /// Vertices are taken in their order, those on edges of the model first, then those on its faces. A vertex stays when no vertex that
+    /// Vertices on edges of the model come first, then those on its faces, then those inside, in their order part by part. A vertex stays when no vertex that
     /// stays is near it; else it goes onto the nearest of these.
-    pub fn of(level: &Level, balls: &Balls, surface: &Surface) -> Self {
+    pub fn of(team: Team<'_>, level: &Level, balls: &Balls, surface: &Surface) -> Self {
         let count = level.points.len();
-        let mut map = Self {
-            images: vec![Image { target: OPEN, seen: OPEN, distance: f32::INFINITY }; count],
-            look: count as u32,
+        let map = Self { targets: words(count, OPEN), ways: words(count, f32::INFINITY.to_bits()) };
+        let those = |wanted: fn(u32) -> bool| {
+            team.collect(GRAIN, count, |range, found| {
+                found.extend((range.start as u32..range.end as u32).filter(|&v| wanted(level.faces[v as usize])));
+            })
         };
-        let those = |wanted: fn(u32) -> bool| (0..count as u32).filter(move |&v| wanted(level.faces[v as usize]));
-        for v in those(|face| face == FIXED).chain(those(|face| face < FIXED)) {
+        let boundary = [those(|face| face == FIXED), those(|face| face < FIXED)].concat();
+        for &v in &boundary {
             if map.stays(v) {
                 surface.neighbours(level, v, |x| map.offer_target(level, v, x));
             }
         }
-        for v in those(|face| face != INSIDE).chain(those(|face| face == INSIDE)) {
-            if map.stays(v) {
-                map.attract_inside(level, balls, v);
+        // Who offered itself last to a vertex.
+        let seen = words(count, OPEN);
+        let attract = |v: u32| {
+            for &t in balls.at(v) {
+                for x in level.tets[t as usize] {
+                    let seen = &seen[x as usize];
+                    if x != v && seen.load(Relaxed) != v && level.faces[x as usize] == INSIDE {
+                        seen.store(v, Relaxed);
+                        map.offer_target(level, v, x);
+                    }
+                }
             }
-        }
+        };
+        boundary.into_iter().filter(|&v| map.target(v) == v).for_each(attract);
+        rounds::in_rounds(
+            team,
+            level,
+            balls,
+            those(|face| face == INSIDE),
+            |v| v,
+            |part, vertices, left| {
+                for &v in vertices.iter().filter(|&&v| map.target(v) == OPEN) {
+                    if part.holds_ball(v) {
+                        map.stays(v);
+                        attract(v);
+                    } else {
+                        left.push(v);
+                    }
+                }
+            },
+        );
         map
     }
 
     /// Lets a vertex stay, unless it goes already.
-    fn stays(&mut self, v: u32) -> bool {
-        let image = &mut self.images[v as usize];
-        if image.target == OPEN {
-            (image.target, image.distance) = (v, 0.0);
+    fn stays(&self, v: u32) -> bool {
+        if self.target(v) == OPEN {
+            self.send(v, v, 0.0);
         }
-        image.target == v
-    }
-
-    /// Offers v, which stays, as a target to the vertices inside that are joined to it.
-    fn attract_inside(&mut self, level: &Level, balls: &Balls, v: u32) {
-        for &t in balls.at(v) {
-            for x in level.tets[t as usize] {
-                if x != v && self.images[x as usize].seen != v && level.faces[x as usize] == INSIDE {
-                    self.offer_target(level, v, x);
-                }
-            }
-        }
+        self.target(v) == v
     }
 
     /// Offers v, which stays, as a target to a vertex that is joined to it.
     #[inline]
-    fn offer_target(&mut self, level: &Level, v: u32, x: u32) {
-        let image = &mut self.images[x as usize];
-        image.seen = v;
+    fn offer_target(&self, level: &Level, v: u32, x: u32) {
         let distance = distance(level, v, x);
-        if distance < image.distance {
-            (image.target, image.distance) = (v, distance);
+        if distance < self.way(x) {
+            self.send(x, v, distance);
         }
-    }
-
-    /// Begins a look around a vertex.
-    pub fn look_around(&mut self) {
-        self.look = self.look.wrapping_add(1);
-    }
-
-    /// Whether this look meets a vertex for the first time.
-    #[inline(always)]
-    pub fn is_new(&mut self, v: u32) -> bool {
-        std::mem::replace(&mut self.images[v as usize].seen, self.look) != self.look
     }
 
     /// The vertex that a vertex goes onto: itself where it stays.
     #[inline(always)]
     pub fn target(&self, v: u32) -> u32 {
-        self.images[v as usize].target
+        self.targets[v as usize].load(Relaxed)
+    }
+
+    /// Fourth power of the distance of a vertex to its target.
+    #[inline(always)]
+    pub fn way(&self, v: u32) -> f32 {
+        f32::from_bits(self.ways[v as usize].load(Relaxed))
     }
 
     /// An element with its vertices replaced by their targets.
@@ -102,29 +109,40 @@ impl VertexMap {
         nodes.map(|v| self.target(v))
     }
 
-    /// Sends a vertex onto another. Returns its target before.
-    pub fn send(&mut self, v: u32, target: u32, distance: f32) -> (u32, f32) {
-        let image = &mut self.images[v as usize];
-        let before = (image.target, image.distance);
-        (image.target, image.distance) = (target, distance);
-        before
+    /// Sends a vertex onto another.
+    #[inline]
+    pub fn send(&self, v: u32, target: u32, distance: f32) {
+        self.targets[v as usize].store(target, Relaxed);
+        self.ways[v as usize].store(distance.to_bits(), Relaxed);
+    }
+
+    /// The numbers of the elements of which no two vertices meet.
+    pub fn left<const N: usize>(&self, team: Team<'_>, elements: &[[u32; N]]) -> Vec<u32> {
+        team.collect(GRAIN, elements.len(), |range, left| {
+            let numbered = elements[range.clone()].iter().zip(range.start as u32..);
+            left.extend(numbered.filter(|(nodes, _)| is_proper(&self.map(nodes))).map(|(_, element)| element));
+        })
     }
 
     /// For each vertex whether others go onto it.
-    pub fn led(&self) -> Vec<bool> {
-        let mut led = vec![false; self.images.len()];
-        for (image, v) in self.images.iter().zip(0..) {
-            led[image.target as usize] |= image.target != v;
-        }
+    pub fn led(&self, team: Team<'_>) -> Vec<AtomicBool> {
+        let led: Vec<AtomicBool> = bytemuck::allocation::zeroed_vec(self.targets.len());
+        team.for_each(GRAIN, led.len(), |range| {
+            for v in range.start as u32..range.end as u32 {
+                let target = self.target(v);
+                if target != v {
+                    led[target as usize].store(true, Relaxed);
+                }
+            }
+        });
         led
     }
 
     /// Of the vertices of an element, lets the one with the longest way stay. None where all stay already.
-    pub fn keep_one(&mut self, nodes: &[u32]) -> Option<u32> {
+    pub fn keep_one(&self, nodes: &[u32]) -> Option<u32> {
         let goes = nodes.iter().copied().filter(|&v| self.target(v) != v);
-        let way = |v: &u32| self.images[*v as usize].distance;
-        let v = goes.max_by(|a, b| way(a).total_cmp(&way(b)))?;
-        (self.images[v as usize].target, self.images[v as usize].distance) = (v, 0.0);
+        let v = goes.max_by(|&a, &b| self.way(a).total_cmp(&self.way(b)))?;
+        self.send(v, v, 0.0);
         Some(v)
     }
 }

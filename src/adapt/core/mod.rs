@@ -17,6 +17,7 @@ pub mod ids;
 mod lock_checker;
 pub mod measure;
 pub mod numbering;
+pub mod parts;
 pub mod refusal;
 pub mod required;
 pub mod ridges;

@@ -34,7 +34,7 @@ pub struct Repair;
 impl Operation for Repair {
     type Item = TetId;
     type Scratch = RepairScratch;
-    const WHOLE_BALLS: bool = false;
+    const WHOLE_BALLS: bool = true;
 
     fn attempt<A: Access>(
         &self,

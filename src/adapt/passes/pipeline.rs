@@ -130,7 +130,9 @@ pub struct Pipeline<'c, 'm> {
     complexity_given: f64,
     /// Vertices that the metric asks for, as far as is known.
     expected: f64,
-    /// Tetrahedra that the end-game tried.
+    /// The share of the tetrahedra that repair may try.
+    repair_share: f64,
+    /// Tetrahedra that it tried.
     repaired: usize,
     /// Tetrahedra that it left untried, since there were too many.
     pub unrepaired: usize,
@@ -174,6 +176,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             expected: 0.0,
             complexity_given: 0.0,
             asked: 0.0,
+            repair_share: repair::REPAIR_SHARE,
             repaired: 0,
             unrepaired: 0,
             torn: false,

@@ -4,12 +4,12 @@
 //! ends. It does the part's items in their order, with ids of the part's own. An item that would touch another part waits for the next
 //! round, which is cut elsewhere. A tetrahedron with vertices in two parts stands still, and so does everything that a part can see of
 //! another. So it makes no difference which part is done first. No lock is taken: a claim reads a byte that does not change.
-use super::parts::Parts;
 use super::{Advance, Item, Operation, STRIDE, ThreadContext, fetch_ahead, sequential};
 use crate::adapt::core::access::Owned;
 use crate::adapt::core::context::Context;
 use crate::adapt::core::id_pool::IdPool;
 use crate::adapt::core::ids::VertexId;
+use crate::adapt::core::parts::{Parts, Sample};
 use crate::adapt::core::refusal::{Counts, Refusal};
 use crate::adapt::core::store::Store;
 use crate::adapt::core::worker::Worker;
@@ -145,7 +145,7 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
     fn run(&mut self, threads: &mut [ThreadContext<'_, 'm, O>], counts: &mut Counts, advance: Advance<'_>) -> Vec<u32> {
         let store = &self.context.store;
         let team = Team::new(self.pool, self.plan);
-        self.assign_owners(&Parts::of(team, store, self.left.len(), |at| self.item(self.left[at]), self.parts));
+        self.assign_owners(&Parts::of(team, self.left.len(), self.parts, |at| self.sample(self.item(self.left[at]))));
         let parts_of = self.parts_of_items();
         let (sorted, starts, waiting) = self.sorted(&parts_of, counts);
         let id_pools = threads[0].state.id_pool.split(store, self.parts);
@@ -174,6 +174,15 @@ impl<'m, O: Operation> Round<'_, 'm, O> {
         threads[0].state.id_pool.merge(team, store, id_pools);
         team.sort(&mut again);
         again
+    }
+
+    /// Where an item is, by its first vertex.
+    fn sample(&self, item: O::Item) -> Option<Sample> {
+        let store = &self.context.store;
+        let v = item.vertices(store)[0];
+        let position = |v| store.position(v);
+        let is_live = v.is_some() && store.is_vertex(v);
+        is_live.then(|| Sample::of(position(v), store.vertices(store.tet_of(v)).map(position)))
     }
 
     /// Writes the owners of the vertices. Dead ids have none: any part may get them.

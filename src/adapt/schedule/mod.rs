@@ -1,7 +1,6 @@
 //! The schedulers: an operation is applied to a list of items by one thread or by several.
 pub mod deterministic;
 mod grains;
-mod parts;
 mod sequential;
 mod speculative;
 pub mod work;

@@ -18,8 +18,14 @@ const ROUNDS: usize = 3;
 const FURTHER_ROUNDS: usize = 20;
 
 /// In a run, repair tries at most this share of the tetrahedra of the mesh, and [`REPAIR_FEW`]. It is dear: one costs as much as to look
-/// at some thousand flips. Where a metric can be met, fewer tetrahedra are below the limit; where it cannot, repair would not end.
-const REPAIR_SHARE: f64 = 0.25;
+/// at some thousand flips.
+pub(super) const REPAIR_SHARE: f64 = 0.25;
+
+/// Of a longer list this share, and [`REPAIR_FEW`], are tried first, which are the worst. A list is as long where no mesh meets the metric.
+const TRIAL_SHARE: f64 = 0.05;
+
+/// Where fewer than these of a trial become better, no more is tried in the run: of the rest still fewer would.
+const USEFUL: f64 = 0.3;
 
 /// Vertices of more tetrahedra than this the end-game does not take out: each of the tetrahedra would try it again.
 const REPAIR_BALL: usize = 256;
@@ -49,9 +55,7 @@ impl Pipeline<'_, '_> {
             since = self.context.store.clock() + 1;
             let store = &self.context.store;
             self.team().sort_by(&mut items, |x, y| store.quality(*x).total_cmp(&store.quality(*y)).then(x.cmp(y)));
-            self.no_more_than_repaired(&mut items);
-            let done = if self.observer.stop() { 0 } else { self.sweep(Kind::Repair, &Repair, &items).done };
-            if done == 0 {
+            if self.repair_worst(&items) == 0 {
                 break;
             }
             self.reconnect(Criterion::MeanRatio, 2);
@@ -61,12 +65,64 @@ impl Pipeline<'_, '_> {
         self.looked = looked;
     }
 
-    /// Leaves as many items of repair as it may still try, the worst ones.
-    fn no_more_than_repaired(&mut self, items: &mut Vec<TetId>) {
-        let most = (REPAIR_FEW + REPAIR_SHARE * self.live_tets() as f64) as usize;
-        let left = most.saturating_sub(self.repaired);
-        self.unrepaired = items.len().saturating_sub(left);
-        items.truncate(left);
-        self.repaired += items.len();
+    /// Repairs as many of these as may still be tried, the first ones. Returns how many became better.
+    fn repair_worst(&mut self, items: &[TetId]) -> u64 {
+        let live = self.live_tets() as f64;
+        let few = |share: f64| (REPAIR_FEW + share * live) as usize;
+        let (trial, mut tried, mut done) = (few(TRIAL_SHARE), 0, 0);
+        loop {
+            let left = few(self.repair_share).saturating_sub(self.repaired).min(items.len() - tried);
+            let some = if tried == 0 { left.min(trial) } else { left };
+            self.unrepaired = items.len() - tried - some;
+            if some == 0 || self.observer.stop() {
+                return done;
+            }
+            self.repaired += some;
+            done += self.sweep(Kind::Repair, &Repair, &items[tried..tried + some]).done;
+            tried += some;
+            if tried == trial && (done as f64) < USEFUL * trial as f64 {
+                self.repair_share = TRIAL_SHARE;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::core::required::{Freeze, Required};
+    use crate::adapt::schedule::work::Silent;
+    use crate::adapt::schedule::{Execution, Grains, Scheduler};
+    use crate::adapt::tests::bench::{Bench, Shape, sample};
+    use crate::tasks::{Plan, Pool};
+
+    /// Tetrahedra that are to be repaired, those that repair tries, and those that it leaves, of a mesh that may change or is frozen.
+    fn repaired(is_frozen: bool) -> (usize, usize, usize) {
+        let sample = sample(Shape::Cube, 10, 0.2);
+        let mut bench = Bench::new(&sample, 1, 3);
+        if is_frozen {
+            let regions = vec![sample.mesh.tets.refs[0]];
+            bench.context.required = Required::of(&sample.mesh, &Freeze { regions, ..Freeze::default() });
+        }
+        let pool = Pool::new(1).unwrap();
+        let (scheduler, plan, grains) = (Scheduler::Deterministic, Plan::default(), Grains::default());
+        let execution = Execution { pool: &pool, scheduler, plan, grains };
+        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
+        let bad = pipeline.tets(|store, t| store.quality(t) < REPAIR_BELOW).len();
+        pipeline.repair();
+        let found = (bad, pipeline.repaired, pipeline.unrepaired);
+        bench.check("repair");
+        found
+    }
+
+    #[test]
+    fn where_repair_is_of_no_use_to_the_worst_the_others_are_left() {
+        // 500 and a twentieth of 6000.
+        let trial = 800;
+        let (bad, tried, left) = repaired(true);
+        assert!(bad > 2 * trial, "{bad}");
+        assert_eq!((tried, left), (trial, bad - trial));
+        let (bad, tried, _) = repaired(false);
+        assert!(tried > 2 * trial, "{bad} {tried}");
     }
 }

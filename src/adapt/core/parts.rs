@@ -1,10 +1,7 @@
-//! The mesh in parts for one round of the deterministic scheduler: half-spaces cut the items in halves, again and again.
+//! The mesh in parts, one a task: half-spaces cut the items in halves, again and again.
 //!
 //! The cuts depend on the mesh and the items alone. Of several directions the one whose cut crosses the fewest tetrahedra is taken. So a
 //! cut runs along a boundary layer and not across it; and in a later round, whose items lie beside the cuts of the last, across those.
-use super::Item;
-use crate::adapt::core::ids::VertexId;
-use crate::adapt::core::store::Store;
 use crate::mesh::vector::{Vec3, dot};
 use crate::tasks::Team;
 
@@ -40,37 +37,29 @@ pub struct Parts {
     cuts: Vec<Cut>,
 }
 
-/// A sampled item: along each direction the coordinate of its vertex, and the extent of a tetrahedron there.
+/// A sampled item: along each direction the coordinate of a vertex of it, and the extent of a tetrahedron there.
 #[derive(Clone, Copy)]
-struct Sample {
+pub struct Sample {
     at: [f64; DIRECTIONS.len()],
     extent: [[f64; 2]; DIRECTIONS.len()],
 }
 
 impl Sample {
-    fn of(store: &Store, v: VertexId) -> Self {
-        let corners = store.vertices(store.tet_of(v)).map(|x| store.position(x));
+    /// Of the position of a vertex and those of the corners of a tetrahedron at it.
+    pub fn of(vertex: Vec3, corners: [Vec3; 4]) -> Self {
         let along = |d: &Vec3| corners.map(|p| dot(p, *d));
         let extent = DIRECTIONS
             .map(|d| along(&d).into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [x.min(l), x.max(h)]));
-        Self { at: DIRECTIONS.map(|d| dot(store.position(v), d)), extent }
+        Self { at: DIRECTIONS.map(|d| dot(vertex, d)), extent }
     }
 }
 
 impl Parts {
-    /// Cuts so many items into `count` parts, a power of two.
-    pub fn of<I: Item>(
-        team: Team<'_>,
-        store: &Store,
-        items: usize,
-        item: impl Fn(usize) -> I + Sync,
-        count: usize,
-    ) -> Self {
+    /// Cuts so many items into `count` parts, a power of two. `sample` gives the sample of an item, none where it is gone.
+    pub fn of(team: Team<'_>, items: usize, count: usize, sample: impl Fn(usize) -> Option<Sample> + Sync) -> Self {
         let stride = items.div_ceil(SAMPLED * count).max(1);
         let samples: Vec<_> = team.collect(FEW, items.div_ceil(stride), |range, found| {
-            let vertices = range.map(|at| item(at * stride).vertices(store)[0]);
-            let live = vertices.filter(|&v| v.is_some() && store.is_vertex(v));
-            found.extend(live.map(|v| Sample::of(store, v)));
+            found.extend(range.filter_map(|at| sample(at * stride)));
         });
         let mut cuts = Vec::with_capacity(count - 1);
         let mut order: Vec<u32> = (0..samples.len() as u32).collect();
@@ -158,7 +147,10 @@ mod tests {
         let bench = Bench::new(&sample, 1, 5);
         let (pool, store) = (Pool::new(threads).unwrap(), &bench.context.store);
         let vertices: Vec<_> = store.live_vertices().collect();
-        let parts = Parts::of(Team::new(&pool, Plan::default()), store, vertices.len(), |at| vertices[at], count);
+        let position = |v| store.position(v);
+        let sample = |v| Sample::of(position(v), store.vertices(store.tet_of(v)).map(position));
+        let team = Team::new(&pool, Plan::default());
+        let parts = Parts::of(team, vertices.len(), count, |at| Some(sample(vertices[at])));
         vertices.iter().map(|&v| parts.hold([store.position(v)])[0]).collect()
     }
 
