@@ -112,8 +112,8 @@ impl Table {
             match slot.count {
                 1 => (slot.key, slot.side) = ([b, c], side),
                 2 => {
-                    across[side as usize].store(slot.side / 4 ^ NONE, Relaxed);
-                    across[slot.side as usize].store(side / 4 ^ NONE, Relaxed);
+                    across[side as usize].store((slot.side / 4) ^ NONE, Relaxed);
+                    across[slot.side as usize].store((side / 4) ^ NONE, Relaxed);
                 }
                 tets => {
                     let crowd = OverSharedFace { nodes: [v, b, c], tets: tets as usize };
