@@ -21,6 +21,9 @@ const AT_ONCE: usize = 8;
 /// Products with it are well mixed: 2³² over the golden ratio.
 const MIXES: u32 = 0x9E37_79B9;
 
+/// Where there are fewer tetrahedra an item than this, all are looked at beforehand, else those that items meet.
+const TETS_AN_ITEM: usize = 64;
+
 /// What is known of a vertex: nothing yet; that all its neighbours are in its part; that one is not.
 const UNKNOWN: u8 = 0;
 const INNER: u8 = 1;
@@ -34,6 +37,8 @@ pub struct Region<'r> {
     parts: &'r [u8],
     /// For each vertex [`UNKNOWN`], [`INNER`] or [`AT_ANOTHER`].
     known: &'r [AtomicU8],
+    /// Whether all is known: what is still [`UNKNOWN`] is [`INNER`].
+    is_known: bool,
     part: u8,
 }
 
@@ -54,6 +59,9 @@ impl Region<'_> {
             return false;
         }
         let known = &self.known[v as usize];
+        if self.is_known {
+            return known.load(Relaxed) == UNKNOWN;
+        }
         if known.load(Relaxed) == UNKNOWN {
             let is_inner = !self.balls.at(v).iter().any(|&t| is_between(self.parts, &self.level.tets[t as usize]));
             known.store(if is_inner { INNER } else { AT_ANOTHER }, Relaxed);
@@ -84,15 +92,23 @@ pub fn in_rounds<I: Copy + Ord + Send + Sync, T: Send>(
     loop {
         let count = (1 << (items.len() / ITEMS).max(1).ilog2()).min(most);
         if count < FEWEST_PARTS {
-            let whole = Region { level, balls, parts: &[], known: &[], part: 0 };
+            let whole = Region { level, balls, parts: &[], known: &[], is_known: true, part: 0 };
             results.push(work(&whole, &items, &mut Vec::new()));
             return results;
         }
         let parts = parts(team, level, balls, items.len(), |at| vertex(items[at]), count);
         let known: Vec<AtomicU8> = bytemuck::allocation::zeroed_vec(parts.len());
+        let is_known = level.tets.len() < TETS_AN_ITEM * items.len();
+        if is_known {
+            team.for_each(GRAIN, level.tets.len(), |range| {
+                for nodes in level.tets[range].iter().filter(|nodes| is_between(&parts, nodes)) {
+                    nodes.iter().for_each(|&v| known[v as usize].store(AT_ANOTHER, Relaxed));
+                }
+            });
+        }
         let dealt = Rows::by_key(team, count, items.len(), |at| [u32::from(parts[vertex(items[at]) as usize])]);
         let done = team.chunks(1, count, |range| {
-            let region = Region { level, balls, parts: &parts, known: &known, part: range.start as u8 };
+            let region = Region { level, balls, parts: &parts, known: &known, is_known, part: range.start as u8 };
             let own: Vec<I> = dealt.row(range.start).iter().map(|&at| items[at as usize]).collect();
             let mut left = Vec::new();
             (work(&region, &own, &mut left), left)
