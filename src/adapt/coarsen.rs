@@ -5,7 +5,7 @@
 //! positive, they therefore fill the domain without overlap, and their faces match.
 //! A curved boundary may then pass through another part of itself across a void: there the new triangles are tested ([`apart`]).
 //!
-//! Neighbours need not be known, and only a word a vertex and the result are written. A round passes through the memory a few times;
+//! Neighbours need not be known, and only some words a vertex and the result are written. A round passes through the memory a few times;
 //! thinning vertex by vertex passes through it for each sixth of the vertices.
 mod apart;
 mod level;

@@ -19,7 +19,7 @@ pub const INSIDE: u32 = u32::MAX;
 /// Marks a vertex that stays: on a vertex or an edge of the model, required, or beside something required.
 pub const FIXED: u32 = u32::MAX - 1;
 
-/// A vertex, as lengths of edges need it.
+/// What lengths of edges need of a vertex.
 #[derive(Clone, Copy)]
 pub struct Corner {
     /// Its position.
@@ -34,7 +34,7 @@ pub struct Level<'m> {
     pub points: Cow<'m, [Vec3]>,
     /// ln M.
     pub logs: Cow<'m, [Sym3]>,
-    /// Positions once more, with M beside them.
+    /// Positions once more, beside M: a length waits for one place in memory, not for two.
     pub corners: Vec<Corner>,
     /// For each vertex the model face that it lies on, [`INSIDE`] or [`FIXED`].
     pub faces: Vec<u32>,

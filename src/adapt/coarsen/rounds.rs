@@ -1,8 +1,7 @@
 //! Items of a level done by all threads, with the same result whatever their number.
 //!
 //! In each round the level is cut into parts, which follow from the level and the items alone. A task does a part's items in their order, reads and
-//! changes only what is known of the part's own vertices, and leaves what would need others. That lies between the parts, and is
-//! done in a later round, which is cut elsewhere.
+//! changes the map at vertices of its part alone, and leaves what needs others to the next round, which is cut elsewhere.
 use super::level::{Balls, Level};
 use crate::adapt::core::parts::{Parts, Sample};
 use crate::tasks::{GRAIN, Rows, Team};
@@ -21,10 +20,11 @@ const AT_ONCE: usize = 8;
 /// Products with it are well mixed: 2³² over the golden ratio.
 const MIXES: u32 = 0x9E37_79B9;
 
-/// Where there are fewer tetrahedra an item than this, all are looked at beforehand, else those that items meet.
+/// Where there are fewer tetrahedra an item than this, one pass over all of them tells which vertices have a neighbour in another part; else the
+/// balls of those that are asked for are looked through.
 const TETS_AN_ITEM: usize = 64;
 
-/// What is known of a vertex: nothing yet; that all its neighbours are in its part; that one is not.
+/// What is known of a vertex: nothing; all its neighbours are in its part; one is in another.
 const UNKNOWN: u8 = 0;
 const INNER: u8 = 1;
 const AT_ANOTHER: u8 = 2;

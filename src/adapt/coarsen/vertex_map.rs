@@ -10,7 +10,7 @@ const SHORT: f64 = 0.85;
 
 const OPEN: u32 = u32::MAX;
 
-/// What becomes of the vertices: some stay, the others go onto them. Several threads may change it, each what it says of other vertices.
+/// What becomes of the vertices: some stay, the others go onto them. Several threads may change it at once, each for vertices of its own.
 pub struct VertexMap {
     /// For each vertex the one that it goes onto; itself where it stays; [`OPEN`] where that is not decided.
     targets: Vec<AtomicU32>,
@@ -24,7 +24,7 @@ fn words(count: usize, word: u32) -> Vec<AtomicU32> {
 }
 
 impl VertexMap {
-    /// Vertices on edges of the model come first, then those on its faces, then those inside, in their order part by part. A vertex stays when no vertex that
+    /// Vertices on edges of the model come first, then those on its faces, then those inside, part by part. A vertex stays when no vertex that
     /// stays is near it; else it goes onto the nearest of these.
     pub fn of(team: Team<'_>, level: &Level, balls: &Balls, surface: &Surface) -> Self {
         let count = level.points.len();
@@ -63,7 +63,7 @@ impl VertexMap {
             |part, vertices, left| {
                 for &v in vertices.iter().filter(|&&v| map.target(v) == OPEN) {
                     if part.holds_ball(v) {
-                        map.stays(v);
+                        map.send(v, v, 0.0);
                         attract(v);
                     } else {
                         left.push(v);

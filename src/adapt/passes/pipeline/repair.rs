@@ -21,10 +21,11 @@ const FURTHER_ROUNDS: usize = 20;
 /// at some thousand flips.
 pub(super) const REPAIR_SHARE: f64 = 0.25;
 
-/// Of a longer list this share, and [`REPAIR_FEW`], are tried first, which are the worst. A list is as long where no mesh meets the metric.
+/// Of a list longer than this share of the tetrahedra, and [`REPAIR_FEW`], so many are tried first: the worst. Lists are so long only where
+/// no mesh meets the metric.
 const TRIAL_SHARE: f64 = 0.05;
 
-/// Where fewer than these of a trial become better, no more is tried in the run: of the rest still fewer would.
+/// Where a smaller share of these becomes better, repair ends for the run: of the rest still fewer would.
 const USEFUL: f64 = 0.3;
 
 /// Vertices of more tetrahedra than this the end-game does not take out: each of the tetrahedra would try it again.
@@ -68,10 +69,10 @@ impl Pipeline<'_, '_> {
     /// Repairs as many of these as may still be tried, the first ones. Returns how many became better.
     fn repair_worst(&mut self, items: &[TetId]) -> u64 {
         let live = self.live_tets() as f64;
-        let few = |share: f64| (REPAIR_FEW + share * live) as usize;
-        let (trial, mut tried, mut done) = (few(TRIAL_SHARE), 0, 0);
+        let most = |share: f64| (REPAIR_FEW + share * live) as usize;
+        let (trial, mut tried, mut done) = (most(TRIAL_SHARE), 0, 0);
         loop {
-            let left = few(self.repair_share).saturating_sub(self.repaired).min(items.len() - tried);
+            let left = most(self.repair_share).saturating_sub(self.repaired).min(items.len() - tried);
             let some = if tried == 0 { left.min(trial) } else { left };
             self.unrepaired = items.len() - tried - some;
             if some == 0 || self.observer.stop() {
