@@ -50,6 +50,9 @@ const PATIENCE: usize = 1;
 /// Most tetrahedra of a cavity from then on: inner vertices that are in the way to the model go.
 const LARGE_CAVITY: usize = 4096;
 
+/// After so many shape passes unprojected vertices are removed at any price.
+const LAST_RESORT: usize = 3;
+
 /// The store is renumbered before insertions, and after stages, when it has grown by this factor.
 const OUT_OF_ORDER: f64 = 2.0;
 
@@ -323,13 +326,14 @@ impl<'c, 'm> Pipeline<'c, 'm> {
         let before = self.unprojected.len();
         self.project();
         if !self.unprojected.is_empty() && pass >= PATIENCE {
-            self.remove_unprojected(pass + 1 == SHAPE_PASSES);
+            self.remove_unprojected(pass >= LAST_RESORT);
         }
         self.unprojected.len() < before
     }
 
-    /// Takes out the vertices that found no room on the model: where the surface becomes no worse, or at any price. In a part of a larger mesh
-    /// the surface does not fold all the same: it may pass through what is beyond the cuts.
+    /// Takes out the vertices that found no room on the model: where the surface becomes no worse, or at any price; where one cannot go, then a
+    /// neighbour on the surface does, and there may be room. In a part of a larger mesh the surface does not fold all the same: it may pass
+    /// through what is beyond the cuts.
     fn remove_unprojected(&mut self, at_any_price: bool) {
         let limits = self.context.limits;
         self.context.limits = Limits { collapse_floor: 0.0, longest_new: f64::INFINITY, ball: usize::MAX, ..limits };
@@ -344,9 +348,9 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             };
         }
         let items = std::mem::take(&mut self.unprojected);
-        self.sweep(Kind::Project, &RemoveUnprojected, &items);
-        self.collect_unprojected();
+        self.sweep(Kind::Project, &RemoveUnprojected { or_neighbour: at_any_price }, &items);
         self.context.limits = limits;
+        self.project();
     }
 
     /// Whether so many changes are few for a mesh of this size.

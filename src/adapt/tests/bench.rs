@@ -295,7 +295,7 @@ impl<'m> Bench<'m> {
                 self.push_off_the_model();
                 self.on_vertices(&Project, true)
             }
-            Task::RemoveUnprojected => self.on_vertices(&RemoveUnprojected, true),
+            Task::RemoveUnprojected => self.on_vertices(&RemoveUnprojected { or_neighbour: true }, true),
             Task::Repair => self.on_tets(&Repair),
         };
         if task == Task::Project && self.states.iter().any(|state| !state.unprojected.is_empty()) {

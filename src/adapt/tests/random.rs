@@ -60,7 +60,7 @@ fn attempt(bench: &mut Bench<'_>, kind: u8, pick: usize) -> Result<(), Refusal> 
         8 => worker
             .claim_current_tet(edge.tet)
             .and_then(|_| worker.move_for_worst(&mut SmoothingPatch::default(), edge.tet)),
-        _ => attempt_once(&RemoveUnprojected, &mut worker, vertex),
+        _ => attempt_once(&RemoveUnprojected { or_neighbour: false }, &mut worker, vertex),
     };
     worker.access.release(worker.store);
     result

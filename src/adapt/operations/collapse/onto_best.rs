@@ -29,17 +29,35 @@ impl<A: Access> Worker<'_, '_, A> {
         if ball.tets.len() > self.context.limits.ball {
             return Err(Refusal::Topology);
         }
-        let mut best: Result<(f64, VertexId), Refusal> = Err(Refusal::Shape);
-        for &w in &ball.link {
-            let better = best.map_or(floor, |(quality, _)| quality);
+        let (mut refused, mut result) = (Vec::new(), Err(Refusal::Shape));
+        while let Some(w) = self.best_neighbour(scratch, v, ball, floor, &refused)? {
+            self.try_collapse(scratch, v, w, ball, floor)?;
+            result = self.finish_collapse(v, w);
+            if !matches!(result, Err(Refusal::Topology | Refusal::Crossing)) {
+                break;
+            }
+            refused.push(w);
+        }
+        result
+    }
+
+    /// The neighbour onto which v would go best, but for some that refused it.
+    fn best_neighbour(
+        &mut self,
+        scratch: &mut CollapseScratch,
+        v: VertexId,
+        ball: &Ball,
+        floor: f64,
+        refused: &[VertexId],
+    ) -> Result<Option<VertexId>, Refusal> {
+        let (mut best, mut better) = (None, floor);
+        for &w in ball.link.iter().filter(|w| !refused.contains(w)) {
             match self.try_collapse(scratch, v, w, ball, better) {
-                Ok(quality) => best = Ok((quality, w)),
+                Ok(quality) => (best, better) = (Some(w), quality),
                 Err(Refusal::Conflict) => return Err(Refusal::Conflict),
                 Err(_) => {}
             }
         }
-        let (_, w) = best?;
-        self.try_collapse(scratch, v, w, ball, floor)?;
-        self.finish_collapse(v, w)
+        Ok(best)
     }
 }
