@@ -332,8 +332,8 @@ impl<'c, 'm> Pipeline<'c, 'm> {
     }
 
     /// Takes out the vertices that found no room on the model: where the surface becomes no worse, or at any price; where one cannot go, then a
-    /// neighbour on the surface does, and there may be room. In a part of a larger mesh the surface does not fold all the same: it may pass
-    /// through what is beyond the cuts.
+    /// neighbour on the surface does. Those that are left are projected again, since there may be room now. In a part of a larger mesh the
+    /// surface does not fold all the same: it may pass through what is beyond the cuts.
     fn remove_unprojected(&mut self, at_any_price: bool) {
         let limits = self.context.limits;
         self.context.limits = Limits { collapse_floor: 0.0, longest_new: f64::INFINITY, ball: usize::MAX, ..limits };
