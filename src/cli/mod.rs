@@ -201,9 +201,12 @@ pub fn main() -> ExitCode {
     };
     arguments.how.set();
     notices.iter().for_each(note);
-    // Now, since a process is forked for it: an interrupt is listened to by a second thread.
+    // Now, since a process is forked for it: an interrupt is listened to by a second thread. One that comes before waits for that, so that the
+    // process and its files go.
+    let held = crate::process::HeldSignals::new();
     let _begun = arguments.reads_here().map(load::Begun::with);
     interrupt::listen();
+    drop(held);
     if !matches!(arguments.command, Command::Adapt(_) | Command::Ranks) && ranks::is_one_of_several() {
         terminal::error(
             "several processes were started, and each would do all of the work: `adapt` alone shares it (start this one without mpirun or srun)",

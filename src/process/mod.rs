@@ -2,18 +2,21 @@
 //!
 //! [`Runner`] starts a program and waits for it. At an interrupt or a limit of time it ends the program with all that this has started. It
 //! returns how the program ended ([`Outcome`]). A [`Program`] may be started first and waited for later. [`Group`] is a group of processes that a
-//! later run finds again, [`Log`] a file for what programs say.
+//! later run finds again, [`Log`] a file for what programs say,
+//! [`HeldSignals`] keep an interrupt waiting.
 mod fork;
 mod group;
 mod log;
 mod outcome;
 mod run;
+mod signals;
 
 pub use fork::may_fork;
 pub use group::{Group, who_has_open};
 pub use log::{Log, errors_or_last_lines, last_line, last_lines};
 pub use outcome::Outcome;
 pub use run::{Program, Runner, Tie, is_exhausted, is_running};
+pub use signals::HeldSignals;
 
 use std::sync::atomic::AtomicBool;
 
