@@ -1,7 +1,7 @@
 //! Thinning before the passes, which would list and measure all edges again and again: of what coarsening left of a crowded mesh, and of what
 //! follows another metric.
 use super::stages::{COARSER, stage_limits};
-use super::{KINDS, OUT_OF_ORDER, Pipeline, size_limits};
+use super::{KINDS, Pipeline, size_limits};
 use crate::adapt::core::context::Limits;
 use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::store::Store;
@@ -18,6 +18,9 @@ const THINNINGS: usize = 3;
 
 /// A vertex without a tetrahedron of this mean ratio follows another metric.
 const FITS: f64 = 0.5;
+
+/// Where a lesser share of the vertices does so, the mesh is good enough to be refined as it is.
+const MANY: f64 = 0.15;
 
 /// A mesh with a lesser share of the vertices expected is so coarse that refinement makes it anew in any case.
 const COARSE: f64 = 0.2;
@@ -50,7 +53,8 @@ impl Pipeline<'_, '_> {
     /// Removes vertices that follow another metric, down to sizes [`COARSER`] times as large, with flips between the rounds. Between cells that lie
     /// askew the new vertices of one edge would be too near to those of others, and most would be collapsed again.
     pub(super) fn thin_askew(&mut self) {
-        if (self.live() as f64) < COARSE * self.expected {
+        let live = self.live() as f64;
+        if live < COARSE * self.expected || (self.askew(0).len() as f64) < MANY * live {
             return;
         }
         for _ in 0..THINNINGS {
@@ -59,25 +63,23 @@ impl Pipeline<'_, '_> {
             self.thin_in_sweeps(Self::askew);
             self.limit(size_limits());
             if self.live() == live || self.observer.stop() {
-                return;
+                break;
             }
             self.reconnect(self.criterion, 1);
         }
         self.looked = [0; KINDS];
-        self.keep_order(OUT_OF_ORDER);
+        self.reorder();
     }
 
-    /// Vertices inside and on plane faces that follow another metric, of those whose neighbourhood changed at this time or later. On a curved face
-    /// the surface would become coarse, and there may be layers under its chords.
+    /// Vertices that follow another metric, of those whose neighbourhood changed at this time or later: inside and on plane faces, but not beside a
+    /// curved one, whose new vertices would find no way to it through the large cells.
     fn askew(&self, since: u32) -> Vec<VertexId> {
-        let fits = self.at_tets(|store, t| store.quality(t) >= FITS);
-        let may_go = |store: &Store, v: VertexId| match store.entity(v) {
-            Entity::Interior => true,
-            Entity::Face(face) => self.context.planes[face as usize].is_some(),
-            Entity::Vertex(_) | Entity::Edge(_) => false,
-        };
-        let is_askew = |store: &Store, v: VertexId| !fits[v.index()].load(Relaxed) && may_go(store, v);
-        self.vertices(|store, v| is_askew(store, v) && store.stamp(store.tet_of(v)) >= since)
+        let is_curved = |entity| matches!(entity, Entity::Face(face) if self.context.planes[face as usize].is_none());
+        let keeps = self.at_tets(|store, t| {
+            store.quality(t) >= FITS || store.vertices(t).iter().any(|&v| is_curved(store.entity(v)))
+        });
+        let may_go = |store: &Store, v| store.dimension(v) >= 2 && store.stamp(store.tet_of(v)) >= since;
+        self.vertices(|store, v| !keeps[v.index()].load(Relaxed) && may_go(store, v))
     }
 
     /// Sweeps over the vertices that are wanted, of those whose neighbourhood changed since the last sweep, until few of them go.
