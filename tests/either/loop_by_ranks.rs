@@ -32,6 +32,8 @@ impl Place {
     fn command(&self) -> Command {
         let mut command = program();
         command.arg("cycle").arg(self.path("loop.toml"));
+        // Open MPI keeps its files in a folder that all runs of a user share, and a run that ends may remove it while another one begins.
+        command.env("OMPI_MCA_orte_tmpdir_base", self.folder.path());
         command
     }
 
