@@ -201,8 +201,8 @@ pub fn main() -> ExitCode {
     };
     arguments.how.set();
     notices.iter().for_each(note);
-    // Now, since a process is forked for it: an interrupt is listened to by a second thread. One that comes before waits for that, so that the
-    // process and its files go.
+    // A process is forked for it, so this comes before the thread that listens to interrupts. One that comes meanwhile waits: else it would end
+    // this program, and the files of the process would stay.
     let held = crate::process::HeldSignals::new();
     let _begun = arguments.reads_here().map(load::Begun::with);
     interrupt::listen();

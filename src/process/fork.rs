@@ -17,6 +17,7 @@ pub(super) fn work_instead(command: &mut Command, work: impl Fn() -> u8 + Send +
         if unsafe { libc::syscall(libc::SYS_close_range, 3, u32::MAX, 0) } != 0 {
             return Err(io::Error::last_os_error());
         }
+        // The parent may hold back interrupts; this process has none of its handlers, and ends at once.
         super::signals::let_through();
         let code = std::panic::catch_unwind(std::panic::AssertUnwindSafe(&work));
         // SAFETY: the process ends, with nothing to be written. After a panic with the exit code that one has.

@@ -2,8 +2,8 @@
 //!
 //! [`Runner`] starts a program and waits for it. At an interrupt or a limit of time it ends the program with all that this has started. It
 //! returns how the program ended ([`Outcome`]). A [`Program`] may be started first and waited for later. [`Group`] is a group of processes that a
-//! later run finds again, [`Log`] a file for what programs say,
-//! [`HeldSignals`] keep an interrupt waiting.
+//! later run finds again, [`Log`] a file for what programs say. While there are
+//! [`HeldSignals`] an interrupt waits.
 mod fork;
 mod group;
 mod log;

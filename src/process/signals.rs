@@ -1,6 +1,7 @@
 //! The signals that ask a process to end, held back for a moment.
 
-/// While this is there, interrupts wait: SIGINT, SIGTERM and SIGHUP reach neither this thread nor what it starts. Nothing on Windows.
+/// While this is there, interrupts wait: SIGINT, SIGTERM and SIGHUP reach neither this thread nor the
+/// threads and processes that it starts. On Windows it does nothing.
 pub struct HeldSignals(());
 
 impl HeldSignals {
@@ -19,7 +20,7 @@ impl Drop for HeldSignals {
     }
 }
 
-/// What has waited comes, and waits no more.
+/// Signals that have waited come now, and later ones at once.
 pub(super) fn let_through() {
     #[cfg(unix)]
     mask(libc::SIG_UNBLOCK);
