@@ -62,10 +62,11 @@ impl Workplace {
 
 impl Drop for Workplace {
     fn drop(&mut self) {
+        // In this order: an interrupt that ends the process meanwhile still finds it in the list.
+        let _ = fs::remove_dir_all(&self.folder);
         if let Ok(mut ours) = OURS.lock() {
             ours.retain(|folder| *folder != self.folder);
         }
-        let _ = fs::remove_dir_all(&self.folder);
     }
 }
 
