@@ -197,6 +197,7 @@ impl<'c, 'm> Pipeline<'c, 'm> {
             self.thin();
         }
         if self.effort.stages {
+            self.thin_askew();
             self.come_near();
         }
         for _ in 0..SIZE_PASSES {

@@ -7,7 +7,7 @@ use crate::adapt::core::stages::Stage;
 
 /// Stages bring the mesh to sizes so many times those of the source, as long as they can; the passes that follow refine it alike in all
 /// directions. So stages insert little in vain. A mesh whose domain is too small for that comes to the sizes themselves in stages.
-const COARSER: f64 = 3.0;
+pub(super) const COARSER: f64 = 3.0;
 
 /// A stage makes cells flatter by no more than this factor.
 const FACTOR: f64 = 4.0;
@@ -39,7 +39,7 @@ const COSINE: f64 = 0.9995;
 const SHORTEST_NEW: f64 = 0.8;
 
 /// Limits of the passes in a stage.
-fn stage_limits() -> Limits {
+pub(super) fn stage_limits() -> Limits {
     Limits { shortest_new: SHORTEST_NEW, cos_deviation: COSINE, cos_variation: COSINE, ..size_limits() }
 }
 
