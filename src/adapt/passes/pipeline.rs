@@ -1,4 +1,5 @@
 //! The passes: what is done, in which order, until the mesh is a unit mesh.
+mod curvature;
 mod effort;
 mod forecast;
 mod growth;

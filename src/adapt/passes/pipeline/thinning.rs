@@ -7,6 +7,7 @@ use crate::adapt::core::ids::VertexId;
 use crate::adapt::core::store::Store;
 use crate::adapt::operations::collapse::thinning::Thin;
 use crate::adapt::schedule::work::Kind;
+use crate::geometry::Entity;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// The store is renumbered when it has shrunk by this factor. With 2 that costs as much as it saves.
@@ -59,11 +60,10 @@ impl Pipeline<'_, '_> {
     /// edge would be too near to those of others, and most would be collapsed again. Flips turn the cells towards the metric between the rounds.
     /// Smoothing takes vertices out of rows, where next to none can go: its neighbour lies in the plane of the faces that it would be joined to.
     ///
-    /// Not where the model has curved faces: on walls too curved for their metric a boundary has crossed itself in the end.
+    /// Not where faces are too curved for the metric: there a boundary has crossed itself in the end.
     pub(super) fn thin_askew(&mut self) {
         let live = self.live() as f64;
-        let is_curved = self.context.planes.contains(&None);
-        if is_curved || live < COARSE * self.expected || (self.askew(0).len() as f64) < MANY * live {
+        if live < COARSE * self.expected || (self.askew(0).len() as f64) < MANY * live || self.is_too_curved() {
             return;
         }
         self.smooth();
@@ -82,11 +82,17 @@ impl Pipeline<'_, '_> {
         self.reorder();
     }
 
-    /// Vertices that follow another metric, of those whose neighbourhood changed at this time or later. Those on ridges stay.
+    /// Vertices that follow another metric, of those whose neighbourhood changed at this time or later. Those on ridges stay, and those on curved
+    /// faces, which a coarser mesh would follow less closely.
     fn askew(&self, since: u32) -> Vec<VertexId> {
         let fits = self.at_tets(|store, t| store.quality(t) >= FITS);
-        let may_go = |store: &Store, v| store.dimension(v) >= 2 && store.stamp(store.tet_of(v)) >= since;
-        self.vertices(|store, v| !fits[v.index()].load(Relaxed) && may_go(store, v))
+        let may_go = |store: &Store, v| match store.entity(v) {
+            Entity::Interior => true,
+            Entity::Face(face) => self.context.planes[face as usize].is_some(),
+            Entity::Edge(_) | Entity::Vertex(_) => false,
+        };
+        let is_wanted = |store: &Store, v| may_go(store, v) && store.stamp(store.tet_of(v)) >= since;
+        self.vertices(|store, v| !fits[v.index()].load(Relaxed) && is_wanted(store, v))
     }
 
     /// Sweeps over the vertices that are wanted, of those whose neighbourhood changed since the last sweep, until few of them go.

@@ -1,0 +1,80 @@
+//! How much the model's faces bend within a cell of the metric.
+use super::Pipeline;
+use crate::adapt::core::ids::VertexId;
+use crate::geometry::{Entity, Evaluate, Geometry, SurfaceFrame};
+use crate::mesh::vector::dot;
+use crate::metric::Sym3;
+
+/// About so many vertices are asked at most.
+const ASKED: usize = 10_000;
+
+/// Where edges of unit length rise by more than one across the face on a greater share of the vertices, no mesh meets the metric.
+const TOO_CURVED: f64 = 0.02;
+
+/// How far the middle of an edge of unit length is from a face, in the metric (METHOD.md §7): the greatest sagitta, κ(e) |e|² / 8, of the edges e
+/// along the face, times the length of its normal. Not a number where the face has no normal.
+fn rise(frame: &SurfaceFrame, metric: &Sym3) -> f64 {
+    let of = |x, y| dot(x, metric.apply(y));
+    let ([a, b], [k, l]) = (frame.directions, frame.curvatures);
+    let (aa, ab, bb) = (of(a, a), of(a, b), of(b, b));
+    // The greatest λ of det(II − λ M) = 0, of the second fundamental form and the metric along the face.
+    let (square, linear, constant) = (aa * bb - ab * ab, k * bb + l * aa, k * l);
+    let root = (linear * linear - 4.0 * square * constant).max(0.0).sqrt();
+    (linear.abs() + root) / (2.0 * square) / 8.0 * of(frame.normal, frame.normal).sqrt()
+}
+
+impl Pipeline<'_, '_> {
+    /// Whether faces are too curved for the metric, so that no mesh has edges of unit length there.
+    pub(super) fn is_too_curved(&self) -> bool {
+        let (store, planes) = (&self.context.store, &self.context.planes);
+        if !planes.contains(&None) {
+            return false;
+        }
+        let curved = |v: VertexId| match store.entity(v) {
+            Entity::Face(face) => planes[face as usize].is_none().then_some(face),
+            _ => None,
+        };
+        let all = self.vertices(|_, v| curved(v).is_some());
+        let mut evaluator = self.context.model.evaluator();
+        let mut is_met = |v: VertexId| {
+            let frame = curved(v).map(|face| evaluator.face_frame(face, store.parameters(v)));
+            frame.is_none_or(|frame| rise(&frame, &store.metric(v)) <= 1.0)
+        };
+        let asked = || all.iter().step_by(all.len().div_ceil(ASKED).max(1));
+        let beyond = asked().filter(|&&v| !is_met(v)).count();
+        beyond as f64 > TOO_CURVED * asked().count() as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rise_is_that_of_the_arc_over_an_edge_of_unit_length() {
+        // On a cylinder of the radius 2 about z, at (2, 0, 0): an edge of 0.4 about the axis has the sagitta 0.4² / 16.
+        let y = [0.0, 1.0, 0.0];
+        let z = [0.0, 0.0, 1.0];
+        let mut frame = SurfaceFrame {
+            point: [2.0, 0.0, 0.0],
+            du: y,
+            dv: z,
+            normal: [1.0, 0.0, 0.0],
+            curvatures: [-0.5, 0.0],
+            directions: [y, z],
+        };
+        let metric = Sym3::diagonal(1e-3_f64.powi(-2), 0.4_f64.powi(-2), 9.0_f64.powi(-2));
+        assert!((rise(&frame, &metric) - 10.0).abs() < 1e-9);
+        // A saddle: the greater of the two, whatever the sign.
+        frame.curvatures = [0.5, -0.25];
+        assert!((rise(&frame, &metric) - 81.0 / 32.0 * 1e3).abs() < 1e-6);
+        // An edge between the directions is the longest.
+        frame.curvatures = [0.5, 0.5];
+        let along = [0.0, 0.5_f64.sqrt(), 0.5_f64.sqrt()];
+        let tilted = Sym3::diagonal(1e6, 25.0, 25.0).plus(Sym3::outer(along, 1.0 - 25.0));
+        assert!((rise(&frame, &tilted) - 1e3 / 16.0).abs() < 1e-6);
+        // No normal: not a number, or nothing that bends.
+        frame.directions = [[0.0; 3]; 2];
+        assert!(rise(&frame, &metric).is_nan());
+    }
+}
