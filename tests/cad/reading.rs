@@ -127,17 +127,17 @@ fn an_interrupt_while_a_model_is_read_is_told_as_one() {
     let place = Place::new();
     let child = place.command().spawn().unwrap();
     let reader = reader(&child);
-    // As a terminal does it: to the whole group.
+    // As a terminal does it: to the whole group. Whether the model is named depends on the clock: the program may not wait for it yet.
     signal("-INT", &format!("-{}", child.id()));
     let output = ends(child);
     let told = stderr(&output);
     assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("many.step") && told.contains("interrupted") && !told.contains("crash"), "{told}");
+    assert!(told.contains("interrupted") && told.contains("nothing was written") && !told.contains("crash"), "{told}");
     goes(reader);
     assert!(place.left().is_empty(), "{:?}", place.left());
     // To the child alone.
     let (code, told) = with_signal_to_child("-TERM");
-    assert!(code == Some(130) && !told.contains("crash"), "{told}");
+    assert!(code == Some(130) && told.contains("many.step") && !told.contains("crash"), "{told}");
 }
 
 #[test]

@@ -49,6 +49,37 @@ impl Pipeline<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::adapt::operations::reconnection::criteria::Criterion;
+    use crate::adapt::schedule::work::Silent;
+    use crate::adapt::schedule::{Execution, Grains, Scheduler};
+    use crate::adapt::tests::bench::{Bench, Shape, sample};
+    use crate::mesh::vector::unit;
+    use crate::metric::{Background, Source};
+    use crate::tasks::{Plan, Pool};
+
+    /// Whether the faces of a shape are too curved for sizes `across` its radii and 0.5 along its surface.
+    fn is_too_curved(shape: Shape, across: f64) -> bool {
+        let mut sample = sample(shape, 4, 1.0);
+        let vertices = &sample.mesh.vertices;
+        let log = |p: &[f64; 3]| {
+            let radius = unit(p.map(|x| x - 0.501));
+            Sym3::diagonal(4.0, 4.0, 4.0).plus(Sym3::outer(radius, across.powi(-2) - 4.0)).ln()
+        };
+        let logs = vertices.iter().map(log).collect();
+        sample.source = Source::Background(Background::new(vertices.clone(), sample.mesh.tets.nodes.clone(), logs));
+        let mut bench = Bench::new(&sample, 1, 3);
+        let pool = Pool::new(1).unwrap();
+        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
+        let execution = Execution { pool: &pool, scheduler, plan, grains };
+        Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new()).is_too_curved()
+    }
+
+    #[test]
+    fn curved_faces_are_too_curved_for_thin_cells_as_wide_as_coarse_ones() {
+        assert!(!is_too_curved(Shape::Round, 0.5));
+        assert!(is_too_curved(Shape::Round, 1e-4));
+        assert!(!is_too_curved(Shape::Cube, 1e-4));
+    }
 
     #[test]
     fn the_rise_is_that_of_the_arc_over_an_edge_of_unit_length() {
