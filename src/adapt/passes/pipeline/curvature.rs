@@ -1,4 +1,4 @@
-//! How much the model's faces bend within a cell of the metric.
+//! The curvature of the model's faces in the metric.
 use super::Pipeline;
 use crate::adapt::core::ids::VertexId;
 use crate::geometry::{Entity, Evaluate, Geometry, SurfaceFrame};
@@ -12,13 +12,14 @@ const ASKED: usize = 10_000;
 const TOO_CURVED: f64 = 0.02;
 
 /// How far the middle of an edge of unit length is from a face, in the metric (METHOD.md §7): the greatest sagitta, κ(e) |e|² / 8, of the edges e
-/// along the face, times the length of its normal. Not a number where the face has no normal.
+/// along the face, times the length of its normal. Not a number where the
+/// face has no directions, as at an apex.
 fn rise(frame: &SurfaceFrame, metric: &Sym3) -> f64 {
     let of = |x, y| dot(x, metric.apply(y));
     let ([a, b], [k, l]) = (frame.directions, frame.curvatures);
     let (aa, ab, bb) = (of(a, a), of(a, b), of(b, b));
     // The greatest λ of det(II − λ M) = 0, of the second fundamental form and the metric along the face.
-    let (square, linear, constant) = (aa * bb - ab * ab, k * bb + l * aa, k * l);
+    let (square, linear, constant) = ((aa * bb - ab * ab).max(0.0), k * bb + l * aa, k * l);
     let root = (linear * linear - 4.0 * square * constant).max(0.0).sqrt();
     (linear.abs() + root) / (2.0 * square) / 8.0 * of(frame.normal, frame.normal).sqrt()
 }
@@ -27,22 +28,19 @@ impl Pipeline<'_, '_> {
     /// Whether faces are too curved for the metric, so that no mesh has edges of unit length there.
     pub(super) fn is_too_curved(&self) -> bool {
         let (store, planes) = (&self.context.store, &self.context.planes);
-        if !planes.contains(&None) {
-            return false;
-        }
         let curved = |v: VertexId| match store.entity(v) {
             Entity::Face(face) => planes[face as usize].is_none().then_some(face),
             _ => None,
         };
         let all = self.vertices(|_, v| curved(v).is_some());
+        let asked: Vec<_> = all.iter().step_by(all.len().div_ceil(ASKED).max(1)).collect();
         let mut evaluator = self.context.model.evaluator();
         let mut is_met = |v: VertexId| {
             let frame = curved(v).map(|face| evaluator.face_frame(face, store.parameters(v)));
             frame.is_none_or(|frame| rise(&frame, &store.metric(v)) <= 1.0)
         };
-        let asked = || all.iter().step_by(all.len().div_ceil(ASKED).max(1));
-        let beyond = asked().filter(|&&v| !is_met(v)).count();
-        beyond as f64 > TOO_CURVED * asked().count() as f64
+        let beyond = asked.iter().filter(|&&&v| !is_met(v)).count();
+        beyond as f64 > TOO_CURVED * asked.len() as f64
     }
 }
 

@@ -38,8 +38,7 @@ fn thin_limits() -> Limits {
 
 /// Limits while vertices that follow another metric are removed. Nothing is lost in tetrahedra that are bad already.
 fn askew_limits() -> Limits {
-    let limits = stage_limits();
-    Limits { longest_new: 2.0 * COARSER, collapse_floor: 0.0, short: 0.7 * COARSER, ..limits }
+    Limits { longest_new: 2.0 * COARSER, collapse_floor: 0.0, short: 0.7 * COARSER, ..stage_limits() }
 }
 
 impl Pipeline<'_, '_> {
@@ -58,7 +57,8 @@ impl Pipeline<'_, '_> {
 
     /// Removes vertices that follow another metric, down to sizes [`COARSER`] times as large. Between cells that lie askew the new vertices of one
     /// edge would be too near to those of others, and most would be collapsed again. Flips turn the cells towards the metric between the rounds.
-    /// Smoothing takes vertices out of rows, where next to none can go: its neighbour lies in the plane of the faces that it would be joined to.
+    /// Smoothing takes vertices out of rows: there hardly one can go onto a neighbour, which lies in the planes of the faces that are to be joined
+    /// to it.
     ///
     /// Not where faces are too curved for the metric: there a boundary has crossed itself in the end.
     pub(super) fn thin_askew(&mut self) {
@@ -78,6 +78,7 @@ impl Pipeline<'_, '_> {
                 break;
             }
         }
+        // The passes look at everything.
         self.looked = [0; KINDS];
         self.reorder();
     }
