@@ -2,6 +2,7 @@
 use super::super::files::Files;
 use super::super::files::reading::{self, Carrier};
 use super::super::load;
+use super::chords::ChordLimit;
 use super::field::FieldArguments;
 use super::local::Locals;
 use super::meet::Meeting;
@@ -59,9 +60,10 @@ pub struct InputArguments {
     #[arg(long = "wall", value_name = "WALL:h=H[,growth=G…],…", allow_negative_numbers = true, long_help = WALL)]
     pub(super) walls: Vec<Walls>,
     /// Cuts sizes along curved walls of the model to this share of √(8 h R), h the size across the wall and R its radius [without a value: 0.5]. The
-    /// chord of that length has the sagitta h: longer edges dive through the layers, and no mesh meets such sizes
-    #[arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", value_parser = share, allow_negative_numbers = true)]
-    pub(super) limit_chords: Option<f64>,
+    /// chord of that length has the sagitta h: longer edges dive through the layers, and no mesh meets such sizes. By default the metric of a file or
+    /// a field is cut so on a CAD model if it asks for more than twice √(8 h R); off leaves it
+    #[arg(long, value_name = "SHARE|off", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", value_parser = ChordLimit::parse, allow_negative_numbers = true)]
+    pub(super) limit_chords: Option<ChordLimit>,
     #[command(
         flatten,
         next_help_heading = "The metric of --field or --goal (gradation and bounds of sizes: of --metric and --size too)"
@@ -120,14 +122,6 @@ pub struct OnModel {
     pub meeting: Option<Meeting>,
     /// The cells that are no tetrahedra: then the mesh is what lies beside them.
     pub beside: Option<Beside>,
-}
-
-/// A share of √(8 h R).
-fn share(text: &str) -> Result<f64, String> {
-    match crate::cli::positive(text) {
-        Ok(share) if share <= 1.0 => Ok(share),
-        _ => Err("give a share above 0, and no more than 1: the chord whose sagitta is the size across".into()),
-    }
 }
 
 pub(super) type Error = Box<dyn std::error::Error>;
@@ -221,14 +215,13 @@ impl InputArguments {
         }
         let mesh = Arc::new(mesh);
         let raw = Raw { logs, copies, fields };
-        let kept = self.amount.vertices.is_some().then(|| raw.clone());
         let on = On { place: &place, model: &model, names: &names, beside: beside.as_ref() };
-        let (source, how) = self.source(team, (&mesh, faces), raw, on, (self.amount.complexity(), notices))?;
+        let (source, how) = self.source(team, (&mesh, faces), &raw, on, (self.amount.complexity(), notices))?;
         let size = [mesh.vertices.len(), mesh.tets.len()];
         Ok(Input {
             on: OnModel { mesh, size, crosses, place, model, names, how, meeting: None, beside },
             source,
-            raw: kept,
+            raw: self.amount.vertices.is_some().then_some(raw),
         })
     }
 
@@ -252,14 +245,16 @@ impl InputArguments {
         ))
     }
 
-    /// The metric made again, of another complexity.
+    /// The metric made again, of another complexity, cut along walls as it was.
     pub fn source_of(&self, team: Team<'_>, input: &Input, complexity: f64) -> Result<(Source, How), Error> {
-        let Input { on: OnModel { mesh, place, model, names, beside, .. }, raw, .. } = input;
-        let faces = MatchedFaces::of(team, &mesh.tets.nodes);
+        let Input { on: OnModel { mesh, place, model, names, beside, how, .. }, raw, .. } = input;
         let on = On { place, model, names, beside: beside.as_ref() };
+        let (none, share) = (Raw::default(), how.chords.map(|chords| chords.share));
         // What there is to say was said of the first.
         let wanted = (Some(complexity), &mut Vec::new());
-        self.source(team, (mesh, faces), raw.clone().unwrap_or_default(), on, wanted)
+        let faces = MatchedFaces::of(team, &mesh.tets.nodes);
+        let made = self.scaled(team, (mesh, faces), raw.as_ref().unwrap_or(&none), (on, share), wanted)?;
+        Ok(self.beside_stack(team, mesh, on, made))
     }
 
     /// Takes the mesh apart where it hangs together in edges or vertices alone: the new vertices' origins.

@@ -1,6 +1,7 @@
 //! `geo-adapt adapt`.
 mod begun;
 mod by_parts;
+mod chords;
 pub mod field;
 pub mod files;
 pub mod input;

@@ -1,8 +1,8 @@
 //! What was done: the table on the terminal and the JSON.
+use super::chords::Chords;
 use super::input::OnModel;
 use super::meet::Meeting;
 use super::rounds::Parts;
-use super::source::Chords;
 use super::stack::Kept;
 use crate::adapt::forecast::Forecast;
 use crate::adapt::{Adapted, GrowthEnd, KINDS, Kind, Refusal, Work};
@@ -105,7 +105,7 @@ pub struct Report {
     /// The same with --goal.
     #[serde(skip_serializing_if = "Option::is_none")]
     goal: Option<goal::Made>,
-    /// What was cut along curved walls, with --limit-chords.
+    /// What was cut along curved walls.
     #[serde(skip_serializing_if = "Option::is_none")]
     chords: Option<Chords>,
     /// How a number of vertices was met, with --vertices.

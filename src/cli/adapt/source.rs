@@ -1,4 +1,5 @@
 //! The metric of a run, on the mesh as it was put on its model: bounded, graded, and of its complexity.
+use super::chords::{ChordLimit, Chords};
 use super::input::{Error, InputArguments};
 use super::local;
 use crate::adapt;
@@ -6,7 +7,6 @@ use crate::adapt::beside::Beside;
 use crate::cli::files::reading::Carrier;
 use crate::cli::metric::fields::Made;
 use crate::cli::metric::goal;
-use crate::cli::table::{Table, figure};
 use crate::cli::walls::Places;
 use crate::formats::NamedField;
 use crate::geometry::classify::Classification;
@@ -20,7 +20,6 @@ use crate::metric::multiscale::{Bounds, Cut, Measure, Options, SizeBound, bounde
 use crate::metric::{self, Background, Interpolation, Limits, Source, Sym3, field, grade, restrict};
 use crate::sizing::{self, chords};
 use crate::tasks::{Team, stage};
-use serde::Serialize;
 use std::sync::Arc;
 
 /// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
@@ -28,9 +27,6 @@ const GREATEST_COMPLEXITY: f64 = 2e8;
 
 /// The sizes of the geometry take at most this share of the complexity, so that some is left for the field.
 const GEOMETRY_SHARE: f64 = 0.5;
-
-/// Sizes along curved walls that are more than so many times √(8 h R) are told. The UGAWG's polar-1 has 1.6 times, and is met by 95 % of the edges.
-const TOO_LONG: f64 = 2.0;
 
 /// What the metric is made of, besides the files of --field.
 #[derive(Clone, Default)]
@@ -50,29 +46,10 @@ pub struct How {
     pub made: Option<Made>,
     /// or from the terms of a goal.
     pub goal: Option<goal::Made>,
-    /// What was cut along curved walls, with --limit-chords.
+    /// What was cut along curved walls.
     pub chords: Option<Chords>,
     /// How it was fitted to a stack.
     pub fitted: Option<Fitted>,
-}
-
-/// What --limit-chords has cut.
-#[derive(Clone, Copy, Serialize)]
-pub struct Chords {
-    /// The share of √(8 h R).
-    share: f64,
-    #[serde(flatten)]
-    cut: Cut,
-}
-
-impl Chords {
-    /// What the table says of it.
-    pub fn row(&self, table: &mut Table) {
-        let Self { share, cut: Cut { vertices, greatest } } = self;
-        let most =
-            if *vertices > 0 { format!(", by a factor of {} at most", figure(*greatest)) } else { String::new() };
-        table.row("cut along curved walls", format_args!("{vertices} vertices{most} ({share} √(8 h R))"));
-    }
 }
 
 /// Where the mesh lies.
@@ -93,16 +70,40 @@ impl On<'_> {
 }
 
 impl InputArguments {
-    /// The metric of the complexity that is wanted, and how it was made. Notices are added.
+    /// The metric of the complexity that is wanted, and how it was made, with sizes along walls that edges can have. Notices are added.
     pub(super) fn source(
         &self,
         team: Team<'_>,
         (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
-        raw: Raw,
+        raw: &Raw,
         on: On<'_>,
         (complexity, notices): (Option<f64>, &mut Vec<String>),
     ) -> Result<(Source, How), Error> {
-        let (mut source, mut how) = self.unscaled(team, (mesh, faces), raw, on, (complexity, notices))?;
+        let share = self.limit_chords.and_then(ChordLimit::share);
+        let mut made = self.scaled(team, (mesh, faces), raw, (on, share), (complexity, &mut *notices))?;
+        if let Some(too_long) = self.too_long_along_walls(team, &made.0, on) {
+            let cut = too_long.is_to_be_cut().then(|| {
+                let faces = MatchedFaces::of(team, &mesh.tets.nodes);
+                self.scaled(team, (mesh, faces), raw, (on, Some(chords::SHARE)), (complexity, &mut Vec::new()))
+            });
+            // Other bounds may leave no such metric.
+            let cut = cut.and_then(Result::ok);
+            notices.push(too_long.told(cut.is_some()));
+            made = cut.unwrap_or(made);
+        }
+        Ok(self.beside_stack(team, mesh, on, made))
+    }
+
+    /// The metric, cut along walls to a share of √(8 h R).
+    pub(super) fn scaled(
+        &self,
+        team: Team<'_>,
+        (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
+        raw: &Raw,
+        (on, share): (On<'_>, Option<f64>),
+        (complexity, notices): (Option<f64>, &mut Vec<String>),
+    ) -> Result<(Source, How), Error> {
+        let (mut source, how) = self.unscaled(team, (mesh, faces), raw, (on, share), (complexity, &mut *notices))?;
         stage("metric ready");
         if source.cut() > 0 {
             notices.push(format!(
@@ -111,33 +112,24 @@ impl InputArguments {
                 source.cut()
             ));
         }
-        self.scale(team, mesh, &mut source, complexity, how.made.is_some() || how.goal.is_some())?;
+        let is_scaled = self.is_bounded() || share.is_some() || how.made.is_some() || how.goal.is_some();
+        self.scale(team, mesh, &mut source, complexity, is_scaled)?;
         stage("complexity");
-        notices.extend(self.too_long_along_walls(team, &source, on));
-        if let Some(beside) = on.beside {
-            let (source, fitted) = self.fitted(team, mesh, beside, &source);
-            how.fitted = Some(fitted);
-            return Ok((source, how));
-        }
         Ok((source, how))
     }
 
-    /// A notice where the metric of a file or a field asks for cells along curved walls of a CAD model that no straight edges can have. An analytic
-    /// field is taken as it is.
-    fn too_long_along_walls(&self, team: Team<'_>, source: &Source, on: On<'_>) -> Option<String> {
-        let Source::Background(background) = source else { return None };
-        if self.cad.is_none() || self.limit_chords.is_some() {
-            return None;
-        }
-        let Cut { vertices, greatest } = chords::too_long(team, on.place, on.model, background.logs());
-        stage("sizes along walls");
-        (greatest > TOO_LONG).then(|| {
-            format!(
-                "sizes along curved walls are up to {} times √(8 h R), too long at {vertices} vertices: such edges dive through the layers. The mesh \
-                 gets bad cells, takes more time, and has more vertices than its complexity says; --limit-chords cuts these sizes",
-                figure(greatest)
-            )
-        })
+    /// The metric, fitted to the stack that the mesh lies beside.
+    pub(super) fn beside_stack(
+        &self,
+        team: Team<'_>,
+        mesh: &Arc<TetMesh>,
+        on: On<'_>,
+        (source, mut how): (Source, How),
+    ) -> (Source, How) {
+        let Some(beside) = on.beside else { return (source, how) };
+        let (source, fitted) = self.fitted(team, mesh, beside, &source);
+        how.fitted = Some(fitted);
+        (source, how)
     }
 
     /// The analytic field, or the mesh as background with sizes that are given, or with the metric made from a field; and how it was made. Of its
@@ -146,8 +138,8 @@ impl InputArguments {
         &self,
         team: Team<'_>,
         (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
-        raw: Raw,
-        on: On<'_>,
+        raw: &Raw,
+        (on, share): (On<'_>, Option<f64>),
         (complexity, notices): (Option<f64>, &mut Vec<String>),
     ) -> Result<(Source, How), Error> {
         if let Some(field) = self.field.analytic {
@@ -158,11 +150,11 @@ impl InputArguments {
             return Err(named(adapt::Error::Empty.to_string()).into());
         }
         let uniform = self.field.size.map(|h| vec![of_size(h); mesh.vertices.len()]);
-        let by_others = self.limit_chords.map(|share| chords::Chords::new(on.place, on.model, share));
+        let by_others = share.map(|share| chords::Chords::new(on.place, on.model, share));
         let by_others = by_others.as_ref().map(|chords| chords as &dyn SizeBound);
         let mut how = How::default();
-        let (logs, cut) = match raw.logs.or(uniform) {
-            Some(logs) if !self.is_bounded() => (logs, None),
+        let (logs, cut) = match raw.logs.clone().or(uniform) {
+            Some(logs) if !self.is_bounded() && share.is_none() => (logs, None),
             Some(logs) => self.bounded(team, mesh, on, (logs, by_others), (complexity, notices)).map_err(named)?,
             None => {
                 let complexity = complexity.ok_or("--field and --goal need a --complexity or --vertices")?;
@@ -185,7 +177,7 @@ impl InputArguments {
                 }
             }
         };
-        how.chords = self.limit_chords.zip(cut).map(|(share, cut)| Chords { share, cut });
+        how.chords = share.zip(cut).map(|(share, cut)| Chords { share, cut });
         Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), how))
     }
 
@@ -209,7 +201,8 @@ impl InputArguments {
 
     /// Whether sizes that are given are to be changed by more than a scale.
     pub(super) fn is_bounded(&self) -> bool {
-        self.is_graded() || self.limit_chords.is_some() || !self.walls.is_empty()
+        let is_cut = self.limit_chords.and_then(ChordLimit::share).is_some();
+        self.is_graded() || is_cut || !self.walls.is_empty()
     }
 
     /// Whether sizes that are given are to be graded.
@@ -304,14 +297,14 @@ impl InputArguments {
         Ok(Some(logs))
     }
 
-    /// Scales the source to the complexity asked for, unless it was made for that. Refuses a complexity that no mesh can have.
+    /// Scales the source to the complexity asked for, unless it has that already. Refuses a complexity that no mesh can have.
     fn scale(
         &self,
         team: Team<'_>,
         mesh: &TetMesh,
         source: &mut Source,
         wanted: Option<f64>,
-        is_made: bool,
+        is_scaled: bool,
     ) -> Result<(), String> {
         let named = |error: metric::Error| format!("{}: {error}", self.mesh.display());
         source.check(team, mesh).map_err(named)?;
@@ -320,7 +313,7 @@ impl InputArguments {
         }
         let own = source.complexity(team, mesh);
         let complexity = self.checked_complexity(own, wanted)?;
-        if wanted.is_some() && !is_made && !self.is_bounded() {
+        if wanted.is_some() && !is_scaled {
             source.scale(team, field::complexity_factor(own, complexity).ln());
         }
         Ok(())
