@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import operator
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -110,6 +111,9 @@ class Result:
         Whether there is such a reason.
     off_model, held, doubled : ndarray of uint32
         Points of the boundary that found no room on the model; that had to stay; and points of the old mesh that were taken apart.
+    chords : tuple of float, int, float; or None
+        What was cut of sizes along curved walls: the share of √(8 h R) that they were cut to, at how many points, and by what factor at most.
+        None where all were left.
     deviating, crossings : int
         Triangles beyond the bounds of the surface; pairs of triangles in which the boundary crosses itself.
     """
@@ -129,6 +133,7 @@ class Result:
         self.off_model: Nodes = given["off_model"]
         self.held: Nodes = given["held"]
         self.doubled: Nodes = given["doubled"]
+        self.chords: tuple[float, int, float] | None = given["chords"]
         self.deviating: int = given["deviating"]
         self.crossings: int = given["crossings"]
         self._place: _kernel.Place = given["place"]
@@ -198,6 +203,7 @@ class Adapter:
         vertices: float | None = None,
         max_vertices: int | None = None,
         freeze: Sequence[str | int] = (),
+        limit_chords: float | str | None = None,
         tolerance: float | None = None,
         normal_deviation: float | None = None,
         hausdorff: float | None = None,
@@ -224,6 +230,7 @@ class Adapter:
             "complexity": complexity,
             "vertices": vertices,
             "max_vertices": max_vertices,
+            "limit_chords": _chords(limit_chords),
             "tolerance": tolerance,
             "normal_deviation": normal_deviation,
             "hausdorff": hausdorff,
@@ -243,7 +250,24 @@ class Adapter:
         if stopped_by is not None:
             stopped_by.partial = result  # type: ignore[attr-defined]
             raise stopped_by
+        if limit_chords is None and result.chords is not None:
+            warnings.warn(
+                "the metric's sizes along curved walls are too long for a mesh to follow them, and were cut; limit_chords='off' leaves them, "
+                "a share says how far they are cut",
+                stacklevel=2,
+            )
         return result
+
+
+def _chords(limit: float | str | None) -> float | None:
+    """For the kernel: a share, 0 for "off"."""
+    if limit is None:
+        return None
+    if limit == "off":
+        return 0.0
+    if isinstance(limit, str) or not 0 < limit <= 1:
+        raise InputError(f"limit_chords {limit!r}: give a share above 0, and no more than 1, of √(8 h R); or 'off'")
+    return float(limit)
 
 
 def _frozen(mesh: Mesh, freeze: Sequence[str | int]) -> tuple[list[int], list[int]]:
@@ -279,6 +303,7 @@ def adapt(
     *,
     order: str | None = None,
     max_vertices: int | None = None,
+    limit_chords: float | str | None = None,
     tolerance: float | None = None,
     normal_deviation: float | None = None,
     hausdorff: float | None = None,
@@ -312,6 +337,9 @@ def adapt(
     max_vertices : int, optional
         A mesh that has so many points gets no more: it is finished as it is, and ``growth_end`` says so. By default what there is memory
         for.
+    limit_chords : float or "off", optional
+        On a model: sizes along its curved walls are cut to this share of √(8 h R), h the size across the wall and R its radius. By default to 0.5
+        where edges of the metric's length would dive through more than four layers of cells, which no mesh can follow; "off" leaves them.
     tolerance : float, optional
         How far a boundary point may be from the model, in its units. By default 1e-6 of its diagonal.
     normal_deviation, hausdorff : float, optional
@@ -356,6 +384,7 @@ def adapt(
         vertices=vertices,
         max_vertices=max_vertices,
         freeze=freeze,
+        limit_chords=limit_chords,
         tolerance=tolerance,
         normal_deviation=normal_deviation,
         hausdorff=hausdorff,

@@ -409,6 +409,7 @@ class Server:
         *,
         order: str | None = None,
         max_vertices: int | None = None,
+        limit_chords: float | str | None = None,
         tolerance: float | None = None,
         normal_deviation: float | None = None,
         hausdorff: float | None = None,
@@ -424,7 +425,7 @@ class Server:
             At its points, symmetric and positive definite, in 1/length².
         model : Model, path, bytes or File, optional
             The CAD model that the boundary lies on. By default the mesh's own surface.
-        complexity, vertices, freeze, order, max_vertices, tolerance, normal_deviation, hausdorff : optional
+        complexity, vertices, freeze, order, max_vertices, limit_chords, tolerance, normal_deviation, hausdorff : optional
             As there.
         progress : callable, optional
             Is called with a `JobProgress` about every second; it returns False to stop.
@@ -461,6 +462,7 @@ class Server:
             "complexity": complexity,
             "vertices": vertices,
             "max-vertices": max_vertices,
+            "limit-chords": limit_chords,
             "tolerance": tolerance,
             "normal-deviation": normal_deviation,
             "hausdorff": hausdorff,

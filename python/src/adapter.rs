@@ -4,7 +4,7 @@ use crate::errors;
 use crate::model::Model;
 use geo_adapt::adapt::forecast::{Forecast, most_in_memory};
 use geo_adapt::adapt::meeting::{VERTICES_PER_COMPLEXITY, meet};
-use geo_adapt::api::{GrowthEnd, MeshView};
+use geo_adapt::api::{ChordLimit, GrowthEnd, Limited, MeshView};
 use geo_adapt::geometry::on_mesh;
 use geo_adapt::{
     AdaptedMesh, Counts, DiscreteOptions, Freeze, Kind, Observer, Parents, Report, Settings, SurfaceBounds,
@@ -31,6 +31,8 @@ pub struct Options {
     complexity: Option<f64>,
     vertices: Option<f64>,
     max_vertices: Option<usize>,
+    /// A share of √(8 h R); 0 leaves sizes along curved walls as they are.
+    limit_chords: Option<f64>,
     tolerance: Option<f64>,
     normal_deviation: Option<f64>,
     hausdorff: Option<f64>,
@@ -91,6 +93,7 @@ impl Observer for Watch {
 struct WithForecast {
     #[serde(flatten)]
     found: Report,
+    chords: Option<Limited>,
     overgrown: bool,
     growth_end: Option<GrowthEnd>,
     forecast: Option<Forecast>,
@@ -209,6 +212,11 @@ impl Options {
         let first = self.complexity.or(self.vertices.map(|vertices| vertices / VERTICES_PER_COMPLEXITY));
         let settings = adapter.settings();
         settings.complexity = first;
+        settings.chords = match self.limit_chords {
+            None => ChordLimit::Auto,
+            Some(0.0) => ChordLimit::Off,
+            Some(share) => ChordLimit::Share(share),
+        };
         settings.tolerance = self.tolerance;
         settings.options.max_vertices = self.max_vertices.or_else(most_in_memory);
         settings.options.freeze = Freeze { surfaces: self.surfaces.clone(), regions: self.regions.clone() };
@@ -216,6 +224,9 @@ impl Options {
         let mut adapted = adapter.adapt_observed(view, metric, watch).map_err(errors::of_adapter)?;
         let mut complexity = first;
         if let Some((wanted, at)) = self.vertices.zip(first) {
+            // Cut along walls as the first.
+            adapter.settings().chords =
+                adapted.chords.map_or(ChordLimit::Off, |limited| ChordLimit::Share(limited.share));
             let make = |next: f64, _: usize| {
                 adapter.settings().complexity = Some(next);
                 adapter.adapt_observed(view, metric, watch).map(Some).map_err(errors::of_adapter)
@@ -232,6 +243,7 @@ impl Options {
             let end = adapted.growth_end;
             let whole = WithForecast {
                 found,
+                chords: adapted.chords,
                 overgrown: end.is_some(),
                 growth_end: end,
                 forecast: watch.forecast.get().copied(),
@@ -246,7 +258,8 @@ impl Options {
 fn give(py: Python<'_>, done: Done, stopped: bool) -> PyResult<Bound<'_, PyDict>> {
     let Done { adapted, names, report, complexity } = done;
     let crossings = adapted.crossings.count;
-    let AdaptedMesh { mesh, metric, parents, place, off_model, held, doubled, growth_end, deviating, .. } = adapted;
+    let AdaptedMesh { mesh, metric, parents, place, off_model, held, doubled, growth_end, deviating, chords, .. } =
+        adapted;
     let Parents { tets, weights, outside, farthest } = parents;
     let all = PyDict::new(py);
     all.set_item("mesh", arrays::give_mesh(py, mesh)?)?;
@@ -263,6 +276,7 @@ fn give(py: Python<'_>, done: Done, stopped: bool) -> PyResult<Bound<'_, PyDict>
     let end = serde_json::to_value(growth_end).map_err(errors::of_file)?;
     all.set_item("growth_end", end.as_str())?;
     all.set_item("deviating", deviating)?;
+    all.set_item("chords", chords.map(|Limited { share, cut }| (share, cut.vertices, cut.greatest)))?;
     all.set_item("crossings", crossings)?;
     all.set_item("names", names)?;
     all.set_item("report", report)?;

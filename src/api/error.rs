@@ -58,6 +58,12 @@ pub enum Error {
         /// The greatest.
         most: f64,
     },
+    /// A share of the longest chords along curved walls that is none.
+    #[error("a share of {share} of √(8 h R): give one above 0, and no more than 1")]
+    Share {
+        /// It.
+        share: f64,
+    },
     /// The place of the mesh does not belong to it or to the model.
     #[error("the place of the mesh does not fit: {message}; give the one that came with this mesh, or none")]
     Place {

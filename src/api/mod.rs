@@ -36,6 +36,7 @@ pub mod io;
 mod output;
 mod place;
 mod report;
+mod source;
 #[cfg(test)]
 mod surface_tests;
 mod view;
@@ -68,6 +69,8 @@ pub use crate::mesh::{Association, Elements, OnEdge, OnFace, OnVertex, TetMesh};
 #[doc(inline)]
 pub use crate::metric::{Distribution, Eigen, Statistics, Sym3};
 #[doc(inline)]
+pub use crate::sizing::chords::{ChordLimit, Limited};
+#[doc(inline)]
 pub use crate::tasks::{Backend, Plan, Strategy};
 
 use crate::adapt;
@@ -76,13 +79,10 @@ use crate::geometry::classify;
 use crate::geometry::discrete::{complete_boundary, complete_matched};
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
-use crate::metric::{Background, Field, Source, field};
+use crate::metric::Source;
 use crate::tasks::{Pool, Team};
 use std::path::Path;
 use std::sync::Arc;
-
-/// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
-const GREATEST_COMPLEXITY: f64 = 2e8;
 
 /// How to adapt: what the program's options say.
 #[derive(Clone, Debug, Default)]
@@ -91,6 +91,8 @@ pub struct Settings {
     pub threads: usize,
     /// Scale the metric to this complexity, about half the number of vertices; without it the metric is taken as it is.
     pub complexity: Option<f64>,
+    /// What is done with sizes along curved walls that are longer than straight edges can have.
+    pub chords: ChordLimit,
     /// How far a vertex of the input may be from the CAD model, in its units. By default 1e-6 of the model's diagonal.
     pub tolerance: Option<f64>,
     /// How triangles become a model where there is none: the ridge angle, and whether it is smooth.
@@ -214,7 +216,7 @@ impl Adapter {
     ) -> Result<AdaptedMesh, Error> {
         let Self { ground, settings, pool } = self;
         let team = Team::new(pool, settings.options.plan);
-        let mut logs = logs(team, view, metric)?;
+        let mut logs = source::logs(team, view, metric)?;
         let mut mesh = view.mesh()?;
         if mesh.tets.is_empty() {
             return Err(Error::Mesh(adapt::Error::Empty));
@@ -240,11 +242,10 @@ impl Adapter {
             None => placed(team, ground, &mesh, settings)?,
         };
         let model = ground.model().ok_or_else(|| Error::place("no mesh came before it".into()))?;
-        let mut source = Source::Background(Background::on(team, Arc::clone(&mesh), faces, logs));
-        scale(team, &mesh, &mut source, settings.complexity)?;
+        let (source, limited) = source::of(team, (&mesh, faces), (&place, model), logs, settings)?;
         let adapted = adapt::adapt(&mesh, &place, model, &source, &settings.options, pool, observer)?;
         let Source::Background(background) = &source else { unreachable!("made above") };
-        Ok(output::AdaptedMesh::of(team, adapted, model, background, copies))
+        Ok(output::AdaptedMesh::of(team, adapted, model, (background, limited), copies))
     }
 }
 
@@ -265,36 +266,5 @@ fn placed(team: Team<'_>, ground: &mut Ground, mesh: &TetMesh, settings: &Settin
             *kept = Some(Box::new(Model::Discrete(model)));
             Ok(place)
         }
-    }
-}
-
-/// ln M of a metric that fits the mesh and is positive definite.
-fn logs<M: Copy + Into<Sym3>>(team: Team<'_>, view: &MeshView<'_>, metric: &[M]) -> Result<Vec<Sym3>, Error> {
-    view::fits("metrics", metric.len(), view.vertices.len())?;
-    let metrics: Vec<Sym3> = metric.iter().map(|&tensor| tensor.into()).collect();
-    if let Some(vertex) = metrics.iter().position(|metric| !metric.is_spd()) {
-        return Err(Error::Metric { vertex });
-    }
-    Ok(Field::logs_of(team, &metrics))
-}
-
-/// Scales the source to the complexity that is asked for; refuses one that no mesh can have.
-fn scale(team: Team<'_>, mesh: &TetMesh, source: &mut Source, wanted: Option<f64>) -> Result<(), Error> {
-    if let Some(complexity) = wanted.filter(|wanted| !(*wanted > 0.0 && wanted.is_finite())) {
-        return Err(Error::Complexity { complexity, most: GREATEST_COMPLEXITY });
-    }
-    if wanted.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
-        return Ok(());
-    }
-    let own = source.complexity(team, mesh);
-    if let Some(target) = wanted {
-        source.scale(team, field::complexity_factor(own, target).ln());
-    }
-    let complexity = wanted.unwrap_or(own);
-    // NaN is refused, too.
-    if complexity <= GREATEST_COMPLEXITY {
-        Ok(())
-    } else {
-        Err(Error::Complexity { complexity, most: GREATEST_COMPLEXITY })
     }
 }

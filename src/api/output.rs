@@ -8,6 +8,7 @@ use crate::geometry::classify::associate;
 use crate::mesh::TetMesh;
 use crate::mesh::crossing::Crossings;
 use crate::metric::Background;
+use crate::sizing::chords::Limited;
 use crate::tasks::Team;
 use crate::transfer::Places;
 
@@ -33,6 +34,8 @@ pub struct AdaptedMesh {
     pub growth_end: Option<GrowthEnd>,
     /// Surface triangles beyond the bounds of the surface that were set.
     pub deviating: usize,
+    /// What was cut of sizes along curved walls that are longer than straight edges can have; none where all were left.
+    pub chords: Option<Limited>,
     /// Where the boundary passes through itself: triangles of `mesh`, with the first few.
     pub crossings: Crossings,
 }
@@ -75,7 +78,13 @@ impl AdaptedMesh {
     }
 
     /// Of what the kernel gives; `old` is the mesh that went in, taken apart at `doubled`.
-    pub(super) fn of(team: Team<'_>, adapted: Adapted, model: &Model, old: &Background, doubled: Vec<u32>) -> Self {
+    pub(super) fn of(
+        team: Team<'_>,
+        adapted: Adapted,
+        model: &Model,
+        (old, chords): (&Background, Option<Limited>),
+        doubled: Vec<u32>,
+    ) -> Self {
         let Extracted { mut mesh, classification, metrics, off_model, held, crossings, .. } = adapted.extracted;
         match model {
             Model::Discrete(surface) => surface.restore(&mut mesh, &classification),
@@ -95,6 +104,7 @@ impl AdaptedMesh {
             doubled,
             growth_end: adapted.growth_end,
             deviating: adapted.deviating,
+            chords,
             crossings,
         }
     }

@@ -10,14 +10,19 @@ use crate::mesh::vector::{Vec3, dot};
 use crate::metric::multiscale::{Cut, SizeBound};
 use crate::metric::{Eigen, Sym3};
 use crate::tasks::{GRAIN, Team, stage};
+use serde::Serialize;
 use std::sync::OnceLock;
 
 /// The share of √(8 h R) by default: at it an edge of length 1 along the wall measures 1.4 in the metrics of its ends.
 pub const SHARE: f64 = 0.5;
 
+/// Sizes along walls are too long where unit edges dive deep at more than this share of the vertices on curved walls. At a few a mesh meets its metric all
+/// the same.
+const MANY: f64 = 0.02;
+
 /// A mesh comes near no metric whose unit edges dive through more layers than this. The UGAWG's polar-1 has 2.5, and is met by 95 % of the edges; with 5.1,
 /// on a torus, 61 % did.
-pub const DEEP: f64 = 4.0;
+const DEEP: f64 = 4.0;
 
 /// The metric of the cut has this many times the greatest size across the wall: any size, to rounding.
 const FREE: f64 = 1e3;
@@ -62,10 +67,42 @@ impl SizeBound for Chords<'_> {
     }
 }
 
+/// What is done with sizes along curved walls.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ChordLimit {
+    /// They are cut to 0.5 √(8 h R) on a CAD model where no mesh follows its walls with them, and left elsewhere.
+    #[default]
+    Auto,
+    /// They are cut to this share of √(8 h R).
+    Share(f64),
+    /// They are left.
+    Off,
+}
+
+impl ChordLimit {
+    /// The share that was given.
+    pub fn share(self) -> Option<f64> {
+        match self {
+            Self::Share(share) => Some(share),
+            Self::Auto | Self::Off => None,
+        }
+    }
+}
+
+/// What was cut along curved walls.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Limited {
+    /// The share of √(8 h R) that the sizes were cut to.
+    pub share: f64,
+    /// How many, and how much.
+    #[serde(flatten)]
+    pub cut: Cut,
+}
+
 /// How deep unit edges along curved walls dive through the layers there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dive {
-    /// Vertices where they dive through more than [`DEEP`] layers,
+    /// Vertices where they dive through more than four layers,
     pub vertices: usize,
     /// of so many on curved walls where sizes differ by direction.
     pub on_walls: usize,
@@ -74,6 +111,11 @@ pub struct Dive {
 }
 
 impl Dive {
+    /// Whether they are so many that the sizes are to be cut.
+    pub fn is_deep(&self) -> bool {
+        self.vertices as f64 > MANY * self.on_walls as f64
+    }
+
     fn and(self, other: Self) -> Self {
         Self {
             vertices: self.vertices + other.vertices,

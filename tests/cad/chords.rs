@@ -1,6 +1,7 @@
 //! `geo-adapt adapt --limit-chords`: thin layers on a curved wall get sizes that straight edges can have.
 
 use crate::common::adapting::{Adapted, Workplace, text};
+use geo_adapt::api::{Adapter, ChordLimit, Error, MeshView, Settings};
 use geo_adapt::mesh::io;
 use geo_adapt::mesh::vector::Vec3;
 use geo_adapt::metric::Sym3;
@@ -62,25 +63,76 @@ fn a_layer_on_a_cylinder_gets_chords_that_follow_it() {
     }
 }
 
-/// At the wall sizes of 0.1 about the axis, 0.5 away from it, and `across`: at 2e-4 they are 3.5 times √(8 h R), at 1e-3 1.6 times.
+/// At the wall sizes of 0.1 about the axis, 0.5 away from it, and `across`: the chords rise by 0.0025.
+fn sizes_at_wall(p: Vec3, across: f64) -> Sym3 {
+    let grown = across * (p[0].hypot(p[1]) / 0.5).powi(20).min(100.0);
+    Sym3::from_sizes(axes(p), [grown, 0.1, 0.1])
+}
+
+/// What came of a metric on the start mesh, and what was said of its sizes along the wall.
+fn made_of(metric_at: impl Fn(Vec3) -> Sym3, arguments: &[&str]) -> (Adapted, Option<String>) {
+    let ([model, start], work) = (cube_cylinder(), Workplace::new());
+    let metric = work.metric(&io::read_mesh(&start).unwrap().content, metric_at);
+    let [model, report] = [text(&model), text(&work.path("report.json"))];
+    let given = ["--cad", &model, "--metric", &metric, "--complexity", "400", "--threads", "1", "--report", &report];
+    let output = work.command(&start, &[&given, arguments].concat()).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    (work.result(), said.lines().find(|line| line.contains("sizes along curved walls")).map(str::to_owned))
+}
+
+/// At 2e-4 unit edges would dive through 12.5 layers at the wall, at 4e-3 through 0.6.
 #[test]
-fn sizes_that_no_edge_along_the_wall_can_have_are_told() {
+fn sizes_that_no_edge_along_the_wall_can_have_are_cut_by_default() {
+    let deep = |p| sizes_at_wall(p, 2e-4);
+    let [(cut, told), (asked, silent), (left, also_silent)] =
+        [&[][..], &["--limit-chords"], &["--limit-chords=off"]].map(|arguments| made_of(deep, arguments));
+    let told = told.unwrap();
+    assert!(told.contains("through up to") && told.contains("--limit-chords=off"), "{told}");
+    assert!(silent.is_none() && also_silent.is_none());
+    assert!(cut.report["chords"]["share"] == 0.5 && cut.report["chords"]["vertices"].as_u64() > Some(50));
+    assert!(cut.mesh == asked.mesh && cut.report["chords"] == asked.report["chords"]);
+    assert!(left.report["chords"].is_null());
+    assert!(figure(&cut, "unit_edges") > 0.9 && figure(&left, "unit_edges") < 0.8);
+    assert!(cut.mesh.vertices.len() < left.mesh.vertices.len());
+
+    let (shallow, told) = made_of(|p| sizes_at_wall(p, 4e-3), &[]);
+    assert!(shallow.report["chords"].is_null() && told.is_none());
+}
+
+/// Deep at one of 51 vertices of the wall, no more than 2 %.
+#[test]
+fn sizes_that_are_too_long_at_a_few_vertices_are_told_and_left() {
+    let at = |p: Vec3| p[0].hypot(p[1] - 0.5) < 1e-9 && p[2].abs() < 1e-9;
+    let (found, told) = made_of(|p| sizes_at_wall(p, if at(p) { 1e-4 } else { 2e-3 }), &[]);
+    let told = told.unwrap();
+    assert!(told.contains("at 1 of 51 vertices") && told.contains("--limit-chords cuts"), "{told}");
+    assert!(found.report["chords"].is_null());
+}
+
+/// The library does as the program.
+#[test]
+fn the_library_cuts_the_same_sizes() {
     let [model, start] = cube_cylinder();
-    let told = |across: f64, arguments: &[&str]| {
-        let work = Workplace::new();
-        let grown = |p: Vec3| across * (p[0].hypot(p[1]) / 0.5).powi(20).min(100.0);
-        let sizes = |p: Vec3| Sym3::from_sizes(axes(p), [grown(p), 0.1, 0.1]);
-        let metric = work.metric(&io::read_mesh(&start).unwrap().content, sizes);
-        let model = text(&model);
-        let arguments = [&["--cad", &model, "--metric", &metric, "--max-vertices", "400"], arguments].concat();
-        let output = work.command(&start, &arguments).output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        said.lines().find(|line| line.contains("√(8 h R)")).map(str::to_owned)
+    let input = io::read_mesh(&start).unwrap().content;
+    let metric: Vec<Sym3> = input.vertices.iter().map(|&p| sizes_at_wall(p, 2e-4)).collect();
+    let settings = Settings { threads: 1, complexity: Some(400.0), ..Settings::default() };
+    let mut adapter = Adapter::on_cad(&model, settings).unwrap();
+    let mut adapt = |chords| {
+        adapter.settings().chords = chords;
+        adapter.adapt(&MeshView::of(&input), &metric)
     };
-    let notice = told(2e-4, &[]).unwrap();
-    assert!(notice.contains("3.5") && notice.contains("--limit-chords"), "{notice}");
-    assert_eq!(told(2e-4, &["--limit-chords"]), None);
-    assert_eq!(told(1e-3, &[]), None);
+    let (expected, _) = made_of(|p| sizes_at_wall(p, 2e-4), &[]);
+    let found = adapt(ChordLimit::Auto).unwrap();
+    let told = found.chords.unwrap();
+    assert_eq!(serde_json::to_value(told).unwrap(), expected.report["chords"]);
+    assert_eq!(found.mesh.vertices, expected.mesh.vertices);
+    assert!(found.metric.iter().zip(&expected.metrics).all(|(a, b)| *a == b.0));
+    assert_eq!(adapt(ChordLimit::Share(0.5)).unwrap().mesh, found.mesh);
+    assert!(adapt(ChordLimit::Off).unwrap().chords.is_none());
+    for share in [0.0, -1.0, 1.5, f64::NAN] {
+        assert!(matches!(adapt(ChordLimit::Share(share)), Err(Error::Share { .. })), "{share}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 use super::super::files::Files;
 use super::super::files::reading::{self, Carrier};
 use super::super::load;
-use super::chords::ChordLimit;
+use super::chords;
 use super::field::FieldArguments;
 use super::local::Locals;
 use super::meet::Meeting;
@@ -25,6 +25,7 @@ use crate::mesh::io::Read;
 use crate::mesh::split_nonmanifold::{copy_values, split_nonmanifold};
 use crate::mesh::stack::{Outside, Stack};
 use crate::metric::{Source, Sym3};
+use crate::sizing::chords::ChordLimit;
 use crate::sizing::layer::Walls;
 use crate::tasks::{Team, stage};
 use std::path::PathBuf;
@@ -61,8 +62,8 @@ pub struct InputArguments {
     pub(super) walls: Vec<Walls>,
     /// Cuts sizes along curved walls of the model to this share of √(8 h R), h the size across the wall and R its radius [without a value: 0.5]. The
     /// chord of that length has the sagitta h: longer edges dive through the layers, and no mesh meets such sizes. By default the metric of a file or
-    /// a field is cut so on a CAD model if it asks for more than twice √(8 h R); off leaves it
-    #[arg(long, value_name = "SHARE|off", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", value_parser = ChordLimit::parse, allow_negative_numbers = true)]
+    /// a field is cut so on a CAD model where unit edges along its walls would dive through more than four layers; off leaves it
+    #[arg(long, value_name = "SHARE|off", num_args = 0..=1, require_equals = true, default_missing_value = "0.5", value_parser = chords::parse, allow_negative_numbers = true)]
     pub(super) limit_chords: Option<ChordLimit>,
     #[command(
         flatten,

@@ -1,5 +1,5 @@
 //! What was done: the table on the terminal and the JSON.
-use super::chords::Chords;
+use super::chords;
 use super::input::OnModel;
 use super::meet::Meeting;
 use super::rounds::Parts;
@@ -21,6 +21,7 @@ use crate::mesh::numbers::from_one;
 use crate::mesh::stack::Stack;
 use crate::metric::Sym3;
 use crate::metric::statistics::Statistics;
+use crate::sizing::chords::Limited;
 use crate::tasks::Team;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -107,7 +108,7 @@ pub struct Report {
     goal: Option<goal::Made>,
     /// What was cut along curved walls.
     #[serde(skip_serializing_if = "Option::is_none")]
-    chords: Option<Chords>,
+    chords: Option<Limited>,
     /// How a number of vertices was met, with --vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     vertices_wanted: Option<Meeting>,
@@ -266,8 +267,8 @@ impl Report {
         if let Some(made) = &self.goal {
             made.rows(&mut table);
         }
-        if let Some(chords) = &self.chords {
-            chords.row(&mut table);
+        if let Some(limited) = &self.chords {
+            chords::row(limited, &mut table);
         }
         if let Some(meeting) = &self.vertices_wanted {
             meeting.row(&mut table);

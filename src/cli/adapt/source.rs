@@ -1,5 +1,5 @@
 //! The metric of a run, on the mesh as it was put on its model: bounded, graded, and of its complexity.
-use super::chords::{ChordLimit, Chords};
+use super::chords::told;
 use super::input::{Error, InputArguments};
 use super::local;
 use crate::adapt;
@@ -18,7 +18,8 @@ use crate::metric::goal::NORM;
 use crate::metric::held::GREATEST_RATIO;
 use crate::metric::multiscale::{Bounds, Cut, Measure, Options, SizeBound, bounded, diameter};
 use crate::metric::{self, Background, Interpolation, Limits, Source, Sym3, field, grade, restrict};
-use crate::sizing::{self, chords};
+use crate::sizing;
+use crate::sizing::chords::{self, Limited};
 use crate::tasks::{Team, stage};
 use std::sync::Arc;
 
@@ -47,7 +48,7 @@ pub struct How {
     /// or from the terms of a goal.
     pub goal: Option<goal::Made>,
     /// What was cut along curved walls.
-    pub chords: Option<Chords>,
+    pub chords: Option<Limited>,
     /// How it was fitted to a stack.
     pub fitted: Option<Fitted>,
 }
@@ -79,16 +80,16 @@ impl InputArguments {
         on: On<'_>,
         (complexity, notices): (Option<f64>, &mut Vec<String>),
     ) -> Result<(Source, How), Error> {
-        let share = self.limit_chords.and_then(ChordLimit::share);
+        let share = self.chord_limit().share();
         let mut made = self.scaled(team, (mesh, faces), raw, (on, share), (complexity, &mut *notices))?;
-        if let Some(too_long) = self.too_long_along_walls(team, &made.0, on) {
-            let cut = too_long.is_to_be_cut().then(|| {
+        if let Some(dive) = self.dive(team, &made.0, on) {
+            let cut = dive.is_deep().then(|| {
                 let faces = MatchedFaces::of(team, &mesh.tets.nodes);
                 self.scaled(team, (mesh, faces), raw, (on, Some(chords::SHARE)), (complexity, &mut Vec::new()))
             });
             // Other bounds may leave no such metric.
             let cut = cut.and_then(Result::ok);
-            notices.push(too_long.told(cut.is_some()));
+            notices.push(told(&dive, cut.is_some()));
             made = cut.unwrap_or(made);
         }
         Ok(self.beside_stack(team, mesh, on, made))
@@ -177,7 +178,7 @@ impl InputArguments {
                 }
             }
         };
-        how.chords = share.zip(cut).map(|(share, cut)| Chords { share, cut });
+        how.chords = share.zip(cut).map(|(share, cut)| Limited { share, cut });
         Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), how))
     }
 
@@ -201,8 +202,7 @@ impl InputArguments {
 
     /// Whether sizes that are given are to be changed by more than a scale.
     pub(super) fn is_bounded(&self) -> bool {
-        let is_cut = self.limit_chords.and_then(ChordLimit::share).is_some();
-        self.is_graded() || is_cut || !self.walls.is_empty()
+        self.is_graded() || self.chord_limit().share().is_some() || !self.walls.is_empty()
     }
 
     /// Whether sizes that are given are to be graded.
