@@ -40,7 +40,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "process", "memory",
         ],
     ),
-    ("api", &["adapt", "metric", "geometry", "transfer", "tasks", "mesh"]),
+    ("api", &["adapt", "sizing", "metric", "geometry", "transfer", "tasks", "mesh"]),
     ("formats", &["geometry", "mesh", "tasks"]),
     ("adapt", &["sizing", "metric", "geometry", "tasks", "mesh", "memory"]),
     ("decomposition", &["adapt", "metric", "geometry", "ranks", "tasks", "mesh"]),
