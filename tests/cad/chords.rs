@@ -110,6 +110,15 @@ fn sizes_that_are_too_long_at_a_few_vertices_are_told_and_left() {
     assert!(found.report["chords"].is_null());
 }
 
+/// Read by slices, its sizes inside are not at hand.
+#[test]
+fn sizes_of_a_mesh_that_is_read_by_slices_are_told_and_left() {
+    let (found, told) = made_of(|p| sizes_at_wall(p, 2e-4), &["--memory", "1GB"]);
+    let told = told.unwrap();
+    assert!(told.contains("at 51 of 51 vertices") && told.contains("--limit-chords cuts"), "{told}");
+    assert!(found.report["chords"].is_null());
+}
+
 /// The library does as the program.
 #[test]
 fn the_library_cuts_the_same_sizes() {

@@ -1,8 +1,9 @@
 //! `adapt --limit-chords`: sizes along curved walls that straight edges can have.
 use super::input::InputArguments;
-use super::source::On;
 use crate::cli::table::{Table, figure};
-use crate::metric::Source;
+use crate::geometry::Model;
+use crate::geometry::classify::Classification;
+use crate::metric::Sym3;
 use crate::metric::multiscale::Cut;
 use crate::sizing::chords::{ChordLimit, Dive, Limited, SHARE, dive};
 use crate::tasks::{Team, stage};
@@ -44,14 +45,13 @@ impl InputArguments {
         self.limit_chords.unwrap_or_default()
     }
 
-    /// How deep unit edges dive along the curved walls of a CAD model, where they do and --limit-chords does not say what to do. An analytic field
-    /// is taken as it is.
-    pub(super) fn dive(&self, team: Team<'_>, source: &Source, on: On<'_>) -> Option<Dive> {
-        let Source::Background(background) = source else { return None };
+    /// How deep unit edges of a metric that is no analytic field dive along the curved walls of a CAD model, where they do and --limit-chords does not
+    /// say what to do. ln M at the vertices of a mesh that lies on the model, shape (n,).
+    pub(super) fn dive(&self, team: Team<'_>, place: &Classification, model: &Model, logs: &[Sym3]) -> Option<Dive> {
         if self.cad.is_none() || self.chord_limit() != ChordLimit::Auto {
             return None;
         }
-        let found = dive(team, on.place, on.model, background.logs());
+        let found = dive(team, place, model, logs);
         stage("sizes along walls");
         (found.vertices > 0).then_some(found)
     }

@@ -1,6 +1,7 @@
 //! A mesh that is larger than memory, or that several processes share: read by slices, with its boundary alone in memory.
 use super::begun::{Begun, Content};
 use super::by_parts::{agreed, is_same};
+use super::chords::told;
 use super::input::{Error, InputArguments, OnModel};
 use super::source::of_size;
 use crate::decomposition::{self, Files, MetricOf, Shell};
@@ -119,6 +120,12 @@ impl InputArguments {
         let complexity = self.checked_complexity(shell.complexity, wanted)?;
         if wanted.is_some() {
             files.scale(complexity_factor(shell.complexity, complexity).ln());
+        }
+        if self.field.analytic.is_none()
+            && let Some(dive) = self.dive(team, &place, &model, &shell.logs(&files)?)
+        {
+            // What lies inside is not in memory, and cannot be cut.
+            notices.push(told(&dive, false));
         }
         let counts = files.reader().counts();
         let size = [counts.vertices, counts.tets];

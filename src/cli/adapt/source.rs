@@ -82,7 +82,9 @@ impl InputArguments {
     ) -> Result<(Source, How), Error> {
         let share = self.chord_limit().share();
         let mut made = self.scaled(team, (mesh, faces), raw, (on, share), (complexity, &mut *notices))?;
-        if let Some(dive) = self.dive(team, &made.0, on) {
+        if let Source::Background(background) = &made.0
+            && let Some(dive) = self.dive(team, on.place, on.model, background.logs())
+        {
             let cut = dive.is_deep().then(|| {
                 let faces = MatchedFaces::of(team, &mesh.tets.nodes);
                 self.scaled(team, (mesh, faces), raw, (on, Some(chords::SHARE)), (complexity, &mut Vec::new()))

@@ -12,6 +12,7 @@ use crate::mesh::adjacency::{FACES, Side, TriangleIndex, sorted3};
 use crate::mesh::predicate::is_positive;
 use crate::mesh::ranges::renumbered;
 use crate::metric;
+use crate::metric::Sym3;
 use crate::metric::field::complexity_terms;
 use crate::ranks::{Ranks, agree};
 use crate::tasks::{GRAIN, Team};
@@ -121,6 +122,14 @@ impl Shell {
         self.sides.iter().for_each(|side| sides[side.triangle as usize] += 1);
         let outwards = outward_triangles(team, &self.mesh);
         outwards.into_iter().zip(sides).filter(|(_, sides)| *sides == 1).map(|(nodes, _)| nodes).collect()
+    }
+
+    /// ln M at its vertices, shape (n,).
+    ///
+    /// # Errors
+    /// When the file of the metric cannot be read.
+    pub fn logs(&self, files: &Files) -> Result<Vec<Sym3>, Error> {
+        Ok(files.vertices(&self.numbers)?.logs)
     }
 
     /// As the skin of the mesh, on its model.
