@@ -89,16 +89,17 @@ fn cut(
     Ok((source, cut.map(|cut| Limited { share, cut })))
 }
 
-/// Scales the source to the complexity that is asked for; refuses one that no mesh can have.
+/// Scales the source to the complexity that is asked for, which is one that a mesh can have; refuses another if none is asked for.
 fn scale(team: Team<'_>, mesh: &TetMesh, source: &mut Source, wanted: Option<f64>) -> Result<(), Error> {
-    if wanted.is_none() && source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
+    if let Some(target) = wanted {
+        let own = source.complexity(team, mesh);
+        source.scale(team, field::complexity_factor(own, target).ln());
         return Ok(());
     }
-    let own = source.complexity(team, mesh);
-    if let Some(target) = wanted {
-        source.scale(team, field::complexity_factor(own, target).ln());
+    if source.complexity_bound(team, mesh) <= GREATEST_COMPLEXITY {
+        return Ok(());
     }
-    let complexity = wanted.unwrap_or(own);
+    let complexity = source.complexity(team, mesh);
     // NaN is refused, too.
     if complexity <= GREATEST_COMPLEXITY {
         Ok(())

@@ -6,7 +6,7 @@ use super::chords;
 use super::field::FieldArguments;
 use super::local::Locals;
 use super::meet::Meeting;
-use super::source::{How, On, Raw};
+use super::source::{How, Making, On, Raw};
 use crate::adapt::beside::Beside;
 use crate::cli::metric::common::Amount;
 use crate::cli::metric::fields::MultiscaleArguments;
@@ -250,11 +250,11 @@ impl InputArguments {
     pub fn source_of(&self, team: Team<'_>, input: &Input, complexity: f64) -> Result<(Source, How), Error> {
         let Input { on: OnModel { mesh, place, model, names, beside, how, .. }, raw, .. } = input;
         let on = On { place, model, names, beside: beside.as_ref() };
-        let (none, share) = (Raw::default(), how.chords.map(|chords| chords.share));
+        let none = Raw::default();
+        let (raw, share) = (raw.as_ref().unwrap_or(&none), how.chords.map(|chords| chords.share));
+        let making = Making { mesh, raw, on, share, complexity: Some(complexity) };
         // What there is to say was said of the first.
-        let wanted = (Some(complexity), &mut Vec::new());
-        let faces = MatchedFaces::of(team, &mesh.tets.nodes);
-        let made = self.scaled(team, (mesh, faces), raw.as_ref().unwrap_or(&none), (on, share), wanted)?;
+        let made = self.scaled(team, making, MatchedFaces::of(team, &mesh.tets.nodes), &mut Vec::new())?;
         Ok(self.beside_stack(team, mesh, on, made))
     }
 

@@ -70,6 +70,18 @@ impl On<'_> {
     }
 }
 
+/// What a metric is made of, and for what.
+#[derive(Clone, Copy)]
+pub(super) struct Making<'a> {
+    pub mesh: &'a Arc<TetMesh>,
+    pub raw: &'a Raw,
+    pub on: On<'a>,
+    /// The share of √(8 h R) that sizes along curved walls are cut to; none where they are left.
+    pub share: Option<f64>,
+    /// The complexity that is wanted.
+    pub complexity: Option<f64>,
+}
+
 impl InputArguments {
     /// The metric of the complexity that is wanted, and how it was made, with sizes along walls that edges can have. Notices are added.
     pub(super) fn source(
@@ -80,14 +92,15 @@ impl InputArguments {
         on: On<'_>,
         (complexity, notices): (Option<f64>, &mut Vec<String>),
     ) -> Result<(Source, How), Error> {
-        let share = self.chord_limit().share();
-        let mut made = self.scaled(team, (mesh, faces), raw, (on, share), (complexity, &mut *notices))?;
+        let making = Making { mesh, raw, on, share: self.chord_limit().share(), complexity };
+        let mut made = self.scaled(team, making, faces, notices)?;
         if let Source::Background(background) = &made.0
             && let Some(dive) = self.dive(team, on.place, on.model, background.logs())
         {
             let cut = dive.is_deep().then(|| {
                 let faces = MatchedFaces::of(team, &mesh.tets.nodes);
-                self.scaled(team, (mesh, faces), raw, (on, Some(chords::SHARE)), (complexity, &mut Vec::new()))
+                let making = Making { share: Some(chords::SHARE), ..making };
+                self.scaled(team, making, faces, &mut Vec::new())
             });
             // Other bounds may leave no such metric.
             let cut = cut.and_then(Result::ok);
@@ -97,16 +110,15 @@ impl InputArguments {
         Ok(self.beside_stack(team, mesh, on, made))
     }
 
-    /// The metric, cut along walls to a share of √(8 h R).
+    /// The metric, of its complexity, and how it was made.
     pub(super) fn scaled(
         &self,
         team: Team<'_>,
-        (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
-        raw: &Raw,
-        (on, share): (On<'_>, Option<f64>),
-        (complexity, notices): (Option<f64>, &mut Vec<String>),
+        making: Making<'_>,
+        faces: MatchedFaces,
+        notices: &mut Vec<String>,
     ) -> Result<(Source, How), Error> {
-        let (mut source, how) = self.unscaled(team, (mesh, faces), raw, (on, share), (complexity, &mut *notices))?;
+        let (mut source, how) = self.unscaled(team, making, faces, notices)?;
         stage("metric ready");
         if source.cut() > 0 {
             notices.push(format!(
@@ -115,8 +127,8 @@ impl InputArguments {
                 source.cut()
             ));
         }
-        let is_scaled = self.is_bounded() || share.is_some() || how.made.is_some() || how.goal.is_some();
-        self.scale(team, mesh, &mut source, complexity, is_scaled)?;
+        let is_scaled = self.is_bounded() || making.share.is_some() || how.made.is_some() || how.goal.is_some();
+        self.scale(team, making.mesh, &mut source, making.complexity, is_scaled)?;
         stage("complexity");
         Ok((source, how))
     }
@@ -140,11 +152,11 @@ impl InputArguments {
     fn unscaled(
         &self,
         team: Team<'_>,
-        (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
-        raw: &Raw,
-        (on, share): (On<'_>, Option<f64>),
-        (complexity, notices): (Option<f64>, &mut Vec<String>),
+        making: Making<'_>,
+        faces: MatchedFaces,
+        notices: &mut Vec<String>,
     ) -> Result<(Source, How), Error> {
+        let Making { mesh, raw, on, share, complexity } = making;
         if let Some(field) = self.field.analytic {
             return Ok((Source::Analytic { field, log_scale: 0.0 }, How::default()));
         }
