@@ -1,6 +1,7 @@
 //! A tree of boxes for nearest-item searches.
 use super::vector::{Vec3, add};
 use crate::tasks::{GRAIN, Team};
+use std::cell::Cell;
 use std::ops::Range;
 
 /// Items in a leaf.
@@ -85,6 +86,16 @@ impl BoxTree {
             |node, _| overlap(box_, &self.bounds[node]),
             |range| self.items[range].iter().for_each(|&item| visit(item)),
         );
+    }
+
+    /// Whether one of the items whose boxes touch a box is asked for.
+    pub fn any_overlapping(&self, box_: &Bounds, mut is_asked: impl FnMut(u32) -> bool) -> bool {
+        let found = Cell::new(false);
+        self.leaves_where(
+            |node, _| !found.get() && overlap(box_, &self.bounds[node]),
+            |range| found.set(self.items[range].iter().any(|&item| is_asked(item))),
+        );
+        found.get()
     }
 
     /// Visits each pair of items whose boxes touch once, but for pairs of a leaf and a node that are not `wanted`; both are told by their

@@ -55,9 +55,7 @@ impl Narrow {
     /// Whether a triangle's box meets the zone.
     fn meets(&self, corners: &Corners) -> bool {
         let around = bounds(corners, 0.0);
-        let mut met = false;
-        self.zone.overlapping(&around, |i| met |= overlap(&around, &self.boxes[i as usize]));
-        met
+        self.zone.any_overlapping(&around, |i| overlap(&around, &self.boxes[i as usize]))
     }
 
     fn triangles(&self) -> RwLockReadGuard<'_, Triangles> {

@@ -1,5 +1,5 @@
 //! Finds the narrow voids: boundary triangles that face each other across a void, nearer than they may move until they are looked for again.
-use super::triangles::Triangle;
+use super::triangles::{Triangle, Triangles};
 use super::{Narrow, Voids, bounds};
 use crate::adapt::core::context::{Context, LONG};
 use crate::adapt::core::ids::{FACE, VertexId};
@@ -10,6 +10,7 @@ use crate::mesh::triangle_pair::{Corners, way};
 use crate::mesh::vector::{Vec3, add, area2, dot, norm, scale, sub, unit};
 use crate::metric::quality::edge_length;
 use crate::tasks::{GRAIN, Team};
+use std::sync::RwLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Until voids are looked for again, edges get longer by at most this factor.
@@ -58,18 +59,14 @@ impl Voids {
         if zone.is_empty() {
             return Self::default();
         }
-        let mut narrow = Narrow::new(zone);
+        let narrow = Narrow::new(zone);
         let Walls { all: mut walls, mut cuts, .. } = walls;
         walls.append(&mut cuts);
         let inside = team.collect(GRAIN, walls.len(), |range, inside| {
-            inside.extend(range.filter(|&i| narrow.meets(&walls[i].corners)));
+            let met = walls[range].iter().filter(|wall| narrow.meets(&wall.corners));
+            inside.extend(met.map(|&Wall { vertices, corners, .. }| Triangle { vertices, corners }));
         });
-        let triangles = narrow.triangles.get_mut().expect("it is new");
-        for i in inside {
-            let Wall { vertices, corners, .. } = walls[i];
-            triangles.insert(Triangle { vertices, corners });
-        }
-        Self { narrow: Some(narrow) }
+        Self { narrow: Some(Narrow { triangles: RwLock::new(Triangles::new(inside)), ..narrow }) }
     }
 
     /// Whether there are none even when all edges are as long as the metric allows. Between sweeps only.
