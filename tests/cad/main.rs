@@ -11,6 +11,7 @@ mod closest_points;
 #[path = "../common/mod.rs"]
 mod common;
 mod copies;
+mod crossed;
 mod damaged;
 mod geometry_scripts;
 mod metric_geometry;

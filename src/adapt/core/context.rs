@@ -47,7 +47,9 @@ pub struct Limits {
     /// Least cosine between a surface triangle's normal and the model's, unless it is less already. It is low, since long thin triangles
     /// across a curved face always deviate.
     pub cos_deviation: f64,
-    /// As above, for half the greatest angle between the model's normals at the triangle's vertices. With 0.94 a circle keeps nine edges.
+    /// Whether the user bounds that angle: then it is that in space everywhere, not in unit space where the model crosses layers.
+    pub bounds_angle: bool,
+    /// As `cos_deviation`, for half the greatest angle between the model's normals at the triangle's vertices. With 0.94 a circle keeps nine edges.
     pub cos_variation: f64,
     /// Greatest distance of a surface triangle from the model, at its centroid and the middles of its edges.
     pub chord: f64,
@@ -78,6 +80,7 @@ impl Default for Limits {
             several_below: 0.75,
             since: 0,
             cos_deviation: 0.5,
+            bounds_angle: false,
             cos_variation: 0.94,
             chord: f64::INFINITY,
             rise: 1.0,

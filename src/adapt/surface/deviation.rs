@@ -1,4 +1,5 @@
 //! How far surface triangles deviate from the model, and the checks that no operation makes that worse.
+use super::conormal::Conormal;
 use super::placement::MeanParameters;
 use crate::adapt::core::access::Access;
 use crate::adapt::core::ids::VertexId;
@@ -10,14 +11,15 @@ use crate::mesh::vector::{Vec3, add, area2, distance, dot, lerp, scale, sub, uni
 /// How far a surface triangle deviates from the model: two angles as cosines, and a distance.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceDeviation {
-    /// n_triangle · n_CAD at the closest point of the centroid: one minus the normal deviation of METHOD.md §3.
+    /// n_triangle · n_CAD at the closest point of the centroid: one minus the normal deviation of METHOD.md §3. In unit space where the face
+    /// crosses layers, unless the user bounds it; 0 where the sides seen there and in space differ.
     pub cos_deviation: f64,
     /// Cosine of half the greatest angle between the model's normals at the vertices. Without it a sphere could become a
     /// tetrahedron, whose faces are tangent to it.
     pub cos_variation: f64,
     /// Greatest distance from the model of the centroid and of the middles of the edges, where that is bounded; else 0.
     pub chord: f64,
-    /// Distance of the centroid from the model, in the metric.
+    /// Distance of the centroid from the model, in the metric: from the nearest point there where the face crosses layers.
     pub rise: f64,
 }
 
@@ -32,6 +34,9 @@ pub struct WorstDeviation {
 
 /// A triangle with a greater cosine than this to its model tells from which side a surface is seen.
 const CLEAR: f64 = 0.5;
+
+/// A triangle with a lesser cosine than this to its model looks to the other side.
+const LEAST_COSINE: f64 = 1e-3;
 
 /// A triangle whose normal has a greater cosine than this with that of another lies as the other does.
 const SAME_PLANE: f64 = 0.97;
@@ -48,17 +53,36 @@ fn or_far(distance: f64) -> f64 {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// n_triangle · n_CAD at the closest point of the centroid.
+    /// [`SurfaceDeviation::cos_deviation`] alone.
     fn cos_deviation(&mut self, triangle: [VertexId; 3], face: u32) -> f64 {
         let corners = triangle.map(|v| self.store.position(v));
-        let normal = unit(area2(corners[0], corners[1], corners[2]));
+        let area = area2(corners[0], corners[1], corners[2]);
         match self.context.planes[face as usize] {
-            Some(plane) => dot(normal, plane),
+            Some(plane) => dot(unit(area), plane),
             None => {
                 let known = triangle.map(|v| self.uv_of(v, face));
                 let foot = self.foot_of_centroid(corners, known, face);
-                dot(normal, self.state.evaluator.face_normal(face, foot.uv))
+                let normal = self.state.evaluator.face_normal(face, foot.uv);
+                self.cosine(area, normal, self.conormal(triangle, normal).as_ref())
             }
+        }
+    }
+
+    /// The conormal at a triangle on a face, whose normal there is given, if the face crosses a layer there.
+    fn conormal(&self, triangle: [VertexId; 3], normal: Vec3) -> Option<Conormal> {
+        Conormal::of_face(&self.metric_of_layer(&triangle)?, normal)
+    }
+
+    /// The cosine of the angle between a triangle, given by its area vector, and the model's normal: in space, or in unit space where there is
+    /// a conormal. No triangle may look to the model's inside in either.
+    fn cosine(&self, area: Vec3, normal: Vec3, conormal: Option<&Conormal>) -> f64 {
+        let in_space = dot(unit(area), normal);
+        match conormal {
+            Some(conormal) if !self.context.limits.bounds_angle => {
+                let cosine = conormal.cosine(area);
+                if cosine * in_space > 0.0 && in_space.abs() > LEAST_COSINE { cosine } else { 0.0 }
+            }
+            _ => in_space,
         }
     }
 
@@ -76,10 +100,10 @@ impl<A: Access> Worker<'_, '_, A> {
     /// The deviation of a triangle from its face. The `cos_deviation` is negative when the triangle looks to the model's inside.
     pub fn surface_deviation(&mut self, triangle: [VertexId; 3], face: u32) -> SurfaceDeviation {
         let [a, b, c] = triangle.map(|v| self.store.position(v));
-        let normal = unit(area2(a, b, c));
+        let area = area2(a, b, c);
         if let Some(plane) = self.context.planes[face as usize] {
             return SurfaceDeviation {
-                cos_deviation: dot(normal, plane),
+                cos_deviation: dot(unit(area), plane),
                 cos_variation: 1.0,
                 chord: self.chord(triangle, face, 0.0),
                 rise: 0.0,
@@ -87,19 +111,23 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let known = triangle.map(|v| self.uv_of(v, face));
         let foot = self.foot_of_centroid([a, b, c], known, face);
-        let cos_deviation = dot(normal, self.state.evaluator.face_normal(face, foot.uv));
+        let normal = self.state.evaluator.face_normal(face, foot.uv);
+        let conormal = self.conormal(triangle, normal);
+        let cos_deviation = self.cosine(area, normal, conormal.as_ref());
         let least = self.least_normal_cosine(face, [a, b, c], known, foot.uv);
         SurfaceDeviation {
             cos_deviation,
             cos_variation: (0.5 * (1.0 + least)).max(0.0).sqrt(),
             chord: self.chord(triangle, face, foot.distance),
-            rise: self.rise(triangle, [a, b, c], foot.point),
+            rise: self.rise(triangle, sub(foot.point, scale(add(a, add(b, c)), 1.0 / 3.0)), normal, conormal),
         }
     }
 
-    /// How far the centroid of a triangle is from its foot on the model, in the mean of the metrics of its vertices.
-    fn rise(&self, triangle: [VertexId; 3], [a, b, c]: [Vec3; 3], foot: Vec3) -> f64 {
-        let way = sub(foot, scale(add(a, add(b, c)), 1.0 / 3.0));
+    /// How far the centroid of a triangle is from the model, in the mean of the metrics of its vertices; `way` leads to its foot.
+    fn rise(&self, triangle: [VertexId; 3], way: Vec3, normal: Vec3, conormal: Option<Conormal>) -> f64 {
+        if let Some(conormal) = conormal {
+            return or_far(conormal.length(dot(way, normal)));
+        }
         let lengths = triangle.map(|v| self.store.metric(v).quadratic(way).sqrt());
         or_far((lengths[0] + lengths[1] + lengths[2]) / 3.0)
     }
@@ -119,7 +147,7 @@ impl<A: Access> Worker<'_, '_, A> {
         if entity == Entity::Face(face) && self.context.planes[face as usize].is_some() {
             return 0.0;
         }
-        or_far(distance(middle, self.place(entity, middle, &[a, b]).point))
+        or_far(distance(middle, self.closest(entity, middle, &[a, b]).point))
     }
 
     /// The least cosine between the normals of a face at the vertices of a triangle. `inner` are the parameters of the foot of its centroid.
@@ -194,7 +222,8 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// How many of some surface triangles, with their tags, look to the other side of the model than most of them do.
     pub fn folded(&mut self, triangles: &[([VertexId; 3], u32)]) -> usize {
-        let beyond = triangles.iter().filter(|&&(triangle, tag)| self.cos_deviation(triangle, tag - 1) < 1e-3).count();
+        let beyond =
+            triangles.iter().filter(|&&(triangle, tag)| self.cos_deviation(triangle, tag - 1) < LEAST_COSINE).count();
         beyond.min(triangles.len() - beyond)
     }
 
@@ -221,6 +250,16 @@ impl<A: Access> Worker<'_, '_, A> {
             let old = self.state.star.surface.iter().filter(|(_, of)| *of == tag);
             old.map(|&(triangle, _)| dot(normal(triangle), normal(new))).any(|cosine| cosine > SAME_PLANE)
         })
+    }
+
+    /// Whether more of the star's new surface triangles than of the old ones look to the other side of the model.
+    pub fn turns_over(&mut self) -> bool {
+        let old = std::mem::take(&mut self.state.star.surface);
+        let new = std::mem::take(&mut self.state.replacement.faces);
+        let turned = self.folded(&new) > self.folded(&old);
+        self.state.star.surface = old;
+        self.state.replacement.faces = new;
+        turned
     }
 
     /// As [`Worker::check_normals`], with the old triangles measured before.
@@ -258,7 +297,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let limits = self.context.limits;
         triangles.iter().all(|&(triangle, tag)| {
             let deviation = self.surface_deviation(triangle, tag - 1);
-            side * deviation.cos_deviation >= limits.cos_deviation.max(1e-3)
+            side * deviation.cos_deviation >= limits.cos_deviation.max(LEAST_COSINE)
                 && deviation.cos_variation >= limits.cos_variation
                 && deviation.chord <= limits.chord
                 && deviation.rise <= limits.rise
@@ -277,7 +316,7 @@ impl<A: Access> Worker<'_, '_, A> {
         let cos_deviation = if limits.cos_deviation < 0.0 {
             -1.0
         } else {
-            (old.worst.cos_deviation - slack).min(limits.cos_deviation).max(1e-3)
+            (old.worst.cos_deviation - slack).min(limits.cos_deviation).max(LEAST_COSINE)
         };
         let cos_variation = old.worst.cos_variation.min(limits.cos_variation);
         let chord = old.worst.chord.max(limits.chord);

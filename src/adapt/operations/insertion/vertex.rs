@@ -84,6 +84,7 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         // Where triangles stand across a round edge that the mesh does not resolve, the model's normal near their centroids means little.
         // Pieces that lie as the triangle did are no worse than it.
-        self.check_normals(0.3).or_else(|refusal| if self.keeps_normals() { Ok(()) } else { Err(refusal) })
+        self.check_normals(0.3)
+            .or_else(|refusal| if self.keeps_normals() && !self.turns_over() { Ok(()) } else { Err(refusal) })
     }
 }

@@ -16,7 +16,8 @@ impl Pipeline<'_, '_> {
         let surface = self.surface;
         let (cos_deviation, cos_variation) =
             (surface.cosine(limits.cos_deviation), surface.cosine(limits.cos_variation));
-        self.context.limits = Limits { cos_deviation, cos_variation, chord: surface.chord(), ..limits };
+        let bounds_angle = surface.normal_deviation.is_some();
+        self.context.limits = Limits { cos_deviation, bounds_angle, cos_variation, chord: surface.chord(), ..limits };
     }
 
     /// Tetrahedra with a triangle on a face that is no plane, or on a curved edge.
