@@ -85,8 +85,8 @@ impl<A: Access> Worker<'_, '_, A> {
         result
     }
 
-    /// Moves an unprojected vertex to the closest point of its entity, or to another point of it between its neighbours there, with a cavity
-    /// that grows where it must. If that fails, the vertex goes as far towards the closest point as no tetrahedron is inverted, by up to five
+    /// Moves an unprojected vertex to where it belongs on its entity, or to another point of it between its neighbours there, with a cavity
+    /// that grows where it must. If that fails, the vertex goes as far towards the first point as no tetrahedron is inverted, by up to five
     /// halvings of the way.
     /// Refused as `Inverted` while it has not arrived; then it is tried again after reconnection.
     pub fn project(&mut self, v: VertexId) -> Result<(), Refusal> {
@@ -107,6 +107,12 @@ impl<A: Access> Worker<'_, '_, A> {
         }
         let folded = self.folded_at(v, ball);
         let mut arrived = self.arrive(v, ball, (goal, folded));
+        if is_refused(arrived) {
+            let closest = self.closest(self.store.entity(v), start, &[v]);
+            if closest.point != goal.point {
+                arrived = self.arrive(v, ball, (closest, folded));
+            }
+        }
         if is_refused(arrived) {
             for point in self.between_neighbours(v, ball) {
                 let place = self.place(self.store.entity(v), point, &[v]);
@@ -159,12 +165,9 @@ impl<A: Access> Worker<'_, '_, A> {
         others
     }
 
-    /// How many surface triangles at a vertex are folded: 0 unless the mesh is a part of a larger one, where there must never be more. A part
-    /// does not see what is beyond its cuts, and surfaces of two parts that share a rim do not cross as long as neither folds.
+    /// How many surface triangles at a vertex are folded: there must never be more. The surface would pass through what is across a void, or
+    /// beyond the cuts of a part, which sees nothing there.
     fn folded_at(&mut self, v: VertexId, ball: &[TetId]) -> usize {
-        if !self.context.required.is_part() {
-            return 0;
-        }
         let mut triangles = std::mem::take(&mut self.state.star.surface);
         triangles.clear();
         self.list_surface(v, ball, &mut triangles);
@@ -175,9 +178,6 @@ impl<A: Access> Worker<'_, '_, A> {
 
     /// The same of the triangles that come with `state.replacement`.
     fn folded_of_star(&mut self) -> usize {
-        if !self.context.required.is_part() {
-            return 0;
-        }
         let triangles = std::mem::take(&mut self.state.replacement.faces);
         let folded = self.folded(&triangles);
         self.state.replacement.faces = triangles;
