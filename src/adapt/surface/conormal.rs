@@ -6,7 +6,7 @@ use crate::mesh::vector::{Vec3, dot};
 use crate::metric::{Sym3, plane_basis};
 
 /// A face crosses layers where the square of the metric's extent along its normal is more than this many times that of the least size along it.
-const CROSSED: f64 = 4.0;
+const CROSSED: f64 = 25.0;
 
 /// It does not where the trace of M⁻¹ is more than this many times the square of that extent: there layers lie nearly along it.
 const SHALLOW: f64 = 100.0;
