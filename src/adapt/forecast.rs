@@ -5,6 +5,9 @@ use crate::metric::batch::Batch;
 use std::hint::black_box;
 use std::time::Instant;
 
+/// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
+pub const GREATEST_COMPLEXITY: f64 = 2e8;
+
 /// Vertices for a unit of complexity, those apart that the boundary brings.
 const VERTICES_PER_COMPLEXITY: f64 = 1.7;
 

@@ -2,6 +2,7 @@
 use super::error::Error;
 use super::view::{self, MeshView};
 use super::{Classification, Model, Settings, Sym3};
+use crate::adapt::forecast::GREATEST_COMPLEXITY;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::metric::multiscale::{Bounds, Measure, bounded};
@@ -9,9 +10,6 @@ use crate::metric::{Background, Field, Interpolation, Limits, Source, field};
 use crate::sizing::chords::{ChordLimit, Chords, Limited, SHARE, dive};
 use crate::tasks::Team;
 use std::sync::Arc;
-
-/// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
-const GREATEST_COMPLEXITY: f64 = 2e8;
 
 /// A mesh's place, and the model.
 type On<'a> = (&'a Classification, &'a Model);

@@ -4,6 +4,7 @@ use super::input::{Error, InputArguments};
 use super::local;
 use crate::adapt;
 use crate::adapt::beside::Beside;
+use crate::adapt::forecast::GREATEST_COMPLEXITY;
 use crate::cli::files::reading::Carrier;
 use crate::cli::metric::fields::Made;
 use crate::cli::metric::goal;
@@ -22,9 +23,6 @@ use crate::sizing;
 use crate::sizing::chords::{self, Limited};
 use crate::tasks::{Team, stage};
 use std::sync::Arc;
-
-/// The greatest complexity: a unit of it has twelve tetrahedra, ids have 32 bits, and some ids are not used.
-const GREATEST_COMPLEXITY: f64 = 2e8;
 
 /// The sizes of the geometry take at most this share of the complexity, so that some is left for the field.
 const GEOMETRY_SHARE: f64 = 0.5;
