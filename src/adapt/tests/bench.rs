@@ -15,7 +15,8 @@ use crate::adapt::operations::reconnection::criteria::Criterion;
 use crate::adapt::operations::reconnection::sweep::Reconnect;
 use crate::adapt::operations::repair::Repair;
 use crate::adapt::operations::smoothing::vertex::Smooth;
-use crate::adapt::schedule::work::Kind;
+use crate::adapt::passes::pipeline::Pipeline;
+use crate::adapt::schedule::work::{Kind, Silent};
 use crate::adapt::schedule::{self, Execution, Grains, Operation, Scheduler};
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::{DEFAULT_RIDGE_ANGLE, complete_boundary, samples};
@@ -280,6 +281,14 @@ impl<'m> Bench<'m> {
         }
         let (volume, slack) = (self.measure(), if self.exact { 1e-9 } else { 0.5 });
         assert!((volume / self.volume - 1.0).abs() < slack, "after {after}: the volume {} is {volume}", self.volume);
+    }
+
+    /// What comes of the passes on the mesh, on one thread.
+    pub fn with_pipeline<R>(&mut self, act: impl FnOnce(&mut Pipeline<'_, '_>) -> R) -> R {
+        let pool = Pool::new(1).unwrap();
+        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
+        let execution = Execution { pool: &pool, scheduler, plan, grains };
+        act(&mut Pipeline::new(&mut self.context, execution, &Silent, Criterion::MeanRatio, Vec::new()))
     }
 
     /// One sweep over all items that there are, in random order, and the check.

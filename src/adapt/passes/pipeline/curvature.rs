@@ -47,13 +47,9 @@ impl Pipeline<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::adapt::operations::reconnection::criteria::Criterion;
-    use crate::adapt::schedule::work::Silent;
-    use crate::adapt::schedule::{Execution, Grains, Scheduler};
     use crate::adapt::tests::bench::{Bench, Shape, sample};
     use crate::mesh::vector::unit;
     use crate::metric::{Background, Source};
-    use crate::tasks::{Plan, Pool};
 
     /// Whether the faces of a shape are too curved for sizes `across` its radii and 0.5 along its surface.
     fn is_too_curved(shape: Shape, across: f64) -> bool {
@@ -66,10 +62,7 @@ mod tests {
         let logs = vertices.iter().map(log).collect();
         sample.source = Source::Background(Background::new(vertices.clone(), sample.mesh.tets.nodes.clone(), logs));
         let mut bench = Bench::new(&sample, 1, 3);
-        let pool = Pool::new(1).unwrap();
-        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
-        let execution = Execution { pool: &pool, scheduler, plan, grains };
-        Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new()).is_too_curved()
+        bench.with_pipeline(|pipeline| pipeline.is_too_curved())
     }
 
     #[test]

@@ -40,15 +40,11 @@ impl Effort {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::adapt::operations::reconnection::criteria::Criterion;
-    use crate::adapt::passes::pipeline::Pipeline;
-    use crate::adapt::schedule::work::{Kind, Silent};
-    use crate::adapt::schedule::{Execution, Grains, Scheduler};
+    use crate::adapt::schedule::work::Kind;
     use crate::adapt::tests::bench::{Bench, Sample, Shape, sample};
     use crate::mesh::samples::cube;
     use crate::mesh::vector::norm;
     use crate::metric::{Background, Source, Sym3};
-    use crate::tasks::{Plan, Pool};
 
     /// A cube of eight vertices, with sizes that grow from 0.02 at one of them.
     fn first_mesh() -> Sample {
@@ -62,13 +58,11 @@ mod tests {
     fn inserted(effort: Effort) -> f64 {
         let sample = first_mesh();
         let mut bench = Bench::new(&sample, 1, 3);
-        let pool = Pool::new(1).unwrap();
-        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
-        let execution = Execution { pool: &pool, scheduler, plan, grains };
-        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
-        pipeline.effort = effort;
-        pipeline.run();
-        let (inserted, left) = (pipeline.work[Kind::Split as usize].counts.done as f64, pipeline.live() as f64);
+        let (inserted, left) = bench.with_pipeline(|pipeline| {
+            pipeline.effort = effort;
+            pipeline.run();
+            (pipeline.work[Kind::Split as usize].counts.done as f64, pipeline.live() as f64)
+        });
         bench.check("a first mesh");
         assert!(left > 200.0, "{left}");
         inserted / left

@@ -191,28 +191,23 @@ impl Pipeline<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::adapt::operations::reconnection::criteria::Criterion;
-    use crate::adapt::schedule::work::Silent;
-    use crate::adapt::schedule::{Execution, Grains, Scheduler};
     use crate::adapt::tests::bench::{Bench, Shape, sample};
-    use crate::tasks::{Plan, Pool, Team};
+    use crate::tasks::Team;
     use std::hint::black_box;
 
     /// Whether a cube of 22 000 vertices may grow from a mesh of so many, for a metric of this size.
     fn may_grow(size: f64, input: usize) -> bool {
         let sample = sample(Shape::Cube, 27, size);
         let mut bench = Bench::new(&sample, 1, 3);
-        let pool = Pool::new(1).unwrap();
-        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
-        let execution = Execution { pool: &pool, scheduler, plan, grains };
-        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
-        pipeline.input = input;
-        assert_eq!(pipeline.live(), 28 * 28 * 28);
-        let may = pipeline.may_grow();
-        let before = pipeline.live();
-        pipeline.split();
-        assert_eq!(pipeline.live() > before, may);
-        may
+        bench.with_pipeline(|pipeline| {
+            pipeline.input = input;
+            assert_eq!(pipeline.live(), 28 * 28 * 28);
+            let may = pipeline.may_grow();
+            let before = pipeline.live();
+            pipeline.split();
+            assert_eq!(pipeline.live() > before, may);
+            may
+        })
     }
 
     #[test]
@@ -227,14 +222,12 @@ mod tests {
     fn a_mesh_has_no_more_vertices_than_it_may_have() {
         let sample = sample(Shape::Cube, 5, 0.05);
         let mut bench = Bench::new(&sample, 1, 3);
-        let pool = Pool::new(1).unwrap();
-        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
-        let execution = Execution { pool: &pool, scheduler, plan, grains };
-        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
-        pipeline.max_vertices = 2000;
-        pipeline.run();
-        assert!((1990..=2000).contains(&pipeline.live()), "{}", pipeline.live());
-        assert_eq!(pipeline.growth_end, Some(GrowthEnd::MaxVertices));
+        bench.with_pipeline(|pipeline| {
+            pipeline.max_vertices = 2000;
+            pipeline.run();
+            assert!((1990..=2000).contains(&pipeline.live()), "{}", pipeline.live());
+            assert_eq!(pipeline.growth_end, Some(GrowthEnd::MaxVertices));
+        });
         bench.check("as many vertices as may be");
     }
 
@@ -242,20 +235,18 @@ mod tests {
     fn a_metric_that_asks_for_far_more_than_may_be_is_not_met() {
         let sample = sample(Shape::Cube, 5, 0.2);
         let mut bench = Bench::new(&sample, 1, 3);
-        let pool = Pool::new(1).unwrap();
-        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
-        let execution = Execution { pool: &pool, scheduler, plan, grains };
-        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
-        // It has 216.
-        pipeline.max_vertices = 300;
-        let mut ends = |is_limited, expected| {
-            (pipeline.is_limited, pipeline.expected, pipeline.growth_end) = (is_limited, expected, None);
-            pipeline.note_limit();
-            pipeline.growth_end
-        };
-        assert_eq!(ends(true, 1.2 * 300.0), None);
-        assert_eq!(ends(true, 1.3 * 300.0), Some(GrowthEnd::MaxVertices));
-        assert_eq!(ends(false, 1.3 * 300.0), None);
+        bench.with_pipeline(|pipeline| {
+            // It has 216.
+            pipeline.max_vertices = 300;
+            let mut ends = |is_limited, expected| {
+                (pipeline.is_limited, pipeline.expected, pipeline.growth_end) = (is_limited, expected, None);
+                pipeline.note_limit();
+                pipeline.growth_end
+            };
+            assert_eq!(ends(true, 1.2 * 300.0), None);
+            assert_eq!(ends(true, 1.3 * 300.0), Some(GrowthEnd::MaxVertices));
+            assert_eq!(ends(false, 1.3 * 300.0), None);
+        });
     }
 
     #[test]

@@ -92,10 +92,7 @@ impl Pipeline<'_, '_> {
 mod tests {
     use super::*;
     use crate::adapt::core::required::{Freeze, Required};
-    use crate::adapt::schedule::work::Silent;
-    use crate::adapt::schedule::{Execution, Grains, Scheduler};
     use crate::adapt::tests::bench::{Bench, Shape, sample};
-    use crate::tasks::{Plan, Pool};
 
     /// Tetrahedra that are to be repaired, those that repair tries, and those that it leaves, of a mesh that may change or is frozen.
     fn repaired(is_frozen: bool) -> (usize, usize, usize) {
@@ -105,13 +102,11 @@ mod tests {
             let regions = vec![sample.mesh.tets.refs[0]];
             bench.context.required = Required::of(&sample.mesh, &Freeze { regions, ..Freeze::default() });
         }
-        let pool = Pool::new(1).unwrap();
-        let (scheduler, plan, grains) = (Scheduler::Deterministic, Plan::default(), Grains::default());
-        let execution = Execution { pool: &pool, scheduler, plan, grains };
-        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
-        let bad = pipeline.tets(|store, t| store.quality(t) < REPAIR_BELOW).len();
-        pipeline.repair();
-        let found = (bad, pipeline.repaired, pipeline.unrepaired);
+        let found = bench.with_pipeline(|pipeline| {
+            let bad = pipeline.tets(|store, t| store.quality(t) < REPAIR_BELOW).len();
+            pipeline.repair();
+            (bad, pipeline.repaired, pipeline.unrepaired)
+        });
         bench.check("repair");
         found
     }

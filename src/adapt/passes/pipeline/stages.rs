@@ -94,13 +94,10 @@ impl Pipeline<'_, '_> {
 mod tests {
     use super::*;
     use crate::adapt::core::ids::{EDGE, VertexId};
-    use crate::adapt::operations::reconnection::criteria::Criterion;
-    use crate::adapt::schedule::work::{Kind, Silent};
-    use crate::adapt::schedule::{Execution, Grains, Scheduler};
+    use crate::adapt::schedule::work::Kind;
     use crate::adapt::tests::bench::{Bench, Sample, Shape, sample};
     use crate::mesh::vector::sub;
     use crate::metric::{Background, Source, Sym3};
-    use crate::tasks::{Plan, Pool};
 
     /// A cube of 216 vertices, with sizes of 0.5 along a wall and from `first` to 0.5 away from it.
     fn layer(first: f64) -> Sample {
@@ -113,13 +110,6 @@ mod tests {
         sample
     }
 
-    fn with_pipeline(bench: &mut Bench<'_>, act: impl FnOnce(&mut Pipeline<'_, '_>)) {
-        let pool = Pool::new(1).unwrap();
-        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
-        let execution = Execution { pool: &pool, scheduler, plan, grains };
-        act(&mut Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new()));
-    }
-
     #[test]
     fn a_stage_shrinks_sizes_by_its_factor_at_most_and_ends_with_the_metric_of_the_source() {
         let sample = layer(1e-4);
@@ -128,7 +118,7 @@ mod tests {
             let store = &pipeline.context.store;
             store.live_vertices().map(|v: VertexId| store.log(v)).collect()
         };
-        with_pipeline(&mut bench, |pipeline| {
+        bench.with_pipeline(|pipeline| {
             let source = logs(pipeline);
             let stage = pipeline.context.stage(pipeline.team(), FACTOR, 1.0).unwrap();
             assert!(stage.wanted > 10.0 * stage.complexity, "{} {}", stage.wanted, stage.complexity);
@@ -158,7 +148,7 @@ mod tests {
             (layer(1e-4), true),
         ] {
             let mut bench = Bench::new(&sample, 1, 3);
-            with_pipeline(&mut bench, |pipeline| {
+            bench.with_pipeline(|pipeline| {
                 let is_asked = pipeline.asked_for(ENTRY, 1.0).is_some();
                 assert_eq!(is_asked, has_stages);
                 assert!(pipeline.context.has_edge_longer(pipeline.team(), LONG) || !is_asked);
@@ -175,7 +165,7 @@ mod tests {
             })
         });
         let longest = lengths.fold(0.0, f64::max);
-        with_pipeline(&mut bench, |pipeline| {
+        bench.with_pipeline(|pipeline| {
             let has = |limit: f64| pipeline.context.has_edge_longer(pipeline.team(), limit);
             assert!(has(0.999 * longest) && !has(1.001 * longest));
         });
@@ -187,7 +177,7 @@ mod tests {
         for (first, least) in [(1e-4, 500.0), (3e-3, 150.0)] {
             let sample = layer(first);
             let mut bench = Bench::new(&sample, 1, 3);
-            with_pipeline(&mut bench, |pipeline| {
+            bench.with_pipeline(|pipeline| {
                 pipeline.run();
                 let inserted = pipeline.work[Kind::Split as usize].counts.done as f64;
                 let left = pipeline.live() as f64;

@@ -61,14 +61,9 @@ impl Pipeline<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::super::shape_limits;
-    use super::*;
-    use crate::adapt::operations::reconnection::criteria::Criterion;
-    use crate::adapt::schedule::work::Silent;
-    use crate::adapt::schedule::{Execution, Grains, Scheduler};
     use crate::adapt::surface::bounds::SurfaceBounds;
     use crate::adapt::tests::bench::{Bench, Shape, sample};
     use crate::geometry::Entity;
-    use crate::tasks::{Plan, Pool};
 
     #[test]
     fn a_vertex_without_room_on_the_model_goes_whatever_the_bound_of_the_chord() {
@@ -76,17 +71,16 @@ mod tests {
         let mut bench = Bench::new(&sample, 1, 3);
         let store = &bench.context.store;
         let v = store.live_vertices().find(|&v| matches!(store.entity(v), Entity::Face(_))).unwrap();
-        let pool = Pool::new(1).unwrap();
-        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
-        let execution = Execution { pool: &pool, scheduler, plan, grains };
-        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, vec![v]);
-        pipeline.surface = SurfaceBounds { normal_deviation: Some(10.0), hausdorff: Some(1e-9) };
-        pipeline.limit(shape_limits());
-        pipeline.remove_unprojected(true);
-        assert!(pipeline.unprojected.is_empty() && !pipeline.context.store.is_vertex(v));
-        // What is left is still held to the bounds.
-        assert_eq!(pipeline.context.limits.chord, 1e-9);
-        assert!(pipeline.deviating() > 0);
+        bench.with_pipeline(|pipeline| {
+            pipeline.unprojected = vec![v];
+            pipeline.surface = SurfaceBounds { normal_deviation: Some(10.0), hausdorff: Some(1e-9) };
+            pipeline.limit(shape_limits());
+            pipeline.remove_unprojected(true);
+            assert!(pipeline.unprojected.is_empty() && !pipeline.context.store.is_vertex(v));
+            // What is left is still held to the bounds.
+            assert_eq!(pipeline.context.limits.chord, 1e-9);
+            assert!(pipeline.deviating() > 0);
+        });
         bench.check("the removal of a vertex");
     }
 }

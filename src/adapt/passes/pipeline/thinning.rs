@@ -119,13 +119,9 @@ impl Pipeline<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::adapt::operations::reconnection::criteria::Criterion;
     use crate::adapt::passes::pipeline::Effort;
-    use crate::adapt::schedule::work::Silent;
-    use crate::adapt::schedule::{Execution, Grains, Scheduler};
     use crate::adapt::tests::bench::{Bench, Shape, sample};
     use crate::metric::{Background, Source, Sym3};
-    use crate::tasks::{Plan, Pool};
 
     /// Insertions a vertex that is left, of a cube with cells of the same size in all directions and a metric of cells thin in one.
     fn inserted(sizes: [f64; 3], effort: Effort) -> f64 {
@@ -135,13 +131,11 @@ mod tests {
         let background = Background::new(sample.mesh.vertices.clone(), sample.mesh.tets.nodes.clone(), logs);
         sample.source = Source::Background(background);
         let mut bench = Bench::new(&sample, 1, 3);
-        let pool = Pool::new(1).unwrap();
-        let (scheduler, plan, grains) = (Scheduler::Sequential, Plan::default(), Grains::default());
-        let execution = Execution { pool: &pool, scheduler, plan, grains };
-        let mut pipeline = Pipeline::new(&mut bench.context, execution, &Silent, Criterion::MeanRatio, Vec::new());
-        pipeline.effort = effort;
-        pipeline.run();
-        let (inserted, left) = (pipeline.work[Kind::Split as usize].counts.done as f64, pipeline.live() as f64);
+        let (inserted, left) = bench.with_pipeline(|pipeline| {
+            pipeline.effort = effort;
+            pipeline.run();
+            (pipeline.work[Kind::Split as usize].counts.done as f64, pipeline.live() as f64)
+        });
         bench.check("cells that lay askew");
         assert!(left > 500.0, "{left}");
         inserted / left
