@@ -1,22 +1,15 @@
 //! Thin layers that cross curved walls at an angle.
 
-use crate::common::adapting::{Workplace, stderr, text};
-use crate::common::program;
+use crate::common::adapting::Workplace;
 use geo_adapt::mesh::io;
 use geo_adapt::mesh::vector::Vec3;
 use geo_adapt::metric::Sym3;
-use std::path::Path;
 
 /// Within a layer across y a chord of the spheroid rises by hundreds of layers along the wall's normal, though in its own layer by a tenth of an edge.
 #[test]
 fn a_thin_layer_that_crosses_a_spheroid_leaves_no_very_bad_cells_at_its_wall() {
     let work = Workplace::new();
-    let [model, start] =
-        [Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry/spheroid.step"), work.path("start.meshb")];
-    let [model, first] = [&model, &start].map(|path| text(path));
-    let coarse = ["bootstrap", &model, "-o", &first, "--segments", "2", "--feature-cells", "off", "--quiet"];
-    let run = program().args(coarse).output().unwrap();
-    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    let (model, start) = work.coarse_start("spheroid.step");
     let layer = |[_, y, _]: Vec3| {
         let across = (2e-5 + (y + 0.12).abs() / 3.0).min(0.17);
         Sym3::diagonal(0.17_f64.powi(-2), across.powi(-2), 0.17_f64.powi(-2))

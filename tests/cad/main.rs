@@ -1,6 +1,7 @@
 //! What needs OpenCASCADE: CAD models, and what is made of them.
 #![cfg(all(feature = "cli", feature = "occt"))]
 mod adapt;
+mod apex;
 mod book;
 mod bootstrap;
 mod bootstrap_heal;

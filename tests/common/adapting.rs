@@ -38,6 +38,16 @@ impl Workplace {
         path
     }
 
+    /// A model of the folder geometry, and a coarse mesh that `bootstrap` made of it: at most two segments a radius of curvature.
+    pub fn coarse_start(&self, model: &str) -> (String, PathBuf) {
+        let model = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry").join(model));
+        let start = self.path("start.meshb");
+        let coarse = ["bootstrap", &model, "-o", &text(&start), "--segments", "2", "--feature-cells", "off", "--quiet"];
+        let run = program().args(coarse).output().unwrap();
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        (model, start)
+    }
+
     /// Writes a metric for the mesh as size.solb.
     pub fn metric(&self, mesh: &TetMesh, at: impl Fn(Vec3) -> Sym3) -> String {
         let path = self.path("size.solb");

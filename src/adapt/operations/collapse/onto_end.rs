@@ -10,6 +10,10 @@ use crate::adapt::schedule::Operation;
 use crate::geometry::Entity;
 use crate::mesh::stamped_set::StampedSet;
 
+/// An edge shorter than this share of what is too short may be collapsed at the price of a bad tetrahedron, which later operations repair. In no other
+/// way can the fine ring about the apex of a cone go (docs/decisions/surface.md).
+const MUCH: f64 = 0.3;
+
 /// What a collapse needs at hand. Allocated once.
 #[derive(Default)]
 pub struct CollapseScratch {
@@ -108,7 +112,9 @@ impl<A: Access> Worker<'_, '_, A> {
     }
 
     fn collapse_star(&mut self, v: VertexId, w: VertexId, ball: &[TetId], better: f64) -> Result<f64, Refusal> {
-        let floor = self.context.limits.collapse_floor.min(self.worst_of(ball)).max(better);
+        let limits = &self.context.limits;
+        let share = (self.length(v, w) / (MUCH * limits.short)).min(1.0);
+        let floor = (share * limits.collapse_floor.min(self.worst_of(ball))).max(better);
         self.build_star(Seed::Vertex(v), w, ball, Bounds { wanted: 0.0, floor })
     }
 
