@@ -6,6 +6,7 @@ mod book;
 mod bootstrap;
 mod bootstrap_heal;
 mod bootstrap_own;
+mod bounds;
 mod chords;
 mod classify;
 mod closest_points;

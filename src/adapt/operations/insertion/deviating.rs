@@ -5,6 +5,11 @@ use crate::adapt::core::ids::{FACE, TetId, VertexId};
 use crate::adapt::core::refusal::Refusal;
 use crate::adapt::core::worker::Worker;
 use crate::adapt::schedule::Operation;
+use crate::mesh::vector::distance;
+
+/// An edge is not split where an end is farther from the model than this share of its middle: the end has found no room there, nor would the
+/// new vertex, and the pieces would deviate as much.
+const OFF_MODEL: f64 = 0.1;
 
 /// Splits surface triangles that deviate from the model.
 pub struct SplitDeviating;
@@ -25,7 +30,8 @@ impl Operation for SplitDeviating {
 }
 
 impl<A: Access> Worker<'_, '_, A> {
-    /// Splits one edge of a tetrahedron: of all edges of its surface triangles that deviate, the one whose middle is farthest from the model.
+    /// Splits one edge of a tetrahedron: of all edges of its surface triangles that deviate, the one whose middle is farthest from the
+    /// model. Not of a triangle where an end of that edge is off the model.
     pub fn split_deviating(&mut self, t: TetId) -> Result<(), Refusal> {
         let vertices = self.claim_current_tet(t)?;
         let tags = self.store.tags(t);
@@ -36,14 +42,24 @@ impl<A: Access> Worker<'_, '_, A> {
             if !self.deviates(deviation) {
                 continue;
             }
-            for edge in [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]] {
-                let chord = self.chord_of(edge, tags[i] - 1);
-                if chord > 0.0 && farthest.is_none_or(|(known, _)| chord > known) {
-                    farthest = Some((chord, edge));
-                }
+            let (chord, edge) = self.farthest_edge(face, tags[i] - 1);
+            let has_ends_on_model = edge.iter().all(|&v| self.distance_from_model(v) < OFF_MODEL * chord);
+            if has_ends_on_model && farthest.is_none_or(|(known, _)| chord > known) {
+                farthest = Some((chord, edge));
             }
         }
         let (_, [a, b]) = farthest.ok_or(Refusal::Stale)?;
         self.split_edge(EdgeItem { a: a.min(b), b: a.max(b), tet: t })
+    }
+
+    /// Of a triangle's edges the one whose middle is farthest from the model, and how far that is.
+    fn farthest_edge(&mut self, [a, b, c]: [VertexId; 3], face: u32) -> (f64, [VertexId; 2]) {
+        let edges = [[a, b], [b, c], [c, a]].map(|edge| (self.chord_of(edge, face), edge));
+        edges.into_iter().reduce(|most, next| if next.0 > most.0 { next } else { most }).unwrap()
+    }
+
+    fn distance_from_model(&mut self, v: VertexId) -> f64 {
+        let point = self.store.position(v);
+        distance(point, self.closest(self.store.entity(v), point, &[v]).point)
     }
 }
