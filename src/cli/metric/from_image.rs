@@ -6,6 +6,7 @@ use crate::cli::table::Table;
 use crate::image::{self, Image, Smoothed};
 use crate::mesh::TetMesh;
 use crate::metric::from_image::{Wish, of_borders, of_hessians};
+use crate::metric::multiscale::five_digits;
 use crate::metric::summary::Summary;
 use crate::metric::{Limits, Sym3};
 use crate::tasks::{GRAIN, Plan, Team};
@@ -126,8 +127,9 @@ fn labels(
 fn unreachable(arguments: &Arguments, nearest: f64) -> String {
     let (name, target) = (arguments.mesh.display(), arguments.amount.complexity().unwrap_or_default());
     format!(
-        "{name}: a complexity of {target} cannot be reached, the nearest is {nearest:.4e}; give another --complexity, other limits, or \
-         a mesh that is finer where the image has its borders"
+        "{name}: a complexity of {target} cannot be reached, the nearest is {}; give another --complexity, other limits, or \
+         a mesh that is finer where the image has its borders",
+        five_digits(nearest)
     )
 }
 

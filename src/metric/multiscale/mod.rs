@@ -27,7 +27,7 @@ use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
 pub(super) use optimal::Spectrum;
 pub(super) use reach::try_reach;
-pub use reach::{Unreachable, reach};
+pub use reach::{Unreachable, five_digits, reach};
 use serde::Serialize;
 
 /// Which metric is made.
@@ -104,8 +104,10 @@ pub enum Error {
     },
     /// The limits do not let the complexity come near.
     #[error(
-        "a complexity of {target} cannot be reached: with these limits the nearest is {nearest:.4e}; give another --complexity, or \
-         change --hmin, --hmax or --aspect-ratio (no size is above the diameter of the mesh's box)"
+        "a complexity of {target} cannot be reached: with these limits the nearest is {}; give another --complexity or --vertices, or \
+         change what bounds the sizes at any complexity: --local, --wall, --hmin, --hmax or --aspect-ratio (no size is above the \
+         diameter of the mesh's box)",
+        five_digits(*nearest)
     )]
     Unreachable {
         /// The complexity wanted.

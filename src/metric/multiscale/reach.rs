@@ -24,6 +24,12 @@ pub struct Unreachable {
     pub nearest: f64,
 }
 
+/// A complexity as a user may give it back: five digits, whole from 10 000 on. It is that complexity within [`TOLERANCE`].
+pub fn five_digits(complexity: f64) -> String {
+    let digits = if complexity > 0.0 { (4.0 - complexity.log10().floor()).clamp(0.0, 9.0) } else { 0.0 };
+    format!("{complexity:.*}", digits as usize)
+}
+
 /// The logarithm of the scale at which `complexity`, which grows with the scale, is `target`, to [`TOLERANCE`]; and how often it was
 /// called. The last call is at the scale that is returned.
 ///
@@ -92,6 +98,18 @@ pub fn reach_within<E: From<Unreachable>>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_complexity_that_is_told_can_be_given_back() {
+        for complexity in [3e-5, 0.0123456, 1.0, 695.94, 1166.2, 98765.4, 1e7 / 3.0] {
+            let told = five_digits(complexity);
+            assert!(
+                (told.parse::<f64>().unwrap() / complexity - 1.0).abs() < TOLERANCE && !told.contains('e'),
+                "{told}"
+            );
+        }
+        assert_eq!([1166.2, 98765.4, 0.0].map(five_digits), ["1166.2", "98765", "0"]);
+    }
 
     #[test]
     fn a_free_metric_takes_two_steps() {
