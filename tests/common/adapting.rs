@@ -38,7 +38,7 @@ impl Workplace {
         path
     }
 
-    /// A model of the folder geometry, and a coarse mesh that `bootstrap` made of it: at most two segments a radius of curvature.
+    /// A model of the folder geometry, and a coarse mesh that `bootstrap` made of it: two segments a radian of curvature, no feature cells.
     pub fn coarse_start(&self, model: &str) -> (String, PathBuf) {
         let model = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry").join(model));
         let start = self.path("start.meshb");
