@@ -1,7 +1,8 @@
 //! Runs of several processes, for tests.
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// How long a run may take in which something fails: what hangs, hangs for ever.
@@ -22,7 +23,20 @@ pub fn mpirun(ranks: usize) -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--oversubscribe", "-n", &ranks.to_string()]).stdin(Stdio::null());
     command.envs([("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")]);
+    command.env(SESSIONS, sessions());
     command
+}
+
+/// The variable that tells Open MPI where to keep the folder of its sessions.
+pub const SESSIONS: &str = "OMPI_MCA_orte_tmpdir_base";
+
+/// A folder for the sessions of one mpirun: two that begin at once, and make the same folder, fail.
+fn sessions() -> PathBuf {
+    static CALLS: AtomicUsize = AtomicUsize::new(0);
+    let call = CALLS.fetch_add(1, Ordering::Relaxed);
+    let folder = std::env::temp_dir().join(format!("geo-adapt-mpi-{}", std::process::id())).join(call.to_string());
+    fs::create_dir_all(&folder).unwrap();
+    folder
 }
 
 /// The words behind the name in /proc/ID/stat: state, parent, group.

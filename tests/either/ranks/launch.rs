@@ -1,5 +1,6 @@
 //! The runs of several ranks, by mpirun.
 use super::PART;
+use crate::mpirun::SESSIONS;
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -36,6 +37,7 @@ fn run(test: &str, part: &str, ranks: usize, patience: Duration) -> Option<End> 
         // More ranks than cores, and as root in CI.
         .args(["--oversubscribe", "-n", &ranks.to_string()])
         .envs([("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"), (PART, part)])
+        .env(SESSIONS, folder.path())
         .arg(std::env::current_exe().unwrap())
         // On the main thread, and nothing of it kept back.
         .args([&format!("ranks::parts::{test}"), "--exact", "--nocapture", "--test-threads=1"])
