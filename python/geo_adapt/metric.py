@@ -349,7 +349,7 @@ def wall(
     norm : float
         With Spalding's law: the p of the norm of the interpolation error of u⁺.
     exact : bool
-        Sizes as they are asked for, also where the mesh is too coarse to interpolate them.
+        Sizes as they are asked for at each point, not graded.
     tolerance, threads : optional
         How far a point may be from the model; by default all cores.
 

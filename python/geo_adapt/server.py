@@ -507,7 +507,7 @@ class Server:
         conservative : bool or {"mean", "mass"}
             Keeps the integral of each value, as there.
         metric : bool
-            The values are a metric, whose logarithm is interpolated: shape (n, 3, 3), or (n, 6) with its order.
+            The values are a metric, and interpolated as one (METHOD.md, 1.2): shape (n, 3, 3), or (n, 6) with its order.
         order : {"medit", "voigt"}, optional
             Of such a metric.
 

@@ -177,7 +177,7 @@ def transfer(
         Keeps the integral of each value, with no new extremum; where the volumes differ "mean" (also True) keeps the integral by the
         volume, "mass" the integral.
     metric : bool
-        The values are a metric, whose logarithm is interpolated: shape (n, 3, 3), or (n, 6) with its order. The result is (m, 6) in
+        The values are a metric, and interpolated as one (METHOD.md, 1.2): shape (n, 3, 3), or (n, 6) with its order. The result is (m, 6) in
         the order "medit".
     order : {"medit", "voigt"}, optional
         Of such a metric.

@@ -3,7 +3,6 @@ use crate::arrays::{self, Arrays, exp, flat, logs, rows, team};
 use crate::errors;
 use crate::metric::{limits, positive};
 use geo_adapt::TetMesh;
-use geo_adapt::metric::Interpolation;
 use geo_adapt::metric::goal::{Boundary, Derivative, Goal, Weight};
 use geo_adapt::metric::multiscale::{Bounds, Measure, Norm, Options};
 use geo_adapt::metric::recovery::{Recovery, Rings};
@@ -79,7 +78,7 @@ pub fn goal<'py>(
         let team = team(&pool);
         let mesh: TetMesh = view.to_mesh().map_err(errors::of_adapter)?;
         let fixed = fixed.map(|fixed| logs(team, fixed, mesh.vertices.len())).transpose()?;
-        let measure = if how.between { Measure::Between(Interpolation::default()) } else { Measure::AtVertices };
+        let measure = if how.between { Measure::Between } else { Measure::AtVertices };
         let (complexity, gradation) = (how.complexity, how.gradation);
         let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref(), by_others: None };
         let mut goal = Goal::new(team, &mesh, recovery, boundary);

@@ -9,7 +9,7 @@ use geo_adapt::metric::from_points::{FromPoints, TooFew};
 use geo_adapt::metric::implied::implied as implied_of;
 use geo_adapt::metric::multiscale::{self as of_field, Bounds, Measure, Norm};
 use geo_adapt::metric::recovery::Recovery;
-use geo_adapt::metric::{self, Field, Interpolation, Limits, Sym3, field};
+use geo_adapt::metric::{self, Field, Limits, Sym3, field};
 use geo_adapt::sizing;
 use geo_adapt::sizing::layer::{self, Asked, Outside, Wall, Walls, wall_metric};
 use geo_adapt::tasks::{GRAIN, Team};
@@ -218,7 +218,7 @@ pub fn multiscale<'py>(
         let team = team(&pool);
         let mesh = view.to_mesh().map_err(errors::of_adapter)?;
         let fixed = fixed.map(|fixed| logs(team, fixed, mesh.vertices.len())).transpose()?;
-        let measure = if how.between { Measure::Between(Interpolation::default()) } else { Measure::AtVertices };
+        let measure = if how.between { Measure::Between } else { Measure::AtVertices };
         let (complexity, gradation) = (how.complexity, how.gradation);
         let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref(), by_others: None };
         let options = of_field::Options { recovery, norm, bounds };

@@ -6,13 +6,12 @@ use super::{Effort, Observer};
 use crate::geometry::Model;
 use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::{MatchedFaces, sorted2};
+use crate::mesh::adjacency::sorted2;
 use crate::mesh::stack::{Error, Outside, Rejoined, Stack};
 use crate::metric::frozen::{Fitted, fit};
 use crate::metric::implied::implied;
-use crate::metric::{Background, Source, Sym3};
+use crate::metric::{Source, Sym3};
 use crate::tasks::{GRAIN, Pool, Team};
-use std::sync::Arc;
 
 /// A stack, and what joins the tetrahedra beside it to it.
 pub struct Beside {
@@ -51,13 +50,12 @@ impl Beside {
         self.outside.interface.len()
     }
 
-    /// The metric of a source, which lies on the mesh, fitted to the triangles of the stack: from there sizes change by the ratio from an edge to the
+    /// ln M of a source, which lies on the mesh, at its vertices, fitted to the triangles of the stack: from there sizes change by the ratio from an edge to the
     /// next at most. An analytic field is taken at the vertices.
-    pub fn fitted(&self, team: Team<'_>, mesh: &Arc<TetMesh>, source: &Source, ratio: f64) -> (Source, Fitted) {
+    pub fn fitted(&self, team: Team<'_>, mesh: &TetMesh, source: &Source, ratio: f64) -> (Vec<Sym3>, Fitted) {
         let mut logs = logs(team, mesh, source);
         let fitted = fit(team, mesh, &self.outside.interface, &mut logs, ratio);
-        let faces = MatchedFaces::of(team, &mesh.tets.nodes);
-        (Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), fitted)
+        (logs, fitted)
     }
 
     /// Adapts the mesh as [`super::adapt`] does: the faces to the stack stay as they are.

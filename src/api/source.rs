@@ -6,7 +6,8 @@ use crate::adapt::forecast::GREATEST_COMPLEXITY;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::metric::multiscale::{Bounds, Measure, bounded};
-use crate::metric::{Background, Field, Interpolation, Limits, Source, field};
+use crate::metric::{Field, Limits, Source, field};
+use crate::sizing::background;
 use crate::sizing::chords::{ChordLimit, Chords, Limited, SHARE, dive};
 use crate::tasks::Team;
 use std::sync::Arc;
@@ -48,7 +49,7 @@ pub(super) fn of(
     }
     let may_be_cut = settings.chords == ChordLimit::Auto && !matches!(on.1, Model::Discrete(_));
     let given = may_be_cut.then(|| logs.clone());
-    let mut source = Source::Background(Background::on(team, Arc::clone(mesh), faces, logs));
+    let mut source = Source::Background(background(team, (mesh, faces), on, logs));
     scale(team, mesh, &mut source, wanted)?;
     if let (Some(given), Source::Background(background)) = (given, &source)
         && dive(team, on.0, on.1, background.logs()).is_deep()
@@ -66,12 +67,12 @@ pub(super) fn of(
 fn cut(
     team: Team<'_>,
     (mesh, faces): (&Arc<TetMesh>, MatchedFaces),
-    (place, model): On<'_>,
+    on: On<'_>,
     mut logs: Vec<Sym3>,
     (share, wanted): (f64, Option<f64>),
 ) -> Result<(Source, Option<Limited>), Error> {
-    let chords = Chords::new(place, model, share);
-    let (measure, limits) = (Measure::Between(Interpolation::default()), Limits::default());
+    let chords = Chords::new(on.0, on.1, share);
+    let (measure, limits) = (Measure::Between, Limits::default());
     let complexity = wanted.unwrap_or(1.0);
     let bounds = Bounds { complexity, measure, gradation: None, limits, fixed: None, by_others: Some(&chords) };
     let cut = if wanted.is_some() {
@@ -82,7 +83,7 @@ fn cut(
     } else {
         bounds.apply(team, &mut logs).1
     };
-    let mut source = Source::Background(Background::on(team, Arc::clone(mesh), faces, logs));
+    let mut source = Source::Background(background(team, (mesh, faces), on, logs));
     scale(team, mesh, &mut source, None)?;
     Ok((source, cut.map(|cut| Limited { share, cut })))
 }

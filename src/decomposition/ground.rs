@@ -2,7 +2,7 @@
 use super::Error;
 use super::bytes::{put, take};
 use super::deal::{NOBODY, Shares};
-use super::input::{Input, Vertices};
+use super::input::{Input, Skin, Vertices};
 use super::join::join;
 use super::piece::Piece;
 use super::region::{Region, box_of};
@@ -10,6 +10,7 @@ use super::rounds::Rounds;
 use super::shelf::{Key, Shelf};
 use super::split::split_tets;
 use super::threads::on_threads;
+use crate::geometry::Model;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
 use crate::mesh::ranges::renumbered;
@@ -48,18 +49,19 @@ impl Block {
     }
 }
 
-/// The metric of an input of one slice.
-pub fn whole(team: Team<'_>, input: &dyn Input) -> Result<Source, Error> {
+/// The metric of an input of one slice, with its boundary on the model.
+pub fn whole(team: Team<'_>, input: &dyn Input, skin: &Skin<'_>, model: &Model) -> Result<Source, Error> {
     let mut mesh = TetMesh { tets: input.tets(0..input.size()[1])?, ..TetMesh::default() };
     let numbers = renumbered(&mut [mesh.tets.nodes.as_flattened_mut()]);
     let Vertices { points, logs, .. } = input.vertices(&numbers)?;
+    let rises = skin.rises(team, (&numbers, &logs), model);
     mesh.vertices = points;
-    Ok(background(team, mesh, logs))
+    Ok(Source::Background(background(team, mesh, logs).of_second_degree(team, &rises)))
 }
 
-fn background(team: Team<'_>, mesh: TetMesh, logs: Vec<Sym3>) -> Source {
+fn background(team: Team<'_>, mesh: TetMesh, logs: Vec<Sym3>) -> Background {
     let faces = MatchedFaces::of(team, &mesh.tets.nodes);
-    Source::Background(Background::on(team, Arc::new(mesh), faces, logs))
+    Background::on(team, Arc::new(mesh), faces, logs)
 }
 
 /// What a block is of a piece: its metric on tetrahedra.
@@ -116,7 +118,8 @@ impl Ground {
         let mut piece = join(of.iter().map(share).collect::<Result<Vec<_>, _>>()?);
         of.iter().for_each(|&of| shelf.forget(Key::Around { round, part, of }));
         piece.scale(log);
-        Ok(Under::Own(background(Team::alone(), piece.mesh, piece.logs)))
+        // Blocks have no boundary: they are as straight as the mesh.
+        Ok(Under::Own(Source::Background(background(Team::alone(), piece.mesh, piece.logs))))
     }
 }
 

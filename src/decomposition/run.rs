@@ -65,7 +65,7 @@ pub fn adapt<'a>(common: Common<'a>, given: Given<'_>, told: impl FnOnce(usize))
     common.observer.forecast(&forecast(&common, complexity, vertices));
     let mut ground = match source {
         Some(source) if blocks.is_empty() => Ground::Whole(source),
-        None if blocks.is_empty() => Ground::Whole(ground::whole(team, input)?),
+        None if blocks.is_empty() => Ground::Whole(ground::whole(team, input, skin, common.model)?),
         _ => Ground::Blocks(blocks, 0.0),
     };
     rounds.run(&mut ground, team, complexity, vertices)?;

@@ -188,7 +188,7 @@ fn measure_normals(
             let Some(side) = sides[triangle] else { continue };
             let [a, b, c] = nodes.map(|v| mesh.vertices[v as usize]);
             let at = scale(add(add(a, b), c), 1.0 / 3.0);
-            let guess = nodes.iter().find_map(|&v| parameters_on(&mut evaluator, classification, v, face));
+            let guess = nodes.iter().find_map(|&v| classification.parameters_on(&mut evaluator, v, face));
             let foot = evaluator.closest_on_face(face, at, guess);
             let truth = evaluator.face_normal(face, foot.uv);
             if dot(truth, truth) > 0.0 {
@@ -204,21 +204,6 @@ fn measure_normals(
     fidelity.mean_normal_degrees = sum / found.len().max(1) as f64;
     let worse = |a: &Deviation, b: &Deviation| a.degrees.total_cmp(&b.degrees).then(b.triangle.cmp(&a.triangle));
     fidelity.worst_normal = found.into_iter().max_by(worse);
-}
-
-/// Parameters of a mesh vertex on a face, for a guess.
-fn parameters_on(
-    evaluator: &mut impl Evaluate,
-    classification: &Classification,
-    vertex: u32,
-    face: u32,
-) -> Option<[f64; 2]> {
-    let parameters = classification.parameters[vertex as usize];
-    match classification.entities[vertex as usize] {
-        Entity::Face(own) if own == face => Some(parameters),
-        Entity::Edge(edge) => evaluator.edge_on_face(edge, parameters[0], face),
-        _ => None,
-    }
 }
 
 /// For each triangle its sign, +1 when its normal points out of its only tetrahedron and −1 when into it; no sign between two tetrahedra.

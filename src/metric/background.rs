@@ -1,20 +1,26 @@
 //! The background metric: the input mesh with ln M at its vertices, kept unchanged while the mesh is adapted.
-use super::{Interpolation, Sym3};
+use super::Sym3;
+use super::between::Ordered;
+use super::field::complexity_between;
+use super::quadratic::{Quadratic, Rise};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
-use crate::mesh::locate::Locator;
-use crate::mesh::vector::Vec3;
+use crate::mesh::locate::{Location, Locator};
+use crate::mesh::vector::{Vec3, sub};
 use crate::tasks::{GRAIN, Team};
 use std::sync::Arc;
+
+/// Steps to the point of a tetrahedron of second degree.
+const STEPS: usize = 3;
 
 /// A mesh with ln M at its vertices. Shared by all threads; every caller keeps its own hint.
 pub struct Background {
     locator: Locator,
     logs: Vec<Sym3>,
-    /// What is linear between the vertices.
-    interpolation: Interpolation,
-    /// What is interpolated, where that is not `logs`; else empty.
-    values: Vec<Sym3>,
+    /// The eigenvalues of ln M at the vertices, ascending, where sizes are steep in some tetrahedron; else empty.
+    ordered: Vec<[f64; 3]>,
+    /// What lies between the boundary's edges and the model, where that is much.
+    quadratic: Option<Box<Quadratic>>,
     /// Whether what lies between vertices may have to be cut to be held.
     is_wide: bool,
     cut: usize,
@@ -50,22 +56,20 @@ impl Background {
             cut += usize::from(held != *log);
             *log = held;
         }
-        Self { locator, logs, interpolation: Interpolation::default(), values: Vec::new(), is_wide, cut }
+        let ordered = ordered(team, locator.tets(), &logs);
+        Self { locator, logs, ordered, quadratic: None, is_wide, cut }
     }
 
-    /// The same, interpolated in another way.
-    pub fn interpolated(mut self, team: Team<'_>, interpolation: Interpolation) -> Self {
-        self.values = match interpolation {
-            Interpolation::Logarithms => Vec::new(),
-            Interpolation::Sizes => team.map(GRAIN, self.logs.len(), |v| interpolation.of_log(&self.logs[v])),
-        };
-        self.interpolation = interpolation;
+    /// The same on a mesh whose boundary is of second degree: with the edges that rise to the model, ascending. What is between their chords and the
+    /// model belongs to the tetrahedra at them.
+    pub fn of_second_degree(mut self, team: Team<'_>, edges: &[Rise]) -> Self {
+        self.quadratic = Quadratic::of(team, self.logs.len(), self.locator.tets(), edges).map(Box::new);
         self
     }
 
     /// Its complexity ∫ √det M.
     pub fn complexity(&self, team: Team<'_>) -> f64 {
-        self.interpolation.complexity(team, self.locator.mesh(), &self.logs)
+        complexity_between(team, self.locator.mesh(), &self.logs)
     }
 
     /// At how many vertices sizes were cut.
@@ -77,15 +81,32 @@ impl Background {
     /// The search starts at the tetrahedron `hint` (any number will do), which becomes the one found.
     #[inline]
     pub fn log_at(&self, p: Vec3, hint: &mut u32) -> Sym3 {
-        let found = self.locator.locate(p, hint);
+        let found = self.located(p, hint);
         let nodes = self.locator.tets()[found.tet as usize];
-        let values = if self.values.is_empty() { &self.logs } else { &self.values };
-        let mut value = Sym3::ZERO;
+        let mut log = Sym3::ZERO;
         for (node, weight) in nodes.into_iter().zip(found.weights) {
-            value = value.plus(values[node as usize].times(weight));
+            log = log.plus(self.logs[node as usize].times(weight));
         }
-        let log = self.interpolation.log(&value);
+        if !self.ordered.is_empty() {
+            let ordered = Ordered::new(nodes.map(|node| self.ordered[node as usize]));
+            if ordered.is_steep() {
+                log = ordered.log(&log, found.weights);
+            }
+        }
         if self.is_wide { log.held_log() } else { log }
+    }
+
+    /// Where p is, by its weights in a tetrahedron.
+    #[inline]
+    fn located(&self, p: Vec3, hint: &mut u32) -> Location {
+        let mut found = self.locator.locate(p, hint);
+        if let Some(quadratic) = &self.quadratic {
+            for _ in 0..STEPS {
+                let Some(shift) = quadratic.shift(found.tet, found.weights) else { break };
+                found = self.locator.locate(sub(p, shift), hint);
+            }
+        }
+        found
     }
 
     /// Adds `log_factor` to the diagonal of every ln M: M is scaled by e^log_factor.
@@ -93,8 +114,10 @@ impl Background {
         team.fill(GRAIN, &mut self.logs, |_, logs| {
             logs.iter_mut().for_each(|log| *log = log.plus_identity(log_factor));
         });
-        let factor = (-0.5 * log_factor).exp();
-        team.fill(GRAIN, &mut self.values, |_, sizes| sizes.iter_mut().for_each(|size| *size = size.times(factor)));
+        if !self.ordered.is_empty() {
+            // Not those before with the factor: as of a background that is made of these logarithms, to the bit.
+            self.ordered = ordered(team, self.locator.tets(), &self.logs);
+        }
     }
 
     /// The mesh, for searches.
@@ -106,6 +129,14 @@ impl Background {
     pub fn logs(&self) -> &[Sym3] {
         &self.logs
     }
+}
+
+/// The eigenvalues of each ln M, ascending, if sizes are steep in some tetrahedron; else none.
+fn ordered(team: Team<'_>, tets: &[[u32; 4]], logs: &[Sym3]) -> Vec<[f64; 3]> {
+    let ordered = team.map(GRAIN, logs.len(), |v| logs[v].eigen().values);
+    let is_steep = |tet: &[u32; 4]| Ordered::new(tet.map(|v| ordered[v as usize])).is_steep();
+    let is_any = team.chunks(GRAIN, tets.len(), |range| tets[range].iter().any(is_steep)).contains(&true);
+    if is_any { ordered } else { Vec::new() }
 }
 
 #[cfg(test)]
@@ -131,5 +162,32 @@ mod tests {
         assert!((outside.0[1] - 2.0).abs() < 1e-14 && (outside.0[0] - 0.3).abs() < 1e-14, "{outside:?}");
         background.scale(Team::alone(), 3.0);
         assert!((background.log_at([0.25, 0.5, 0.5], &mut hint).0[0] - 3.25).abs() < 1e-14);
+    }
+
+    /// The edge from the origin along x rises by 0.2 along −y: between the chord and the model sizes are those of the edge, and behind it they are as far
+    /// away as they were.
+    #[test]
+    fn what_is_between_a_chord_and_the_model_belongs_to_the_tetrahedra_at_the_chord() {
+        let mesh = cube(2);
+        let vertex = |p: Vec3| mesh.vertices.iter().position(|&q| q == p).unwrap() as u32;
+        let mut ends = [vertex([0.0, 0.0, 0.0]), vertex([0.5, 0.0, 0.0])];
+        ends.sort_unstable();
+        // ln of sizes that grow by e from y = 0 to 1, and from z = 0 to 1.
+        let log = |p: Vec3| Sym3::ZERO.plus_identity(-2.0 * (p[1] + p[2]));
+        let logs: Vec<Sym3> = mesh.vertices.iter().map(|&p| log(p)).collect();
+        let straight = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs.clone());
+        let bent = Background::new(mesh.vertices.clone(), mesh.tets.nodes.clone(), logs);
+        let bent = bent.of_second_degree(Team::alone(), &[(ends, [0.0, -0.2, 0.0])]);
+        let size = |of: &Background, p: Vec3| -0.5 * of.log_at(p, &mut 0).0[0];
+        for (y, expected) in [(-0.2, 0.0), (-0.1, 0.084), (0.2, 0.234)] {
+            let p = [0.25, y, 0.0];
+            assert!((size(&straight, p) - y.max(0.0)).abs() < 1e-14);
+            assert!((size(&bent, p) - expected).abs() < 0.01, "{y}: {}", size(&bent, p));
+        }
+        // Other tetrahedra are as they were.
+        for p in [[0.75, 0.1, 0.1], [0.1, 0.8, 0.3]] {
+            assert_eq!(size(&straight, p), size(&bent, p));
+        }
+        assert!(Quadratic::of(Team::alone(), 27, bent.locator.tets(), &[]).is_none());
     }
 }

@@ -1,4 +1,5 @@
 //! Metric fields at the vertices of a mesh: files, complexity.
+use super::between::density_between;
 use super::held::SIZES;
 use super::{Error, Sym3};
 use crate::mesh::TetMesh;
@@ -308,8 +309,8 @@ pub(super) fn density(log: &Sym3) -> f64 {
     (0.5 * log.trace()).exp()
 }
 
-/// Complexity ∫ √det M of the log-Euclidean interpolant, exactly: √det M = e^ℓ with ℓ = tr(ln M)/2 linear in a tetrahedron. On a
-/// mesh that does not resolve its metric this, and not [`complexity_of_logs`], is what an adapted mesh will have.
+/// Complexity ∫ √det M of what is between the vertices ([`super::between`]): where sizes in a tetrahedron differ by no more than a factor of 2 exactly,
+/// since ln √det M is linear there. On a mesh that does not resolve its metric this, and not [`complexity_of_logs`], is what an adapted mesh will have.
 pub fn complexity_between(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 {
     complexity_terms(team, &mesh.vertices, &mesh.tets.nodes, logs).into_iter().sum()
 }
@@ -318,14 +319,14 @@ pub fn complexity_between(team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 
 pub fn complexity_terms(team: Team<'_>, vertices: &[Vec3], tets: &[[u32; 4]], logs: &[Sym3]) -> Vec<f64> {
     let of_tet = |tet: &[u32; 4]| {
         let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
-        share_between(volume6(a, b, c, d), tet.map(|v| 0.5 * logs[v as usize].trace()))
+        share_between(volume6(a, b, c, d), tet.map(|v| &logs[v as usize]))
     };
     team.chunks(GRAIN, tets.len(), |range| tets[range].iter().map(of_tet).sum())
 }
 
-/// The share of a tetrahedron in [`complexity_between`], from six times its volume and tr(ln M)/2 at its vertices.
-pub(super) fn share_between(volume6: f64, halves: [f64; 4]) -> f64 {
-    volume6 / 6.0 * mean_exponential(halves)
+/// The share of a tetrahedron in [`complexity_between`], from six times its volume and ln M at its vertices.
+pub(super) fn share_between(volume6: f64, logs: [&Sym3; 4]) -> f64 {
+    volume6 / 6.0 * density_between(logs)
 }
 
 /// Sum over the tetrahedra.

@@ -1,4 +1,5 @@
 //! A metric from one mesh to another.
+use super::between::log_between;
 use super::{Field, Sym3};
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
@@ -20,7 +21,7 @@ pub struct Transferred {
     pub farthest: f64,
 }
 
-/// ln M at points, log-Euclidean in the tetrahedron of `mesh` that each lies in, from ln M at its vertices (METHOD.md §1.2). Nearer to
+/// ln M at points, as it is between the vertices of the tetrahedron of `mesh` that each lies in (METHOD.md §1.2), from ln M at these. Nearer to
 /// the mesh than 1e-9 of its size is not outside.
 ///
 /// # Panics
@@ -40,13 +41,11 @@ pub fn transfer(team: Team<'_>, mesh: Arc<TetMesh>, logs: &[Sym3], points: &[Vec
 /// When a place or a node is not there.
 pub fn at(team: Team<'_>, tets: &[[u32; 4]], places: &Places, logs: &[Sym3]) -> Vec<Sym3> {
     team.map(GRAIN, places.len(), |i| {
-        let weighted = tets[places.tets[i] as usize].into_iter().zip(places.weights[i]);
-        let weighted = weighted.map(|(node, weight)| logs[node as usize].times(weight));
-        weighted.fold(Sym3::ZERO, Sym3::plus)
+        log_between(tets[places.tets[i] as usize].map(|node| &logs[node as usize]), places.weights[i])
     })
 }
 
-/// M, shape (n, 6), at places in a mesh, log-Euclidean, from that at its vertices, which is positive definite.
+/// M, shape (n, 6), at places in a mesh, from that at its vertices, which is positive definite.
 ///
 /// # Panics
 /// When there are not as many metrics as vertices, or the places are of another mesh.

@@ -10,7 +10,7 @@ use crate::geometry::classify::Classification;
 use crate::geometry::{Entity, Evaluator, Geometry, Model, Topology};
 use crate::mesh::TetMesh;
 use crate::mesh::vertex_neighbours::VertexNeighbours;
-use crate::metric::{Limits, Sym3, gradation, restrict};
+use crate::metric::{Limits, Sym3, gradation};
 use crate::tasks::{GRAIN, Team};
 
 /// Vertices a task. Each task makes an evaluator.
@@ -76,8 +76,7 @@ pub(super) struct Found {
 
 /// ln M at the vertices of a mesh, shape (n,), lengths in model units: sizes 1/(n |κ|) along the principal directions of the CAD faces and
 /// the tangents of the edges, limited across thin parts and gaps, between `least` and `greatest`; inside and on what is flat the greatest
-/// size. Then gradation, along the edges of the tetrahedra, or of the triangles where there are none, and sizes as large as ln M on this mesh
-/// has to have them for the complexity that is asked for ([`restrict`]).
+/// size. Then gradation, along the edges of the tetrahedra, or of the triangles where there are none.
 ///
 /// `place` says where the mesh lies on the model. Coordinates are those of the model: vertices are taken where they were projected.
 pub fn geometry_metric(
@@ -113,7 +112,6 @@ pub fn geometry_metric(
     summary.graded = asked.iter().zip(&logs).filter(|(asked, graded)| asked != graded).count();
     // Grown metrics that meet at an angle can leave sizes a little below the least.
     limits.apply(team, &mut logs);
-    summary.enlarged = restrict(team, mesh, &mut logs, ratio);
     (logs, summary)
 }
 
@@ -317,7 +315,7 @@ mod tests {
     use super::*;
     use crate::geometry::Discrete;
     use crate::mesh::samples::cube;
-    use crate::metric::Interpolation;
+    use crate::metric::field::complexity_between;
 
     #[test]
     fn what_gradation_leaves_no_room_for_changes_nothing() {
@@ -349,7 +347,7 @@ mod tests {
             logs
         };
         let of_all = graded_from(&all);
-        let complexity = |logs: &[Sym3]| Interpolation::Sizes.complexity(Team::alone(), mesh, logs);
+        let complexity = |logs: &[Sym3]| complexity_between(Team::alone(), mesh, logs);
         // Where metrics turn, gradation depends on what it begins with, and on the order in which they were intersected: less so in the first.
         for (of_some, [size, share]) in [(graded_from(&some), [0.1, 0.01]), (graded, [0.2, 0.08])] {
             // Of the mean size.

@@ -5,7 +5,8 @@
 //! (`sight`), of the same body (`bodies`). `coarse` looks between the vertices of a coarse mesh, and `field` puts it together;
 //! `resolve` adds vertices to a coarse mesh until it resolves the metric. `around` has the sizes that a user asks for in some places.
 //! `chords` cuts the sizes of any metric along the curved faces near a vertex (`walls`), so that straight edges can have them. `layer` has the
-//! layers along walls, from the exact distance.
+//! layers along walls, from the exact distance. `rises` makes a background of a metric at vertices,
+//! which follows the model between the chords of its mesh.
 pub mod around;
 mod bodies;
 mod bound;
@@ -20,6 +21,7 @@ mod options;
 mod others;
 mod pieces;
 mod resolve;
+mod rises;
 mod sight;
 mod summary;
 mod touch;
@@ -32,4 +34,5 @@ pub use feature::Gap;
 pub use field::{Body, geometry_metric, resolved_metric};
 pub use options::Options;
 pub use resolve::Resolved;
+pub use rises::{background, rises};
 pub use summary::Summary;

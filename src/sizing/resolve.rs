@@ -1,7 +1,7 @@
 //! A mesh that resolves the geometry's metric: the given one, with its edges halved where sizes between the ends are not what the ends
 //! make of them.
 //!
-//! The metric lies on it with [`Interpolation::Sizes`]: from an apex with a size of 1e-3, sizes grow along a unit edge in proportion to the
+//! Between vertices sizes are nearly linear ([`log_between`]): from an apex with a size of 1e-3 they grow along a unit edge in proportion to the
 //! distance, as gradation lets them. What that misses are places that are far from all that is fine, and have no vertex: there edges are
 //! halved, and on the boundary the geometry is asked at their middles, until interpolation and growth agree.
 use super::feature::Place;
@@ -13,7 +13,7 @@ use crate::mesh::bisection::{Halved, bisect};
 use crate::mesh::vector::{Vec3, distance, lerp, sub};
 use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::frame::{Both, Frame, intersect};
-use crate::metric::{Interpolation, Limits, Sym3, gradation};
+use crate::metric::{Limits, Sym3, gradation, log_between};
 use crate::tasks::{GRAIN, Team, stage};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -41,7 +41,7 @@ pub struct Resolved {
     pub halved: Option<Halved>,
     /// ln M at all vertices, not graded.
     pub logs: Vec<Sym3>,
-    /// ln M graded, to be interpolated by [`Interpolation::Sizes`].
+    /// ln M graded.
     pub graded: Vec<Sym3>,
 }
 
@@ -121,8 +121,8 @@ struct Marked {
 struct Along<'a> {
     mesh: &'a TetMesh,
     around: &'a VertexNeighbours,
-    /// M^(−1/2), M and M by its eigenvectors at the vertices.
-    values: Vec<Sym3>,
+    /// ln M, M and M by its eigenvectors at the vertices.
+    logs: &'a [Sym3],
     metrics: Vec<Sym3>,
     frames: Vec<Frame>,
     growth: f64,
@@ -130,11 +130,11 @@ struct Along<'a> {
 }
 
 impl<'a> Along<'a> {
-    fn of(team: Team<'_>, sizing: &Sizing, mesh: &'a TetMesh, around: &'a VertexNeighbours, logs: &[Sym3]) -> Self {
+    fn of(team: Team<'_>, sizing: &Sizing, mesh: &'a TetMesh, around: &'a VertexNeighbours, logs: &'a [Sym3]) -> Self {
         Self {
             mesh,
             around,
-            values: team.map(GRAIN, logs.len(), |v| Interpolation::Sizes.of_log(&logs[v])),
+            logs,
             metrics: team.map(GRAIN, logs.len(), |v| logs[v].exp()),
             frames: team.map(GRAIN, logs.len(), |v| Frame::of_log(&logs[v])),
             growth: sizing.growth,
@@ -150,7 +150,8 @@ impl<'a> Along<'a> {
         if lengths[0].max(lengths[1]) <= SHORT {
             return None;
         }
-        let made = Frame::of_log(&Interpolation::Sizes.log(&self.values[p].plus(self.values[q]).times(0.5)));
+        let ends = [&self.logs[p], &self.logs[q]];
+        let made = Frame::of_log(&log_between([ends[0], ends[1], ends[0], ends[1]], [0.25; 4]));
         let middle = lerp(self.mesh.vertices[p], self.mesh.vertices[q], 0.5);
         let grown = |v: u32| {
             let from = &self.frames[v as usize];

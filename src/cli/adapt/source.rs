@@ -18,7 +18,7 @@ use crate::metric::frozen::Fitted;
 use crate::metric::goal::NORM;
 use crate::metric::held::GREATEST_RATIO;
 use crate::metric::multiscale::{Bounds, Cut, Measure, Options, SizeBound, bounded, diameter};
-use crate::metric::{self, Background, Interpolation, Limits, Source, Sym3, field, grade, restrict};
+use crate::metric::{self, Limits, Source, Sym3, field, grade};
 use crate::sizing;
 use crate::sizing::chords::{self, Limited};
 use crate::tasks::{Team, stage};
@@ -140,7 +140,7 @@ impl InputArguments {
         (source, mut how): (Source, How),
     ) -> (Source, How) {
         let Some(beside) = on.beside else { return (source, how) };
-        let (source, fitted) = self.fitted(team, mesh, beside, &source);
+        let (source, fitted) = self.fitted(team, (mesh, on), beside, &source);
         how.fitted = Some(fitted);
         (source, how)
     }
@@ -172,7 +172,7 @@ impl InputArguments {
             None => {
                 let complexity = complexity.ok_or("--field and --goal need a --complexity or --vertices")?;
                 let fixed = self.fixed(team, mesh, on, complexity, notices).map_err(named)?;
-                let wanted = (complexity, Measure::Between(Interpolation::default()));
+                let wanted = (complexity, Measure::Between);
                 let vertices = &mesh.vertices[..mesh.vertices.len() - raw.copies.len()];
                 let carrier = Carrier { path: &self.mesh, vertices, fields: &raw.fields };
                 let (mesh, fixed) = ((&**mesh, &raw.copies[..]), (fixed.as_deref(), by_others));
@@ -191,7 +191,8 @@ impl InputArguments {
             }
         };
         how.chords = share.zip(cut).map(|(share, cut)| Limited { share, cut });
-        Ok((Source::Background(Background::on(team, Arc::clone(mesh), faces, logs)), how))
+        let background = sizing::background(team, (mesh, faces), (on.place, on.model), logs);
+        Ok((Source::Background(background), how))
     }
 
     /// ln M of a goal, as [`goal::make`] has it; the rest as [`fields::MultiscaleArguments::make`].
@@ -234,7 +235,7 @@ impl InputArguments {
     ) -> Result<(Vec<Sym3>, Option<Cut>), String> {
         let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth().filter(|_| self.is_graded()));
         let fixed = self.with_walls(team, mesh, on, self.local_sizes(team, mesh, on)?, (wanted, gradation), notices)?;
-        let measure = Measure::Between(Interpolation::default());
+        let measure = Measure::Between;
         let complexity = wanted.unwrap_or(1.0);
         let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref(), by_others };
         if wanted.is_some() {
@@ -290,12 +291,11 @@ impl InputArguments {
         let mut logs = raw.clone();
         if let Some(ratio) = gradation {
             grade(team, mesh, &mut logs, ratio);
-            restrict(team, mesh, &mut logs, ratio);
         }
         let own = field::complexity_between(team, mesh, &logs);
         let most = GEOMETRY_SHARE * complexity;
         if own > most {
-            let (limits, measure) = (Limits::default(), Measure::Between(Interpolation::default()));
+            let (limits, measure) = (Limits::default(), Measure::Between);
             let bounds = Bounds { complexity: most, measure, gradation, limits, fixed: None, by_others: None };
             logs = bounded(team, mesh, &raw, &bounds).map_err(|error| format!("the geometry's metric: {error}"))?.0;
             let asked = self.amount.name();

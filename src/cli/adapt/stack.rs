@@ -1,6 +1,7 @@
 //! Prisms, pyramids and hexahedra of the mesh: they stay, and what is done is done to the tetrahedra beside them.
 use super::input::{Error, Given, InputArguments, OnModel};
 use super::report::Report;
+use super::source::On;
 use crate::adapt::beside::Beside;
 use crate::cli::table::{Table, place};
 use crate::geometry::Model;
@@ -11,6 +12,7 @@ use crate::mesh::split_nonmanifold::split_nonmanifold;
 use crate::mesh::stack::{Kind, Outside, Stack};
 use crate::metric::Source;
 use crate::metric::frozen::Fitted;
+use crate::sizing;
 use crate::tasks::Team;
 use serde::Serialize;
 use std::sync::Arc;
@@ -104,11 +106,13 @@ impl InputArguments {
     pub(super) fn fitted(
         &self,
         team: Team<'_>,
-        mesh: &Arc<TetMesh>,
+        (mesh, on): (&Arc<TetMesh>, On<'_>),
         beside: &Beside,
         source: &Source,
     ) -> (Source, Fitted) {
-        beside.fitted(team, mesh, source, self.multiscale.growth().unwrap_or(GROWTH))
+        let (logs, fitted) = beside.fitted(team, mesh, source, self.multiscale.growth().unwrap_or(GROWTH));
+        let faces = MatchedFaces::of(team, &mesh.tets.nodes);
+        (Source::Background(sizing::background(team, (mesh, faces), (on.place, on.model), logs)), fitted)
     }
 }
 

@@ -3,7 +3,7 @@ use super::input::InputArguments;
 use super::source::On;
 use crate::mesh::TetMesh;
 use crate::metric::multiscale::{Bounds, Measure, Norm, bounded, diameter};
-use crate::metric::{Interpolation, Limits, Sym3, field, grade};
+use crate::metric::{Limits, Sym3, field, grade};
 use crate::sizing::layer::{self, Options, Outside, wall_metric};
 use crate::tasks::{Team, stage};
 
@@ -43,20 +43,13 @@ impl InputArguments {
             norm: Norm::default(),
             exact: false,
         };
-        let (logs, summary) =
+        let (logs, _) =
             wall_metric(team, (mesh, on.place, on.model), &asked, &options).map_err(|error| match error {
                 layer::Error::NoComplexity => format!("--wall: {error}, by --complexity or --vertices"),
                 layer::Error::Multiscale(error) => format!("--wall: {error}"),
             })?;
         stage("walls");
-        if summary.enlarged > 0 {
-            notices.push(format!(
-                "the mesh is too coarse for the layers of --wall: their sizes are enlarged there (vertices: {}), and the next cycle brings them nearer \
-                 to what is asked for",
-                summary.enlarged
-            ));
-        }
-        let measure = Measure::Between(Interpolation::default());
+        let measure = Measure::Between;
         let most = SHARE * wanted.unwrap_or(f64::INFINITY);
         let limits = Limits::default();
         let bounds = Bounds { complexity: most, measure, gradation, limits, fixed: others.as_deref(), by_others: None };

@@ -19,8 +19,9 @@ use crate::geometry::{Geometry, Model, Names};
 use crate::memory;
 use crate::mesh::TetMesh;
 use crate::mesh::adjacency::MatchedFaces;
+use crate::metric::field::complexity_between;
 use crate::metric::multiscale::{Bounds, Measure, bounded};
-use crate::metric::{Background, Interpolation, Limits, Source, Sym3};
+use crate::metric::{Background, Limits, Source, Sym3};
 use crate::sizing::{self, Body};
 use crate::tasks::{GRAIN, Plan, Pool, Team, stage};
 use std::path::Path;
@@ -234,7 +235,7 @@ impl Sizes {
         let logs = team.map(GRAIN, self.logs.len(), |v| self.logs[v].plus(less));
         let faces = MatchedFaces::of(team, &self.on.tets.nodes);
         let background = Background::on(team, Arc::clone(&self.on), faces, logs);
-        Source::Background(background.interpolated(team, Interpolation::Sizes))
+        Source::Background(background)
     }
 }
 
@@ -252,20 +253,14 @@ fn sizes(
     let resolved = sizing::resolved_metric(team, mesh, place, model, (&options, body.as_ref()));
     let on = Arc::clone(resolved.halved.as_ref().map_or(mesh, |halved| &halved.mesh));
     let logs = resolved.graded;
-    let complexity = Interpolation::Sizes.complexity(team, &on, &logs);
+    let complexity = complexity_between(team, &on, &logs);
     let most = arguments.complexity;
     if complexity <= most {
         return Ok(Sizes { on, logs, complexity, notice: None });
     }
     let (gradation, limits) = (Some(GRADATION), Limits::default());
-    let bounds = Bounds {
-        complexity: most,
-        measure: Measure::Between(Interpolation::Sizes),
-        gradation,
-        limits,
-        fixed: None,
-        by_others: None,
-    };
+    let bounds =
+        Bounds { complexity: most, measure: Measure::Between, gradation, limits, fixed: None, by_others: None };
     let enlarged = bounded(team, &on, &resolved.logs, &bounds);
     let (logs, _) = enlarged.map_err(|error| format!("the geometry's metric: {error}"))?;
     let notice = format!(

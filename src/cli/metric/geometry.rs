@@ -182,15 +182,6 @@ fn describe(report: &Report, has_volume: bool) -> String {
     if summary.graded > 0 {
         table.row("made smaller by gradation", format_args!("{} vertices", summary.graded));
     }
-    if summary.enlarged > 0 {
-        table.row(
-            "made larger",
-            format_args!(
-                "{} vertices: between them the mesh is too coarse for the sizes; adapt to these, and ask again",
-                summary.enlarged
-            ),
-        );
-    }
     if has_volume {
         table.row("complexity", figure(figures.complexity_between));
     }

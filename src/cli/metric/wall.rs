@@ -48,8 +48,8 @@ pub struct Arguments {
     /// With law=spalding: the p of the L^p norm of the interpolation error of u⁺
     #[arg(long, value_name = "P", default_value_t = Norm::default(), allow_negative_numbers = true)]
     norm: Norm,
-    /// Sizes as they are asked for, also where the mesh is too coarse for them. Else those of its finest vertices are enlarged to what can be
-    /// interpolated between them: adapt to these, and ask again
+    /// Sizes as they are asked for at each vertex. Else they are graded: where a wall's curvature changes from one vertex to the next, sizes along it may
+    /// double from an edge to the next
     #[arg(long)]
     exact: bool,
     #[command(flatten)]
@@ -156,14 +156,8 @@ pub fn rows(table: &mut Table, summary: &Summary) {
             table.row("  size across, on it", format_args!("{least} to {greatest}"));
         }
     }
-    if summary.enlarged > 0 {
-        table.row(
-            "made larger",
-            format_args!(
-                "{} vertices: between them the mesh is too coarse for the sizes; adapt to these, and ask again",
-                summary.enlarged
-            ),
-        );
+    if summary.graded > 0 {
+        table.row("made smaller by gradation", format_args!("{} vertices", summary.graded));
     }
 }
 

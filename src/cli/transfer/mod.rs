@@ -89,7 +89,7 @@ impl Arguments {
         match self.conservative {
             Some(Kept::Mean) => "conservative, the mean kept",
             Some(Kept::Mass) => "conservative, the integral kept",
-            None if self.metric => "log-Euclidean interpolation",
+            None if self.metric => "interpolation of the metric",
             None => "linear interpolation",
         }
     }

@@ -12,6 +12,8 @@ use crate::mesh::TetMesh;
 use crate::mesh::adjacency::{MatchedFaces, Side, TriangleIndex};
 use crate::mesh::ranges::renumbered;
 use crate::mesh::vector::Vec3;
+use crate::metric::{Rise, Sym3};
+use crate::sizing::rises;
 use crate::tasks::Team;
 use std::ops::Range;
 
@@ -86,6 +88,16 @@ impl<'a> Skin<'a> {
             keep_ridges_of_tets(&mut piece);
         }
         Ok(piece)
+    }
+
+    /// The edges that rise to the model, between vertices that have these numbers in the whole mesh, ascending, and ln M at these; as places among them.
+    pub fn rises(&self, team: Team<'_>, (numbers, logs): (&[u32], &[Sym3]), model: &Model) -> Vec<Rise> {
+        let here = self.here(numbers);
+        let own: Vec<Sym3> = here.iter().map(|&v| logs.get(v as usize).copied().unwrap_or(Sym3::ZERO)).collect();
+        let boundary = (&self.mesh.vertices[..], &self.mesh.triangles.nodes[..]);
+        let rises = rises(team, boundary, (self.place, model), &own).into_iter();
+        let rises = rises.map(|(nodes, rise)| (nodes.map(|v| here[v as usize]), rise));
+        rises.filter(|(nodes, _)| !nodes.contains(&NONE)).collect()
     }
 
     /// For each vertex of the skin its number among these of the whole mesh, ascending, or none.

@@ -1,5 +1,5 @@
 //! What a classification holds.
-use crate::geometry::Entity;
+use crate::geometry::{Entity, Evaluate};
 use crate::mesh::vector::Vec3;
 
 /// A mesh put on a model. Entity indices count from 0, as in [`crate::geometry::Topology`].
@@ -16,4 +16,16 @@ pub struct Classification {
     pub ridges: Vec<([u32; 2], u32)>,
     /// For each triangle of the mesh the model face.
     pub faces: Vec<u32>,
+}
+
+impl Classification {
+    /// Parameters of a mesh vertex on a face, for a guess: none at the vertices of the model.
+    pub fn parameters_on(&self, evaluator: &mut impl Evaluate, vertex: u32, face: u32) -> Option<[f64; 2]> {
+        let parameters = self.parameters[vertex as usize];
+        match self.entities[vertex as usize] {
+            Entity::Face(own) if own == face => Some(parameters),
+            Entity::Edge(edge) => evaluator.edge_on_face(edge, parameters[0], face),
+            _ => None,
+        }
+    }
 }

@@ -25,17 +25,38 @@ fn complexity_of_a_constant_metric() {
 #[test]
 fn the_integral_between_vertices_is_exact() {
     let mesh = cube(1);
-    // √det M = e^(x + 8y), whose integral is the product of two.
-    let log = |p: [f64; 3]| Sym3::diagonal(1.0, 1.0, 0.0).times(p[0] + 8.0 * p[1]);
+    // √det M = e^(x/5 + y), whose integral is the product of two; sizes differ by less than a factor of 2.
+    let log = |p: [f64; 3]| Sym3::diagonal(1.0, 1.0, 0.0).times(0.2 * p[0] + p[1]);
     let logs: Vec<Sym3> = mesh.vertices.iter().map(|&p| log(p)).collect();
-    let exact = (1f64.exp() - 1.0) * (8f64.exp() - 1.0) / 8.0;
+    let exact = (0.2f64.exp() - 1.0) / 0.2 * (1f64.exp() - 1.0);
     let found = complexity_between(Team::alone(), &mesh, &logs);
     assert!((found / exact - 1.0).abs() < 1e-13, "{found} {exact}");
-    assert!(complexity_of_logs(Team::alone(), &mesh, &logs) > 2.0 * exact, "the sum over the vertices is far off here");
+    assert!(complexity_of_logs(Team::alone(), &mesh, &logs) > 1.05 * exact, "the sum over the vertices is off here");
     // Sizes that differ by 1e12: finite, and below the greatest value.
     let steep = mean_exponential([0.0, -3.0, 27.0, 82.9]);
     assert!(steep > 0.0 && steep < 82.9f64.exp(), "{steep}");
     assert_eq!(mean_exponential([0.0; 4]), 1.0);
+}
+
+/// Sizes grow with the distance between vertices that are far apart, by the mean over 1.06 at most.
+#[test]
+fn a_coarse_mesh_has_the_complexity_of_sizes_that_grow_in_proportion() {
+    let mesh = cube(1);
+    let found = |log: &dyn Fn(f64) -> Sym3, axis: usize| {
+        let logs: Vec<Sym3> = mesh.vertices.iter().map(|p| log(p[axis])).collect();
+        complexity_between(Team::alone(), &mesh, &logs)
+    };
+    for first in [1e-1, 1e-3, 1e-6] {
+        // h = first + x: ∫ h⁻³ = (first⁻² − (1 + first)⁻²)/2.
+        let exact = 0.5 * (f64::powi(first, -2) - f64::powi(1.0 + first, -2));
+        let share = found(&|x| Sym3::ZERO.plus_identity(-2.0 * (first + x).ln()), 0) / exact;
+        assert!((0.99..1.2).contains(&share), "{first}: {share}");
+        // A layer, turned; its size across is the least everywhere.
+        let directions = [[0.8, 0.6, 0.0], [-0.6, 0.8, 0.0], [0.0, 0.0, 1.0]];
+        let exact = ((1.0 + first) / first).ln() / 6.0;
+        let share = found(&|z| Sym3::from_sizes(directions, [3.0, 2.0, first + z]).ln(), 2) / exact;
+        assert!((0.99..1.07).contains(&share), "{first}: {share}");
+    }
 }
 
 #[test]

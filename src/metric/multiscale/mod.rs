@@ -21,7 +21,7 @@ pub(super) use bounded::{Medium, meet};
 pub use norm::Norm;
 
 use super::recovery::{Recovery, Rings};
-use super::{Interpolation, Limits, Sym3, field, intersect_all};
+use super::{Limits, Sym3, field, intersect_all};
 use crate::mesh::TetMesh;
 use crate::mesh::vector::{Vec3, distance};
 use crate::tasks::{GRAIN, Team, stage};
@@ -47,15 +47,15 @@ pub enum Measure {
     /// Σ_v √det(M_v)·V_v, as metrics are compared.
     #[default]
     AtVertices,
-    /// ∫ √det M of the interpolant. It predicts the vertices of the adapted mesh even where this mesh does not resolve its metric.
-    Between(Interpolation),
+    /// ∫ √det M of what is between the vertices. It predicts the vertices of the adapted mesh even where this mesh does not resolve its metric.
+    Between,
 }
 
 impl Measure {
     fn of(self, team: Team<'_>, mesh: &TetMesh, logs: &[Sym3]) -> f64 {
         match self {
             Self::AtVertices => field::complexity_of_logs(team, mesh, logs),
-            Self::Between(interpolation) => interpolation.complexity(team, mesh, logs),
+            Self::Between => field::complexity_between(team, mesh, logs),
         }
     }
 }

@@ -69,7 +69,7 @@ fn limits_and_gradation_keep_the_complexity() {
     let limits = Limits { hmin: Some(0.02), hmax: Some(0.2), aspect_ratio: Some(3.0) };
     for recovery in [Recovery::Fit, Recovery::L2] {
         for gradation in [None, Some(1.5)] {
-            for measure in [Measure::AtVertices, Measure::Between(Interpolation::Logarithms)] {
+            for measure in [Measure::AtVertices, Measure::Between] {
                 let options = Options {
                     recovery,
                     bounds: Bounds { gradation, limits, measure, ..bounds(4000.0) },

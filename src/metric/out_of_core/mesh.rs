@@ -85,22 +85,23 @@ impl Mesh {
     /// Complexity Σ_v √det(M_v)·V_v of ln M at the vertices, to the bit as [`field::complexity_of_logs`].
     pub fn complexity(&self, team: Team<'_>, logs: &Column<Sym3>) -> Result<f64, Error> {
         let densities = self.of_each(team, logs, field::density)?;
-        Ok(self.sum(team, &densities, field::share)? / field::SHARES)
+        let of_tet = |tet: &Tet| field::share(tet.volume6, tet.nodes.map(|v| densities[v as usize]));
+        Ok(self.sum(team, |tets| Ok(tets.iter().map(of_tet).sum()))? / field::SHARES)
     }
 
-    /// Complexity ∫ √det M of the log-Euclidean interpolant, to the bit as [`field::complexity_between`].
+    /// Complexity ∫ √det M of what is between the vertices, to the bit as [`field::complexity_between`].
     pub fn complexity_between(&self, team: Team<'_>, logs: &Column<Sym3>) -> Result<f64, Error> {
-        let halves = self.of_each(team, logs, |log| 0.5 * log.trace())?;
-        self.sum(team, &halves, field::share_between)
+        self.sum(team, |tets| {
+            let numbering = Numbering::of(tets.iter().flat_map(|tet| tet.nodes));
+            let logs = logs.at(&numbering.numbers)?;
+            let log = |v: u32| &logs[numbering.place(v) as usize];
+            Ok(tets.iter().map(|tet| field::share_between(tet.volume6, tet.nodes.map(log))).sum())
+        })
     }
 
-    /// The sum over the tetrahedra of what `f` makes of six times the volume and the values at the vertices: of the same parts, in the same order
-    /// as [`Team::sum`] has it in memory.
-    fn sum(&self, team: Team<'_>, values: &[f64], f: impl Fn(f64, [f64; 4]) -> f64 + Sync) -> Result<f64, Error> {
-        let parts = each_slice(team, GRAIN, self.count, |range| -> Result<f64, Error> {
-            let tets = self.tets.read(range)?;
-            Ok(tets.iter().map(|tet| f(tet.volume6, tet.nodes.map(|v| values[v as usize]))).sum())
-        })?;
+    /// The sum of what `f` makes of the tetrahedra: of the same parts, in the same order as [`Team::sum`] has it in memory.
+    fn sum(&self, team: Team<'_>, f: impl Fn(&[Tet]) -> Result<f64, Error> + Sync) -> Result<f64, Error> {
+        let parts = each_slice(team, GRAIN, self.count, |range| f(&self.tets.read(range)?))?;
         Ok(parts.into_iter().sum())
     }
 }

@@ -7,9 +7,11 @@ use super::spec::Wall;
 use crate::geometry::Model;
 use crate::geometry::classify::Classification;
 use crate::mesh::TetMesh;
+use crate::mesh::vertex_neighbours::VertexNeighbours;
 use crate::metric::field::complexity_between;
+use crate::metric::gradation::grade_with;
 use crate::metric::multiscale::{self, Bounds, Measure, Norm, Unreachable, bounded, multiscale_of_hessians, reach};
-use crate::metric::{Interpolation, Limits, Sym3, intersect_all, restrict_linear};
+use crate::metric::{Limits, Sym3, intersect_all};
 use crate::tasks::{GRAIN, Team, stage};
 use serde::Serialize;
 
@@ -32,7 +34,7 @@ pub struct Options {
     pub complexity: Option<f64>,
     /// The norm of the interpolation error of u⁺.
     pub norm: Norm,
-    /// Whether sizes stay as they are asked for where the mesh is too coarse for them to be interpolated: see [`wall_metric`].
+    /// Whether sizes stay as they are asked for at each vertex, however much they differ from one to the next: see [`wall_metric`].
     pub exact: bool,
 }
 
@@ -41,8 +43,8 @@ pub struct Options {
 pub struct Summary {
     /// Each wall.
     pub walls: Vec<OfWall>,
-    /// Vertices whose sizes were enlarged, since the mesh is too coarse to interpolate what is asked for.
-    pub enlarged: usize,
+    /// Vertices whose sizes gradation has made smaller.
+    pub graded: usize,
 }
 
 /// What was found of a wall.
@@ -58,6 +60,9 @@ pub struct OfWall {
     /// Least and greatest size across the wall at these in the metric, model units; none where there are none.
     pub first_heights: Option<[f64; 2]>,
 }
+
+/// Sizes of layers grow by no more than this from an edge to the next, or by their own growth.
+const GRADATION: f64 = 2.0;
 
 /// Why there is no metric.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -81,9 +86,8 @@ impl From<Unreachable> for Error {
 /// Layers that are prescribed have the size h(d) along the gradient of the exact distance d ([`Growth::log`]). Spalding's u⁺(d) has the second
 /// derivatives u⁺″ n nᵀ + u⁺′ ∇²d, from which the multiscale metric of the complexity follows.
 ///
-/// Who uses a metric interpolates ln M between the vertices, and sizes of 1e-6 and of 0.1 at the ends of an edge ask so for a hundred times the
-/// cells that the layers between need. So, unless `exact`, sizes at the finest vertices of such tetrahedra are enlarged ([`restrict_linear`]): a mesh that is adapted to
-/// these is finer there, and can be given more of them. A mesh that resolves the layers keeps all sizes.
+/// Along a wall whose curvature changes from one vertex to the next, as at the tip of a wing, sizes would grow faster than a mesh can follow. So, unless
+/// `exact`, the layers are graded, by a factor of 2 from an edge to the next.
 ///
 /// # Errors
 /// [`Error::NoComplexity`] with Spalding's law and no complexity; [`Error::Multiscale`] where that cannot be reached.
@@ -108,11 +112,14 @@ pub fn wall_metric(
     stage("distances");
     let prescribed: Vec<(&Feet, Growth)> =
         feet.iter().zip(asked).filter_map(|(feet, asked)| Some((feet, asked.wall.growth?))).collect();
-    let mut enlarged = 0;
+    // Layers grow by g − 1 a unit of length, gradation lets sizes grow by ln r.
+    let ratio = prescribed.iter().map(|(_, growth)| (growth.growth - 1.0).exp()).fold(GRADATION, f64::max);
+    let around = (!options.exact).then(|| VertexNeighbours::of_mesh(team, mesh));
+    let mut graded = 0;
     let mut layered = |along: f64| {
         let mut logs = layers(team, &prescribed, mesh.vertices.len(), outside, along);
-        if !options.exact {
-            enlarged = restrict_linear(team, mesh, &mut logs);
+        if let Some(around) = &around {
+            graded = grade_with(team, &mesh.vertices, around, &mut logs, ratio).changed;
         }
         logs
     };
@@ -121,7 +128,7 @@ pub fn wall_metric(
         Some(complexity) if is_spalding => {
             let fixed = (!prescribed.is_empty()).then(|| layered(1.0));
             let limits = Limits { hmax: Some(outside.greatest), ..Limits::default() };
-            let measure = Measure::Between(Interpolation::default());
+            let measure = Measure::Between;
             let alone = Bounds { complexity, measure, gradation: None, limits, fixed: None, by_others: None };
             let how = multiscale::Options { recovery: Default::default(), norm: options.norm, bounds: alone };
             let mut raw: Option<Vec<Sym3>> = None;
@@ -148,10 +155,11 @@ pub fn wall_metric(
     };
     stage("layers");
     let walls = feet.iter().zip(asked).map(|(feet, asked)| OfWall::of(team, feet, asked, &logs)).collect();
-    Ok((logs, Summary { walls, enlarged }))
+    Ok((logs, Summary { walls, graded }))
 }
 
-/// ln M of the layers that are prescribed. Sizes along the walls and outside are multiplied by `along`, those across stay.
+/// ln M of the layers that are prescribed. Sizes along the walls and outside are multiplied by `along`, those across stay. Sizes that doubles do not hold
+/// beside these are cut.
 fn layers(team: Team<'_>, walls: &[(&Feet, Growth)], vertices: usize, outside: &Outside, along: f64) -> Vec<Sym3> {
     let none = Sym3::ZERO.plus_identity(-2.0 * (outside.greatest * along).ln());
     team.map(GRAIN / 4, vertices, |v| {
@@ -159,7 +167,7 @@ fn layers(team: Team<'_>, walls: &[(&Feet, Growth)], vertices: usize, outside: &
             let logs = feet.at(v).iter().filter_map(|foot| growth.log(foot, outside, along));
             logs.fold(None, intersected)
         };
-        walls.iter().filter_map(of).fold(None, intersected).unwrap_or(none)
+        walls.iter().filter_map(of).fold(None, intersected).unwrap_or(none).held_log()
     })
 }
 

@@ -43,7 +43,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("api", &["adapt", "sizing", "metric", "geometry", "transfer", "tasks", "mesh"]),
     ("formats", &["geometry", "mesh", "tasks"]),
     ("adapt", &["sizing", "metric", "geometry", "tasks", "mesh", "memory"]),
-    ("decomposition", &["adapt", "metric", "geometry", "ranks", "tasks", "mesh"]),
+    ("decomposition", &["adapt", "sizing", "metric", "geometry", "ranks", "tasks", "mesh"]),
     ("inspection", &["metric", "mesh", "tasks"]),
     ("sizing", &["metric", "geometry", "tasks", "mesh"]),
     ("image", &["tasks", "mesh"]),
