@@ -34,8 +34,8 @@ pub fn background(
     Background::on(team, Arc::clone(mesh), faces, logs).of_second_degree(team, &rises)
 }
 
-/// The edges of triangles (t, 3), whose middles are farther from the model than a quarter in the metric, ascending; with ln M at the vertices, shape
-/// (n,). The vertices are on the model, as `place` has it.
+/// The edges whose middles are farther from the model than a quarter in the metric, ascending, each with the way from its middle to the model, length. Of
+/// triangles, shape (t, 3), on vertices, shape (n, 3), that lie on the model as `place` has it, and ln M at these, shape (n,).
 pub fn rises(
     team: Team<'_>,
     (vertices, triangles): (&[Vec3], &[[u32; 3]]),

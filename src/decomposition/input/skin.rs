@@ -90,7 +90,8 @@ impl<'a> Skin<'a> {
         Ok(piece)
     }
 
-    /// The edges that rise to the model, between vertices that have these numbers in the whole mesh, ascending, and ln M at these; as places among them.
+    /// The edges whose middles are away from the model, between vertices of a list: `numbers` are theirs in the whole mesh, ascending, `logs` is ln M at
+    /// each. The nodes of the edges are places in that list.
     pub fn rises(&self, team: Team<'_>, (numbers, logs): (&[u32], &[Sym3]), model: &Model) -> Vec<Rise> {
         let here = self.here(numbers);
         let own: Vec<Sym3> = here.iter().map(|&v| logs.get(v as usize).copied().unwrap_or(Sym3::ZERO)).collect();

@@ -87,7 +87,7 @@ impl From<Unreachable> for Error {
 /// derivatives u⁺″ n nᵀ + u⁺′ ∇²d, from which the multiscale metric of the complexity follows.
 ///
 /// Along a wall whose curvature changes from one vertex to the next, as at the tip of a wing, sizes would grow faster than a mesh can follow. So, unless
-/// `exact`, the layers are graded, by a factor of 2 from an edge to the next.
+/// `exact`, the layers are graded, by a factor of 2 from an edge to the next, or by their own growth where that is more.
 ///
 /// # Errors
 /// [`Error::NoComplexity`] with Spalding's law and no complexity; [`Error::Multiscale`] where that cannot be reached.
