@@ -5,12 +5,16 @@ use crate::formats::Dataset;
 use crate::geometry::classify::Classification;
 use crate::geometry::{Model, Names, called, on_mesh};
 use crate::mesh::TetMesh;
+use crate::mesh::vector::{area2, norm};
 use crate::sizing::layer::{Asked, Measured, Walls, distances, from_triangles, measure};
 use crate::tasks::Team;
 use serde::Serialize;
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Triangles with no more than this share of a face's area are few.
+const FEW: f64 = 1e-3;
 
 /// A mesh and what is known of it.
 pub struct Places<'a> {
@@ -21,12 +25,18 @@ pub struct Places<'a> {
 }
 
 impl Places<'_> {
-    /// The faces of the model under surfaces of the mesh, ascending.
+    /// The faces of the model under surfaces of the mesh, ascending. A face is not meant by a few triangles at its border that lie on it as well as on
+    /// the face beside it.
     pub fn faces(&self, references: &[i32]) -> Vec<u32> {
-        let all = self.place.faces.iter().zip(&self.mesh.triangles.refs);
-        let faces: BTreeSet<u32> =
-            all.filter(|(_, reference)| references.contains(reference)).map(|(&face, _)| face).collect();
-        faces.into_iter().collect()
+        let mut areas: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
+        for (&face, (nodes, reference)) in self.place.faces.iter().zip(self.mesh.triangles.iter()) {
+            let [a, b, c] = nodes.map(|v| self.mesh.vertices[v as usize]);
+            let area = norm(area2(a, b, c));
+            let [all, named] = areas.entry(face).or_default();
+            *all += area;
+            *named += if references.contains(&reference) { area } else { 0.0 };
+        }
+        areas.into_iter().filter(|(_, [all, named])| *named > FEW * all).map(|(face, _)| face).collect()
     }
 
     /// The walls of --wall, with their faces.

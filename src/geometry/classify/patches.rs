@@ -3,6 +3,7 @@ use super::fit::Fit;
 use super::landing::{box_reaches, land_patch, misfit};
 use super::{Error, triangles};
 use crate::geometry::{Entity, Evaluate, Evaluator, Geometry, OnSurface};
+use std::collections::HashMap;
 
 /// Not yet found.
 pub(super) const NONE: u32 = u32::MAX;
@@ -44,7 +45,11 @@ pub(super) fn match_faces(fit: &Fit) -> Result<Faces, Error> {
         notices: Vec::new(),
     };
     let mut rest = Vec::new();
-    for (patch, found) in members.into_iter().zip(matches.into_iter().flatten()) {
+    let matches: Vec<_> = matches.into_iter().flatten().collect();
+    let face_of = faces_of_references(fit, &members, &matches, &on_ridge);
+    let mut evaluator = fit.model.evaluator();
+    for (patch, found) in members.into_iter().zip(matches) {
+        let found = found.map(|found| with_its_reference(fit, &mut evaluator, &patch, found, &face_of));
         let Some(found) = found else {
             rest.push(patch);
             continue;
@@ -63,6 +68,48 @@ pub(super) fn match_faces(fit: &Fit) -> Result<Faces, Error> {
 pub(super) fn named(fit: &Fit, reference: i32) -> Option<u32> {
     let count = fit.topology.faces.len() as i64;
     (1..=count).contains(&i64::from(reference)).then(|| reference as u32 - 1)
+}
+
+/// The face of each reference all of whose patches with a vertex inside lie on one face.
+fn faces_of_references(
+    fit: &Fit,
+    members: &[Vec<u32>],
+    matches: &[Option<Match>],
+    on_ridge: &[bool],
+) -> HashMap<i32, Option<u32>> {
+    let mut face_of = HashMap::new();
+    for (patch, found) in members.iter().zip(matches) {
+        let nodes = |&t: &u32| fit.mesh.triangles.nodes[t as usize];
+        if patch.iter().flat_map(nodes).all(|v| on_ridge[v as usize]) {
+            continue;
+        }
+        let face = found.as_ref().map(|found| found.face);
+        let known = face_of.entry(fit.mesh.triangles.refs[patch[0] as usize]).or_insert(face);
+        *known = known.filter(|_| *known == face);
+    }
+    face_of
+}
+
+/// A match, or that on the face of the patch's reference. An ear of three vertices on the border of two faces fits either, and may be turned from both.
+fn with_its_reference(
+    fit: &Fit,
+    evaluator: &mut Evaluator,
+    patch: &[u32],
+    found: Match,
+    face_of: &HashMap<i32, Option<u32>>,
+) -> Match {
+    let reference = fit.mesh.triangles.refs[patch[0] as usize];
+    let nodes = patch.iter().flat_map(|&t| fit.mesh.triangles.nodes[t as usize]);
+    let Some(&Some(face)) = face_of.get(&reference).filter(|face| **face != Some(found.face)) else { return found };
+    if fit.hints.has_inside(found.face, nodes) {
+        return found;
+    }
+    match land_patch(fit, evaluator, patch, face) {
+        Ok(landings) if landings.iter().all(|(_, on)| on.distance <= fit.allowed(Entity::Face(face))) => {
+            Match { face, landings }
+        }
+        _ => found,
+    }
 }
 
 fn ridge_vertices(fit: &Fit) -> Vec<bool> {

@@ -104,15 +104,15 @@ impl Sides {
         }
     }
 
-    /// Closes the gaps between the ends of edges, which tolerances leave: each end with the nearest, unless it is on the border of the range. Whether
-    /// all are closed: only then do the edges bound something.
-    fn close(&mut self, mut ends: Vec<Share>) -> bool {
-        ends.retain(|at| at.iter().all(|x| (SLACK..1.0 - SLACK).contains(x)));
+    /// Closes the gaps between the ends of edges, which tolerances leave: each end with the nearest. Whether all within the range are closed: only
+    /// then do the edges bound something. On its border an end needs none.
+    fn close(&mut self, ends: &[Share]) -> bool {
+        let is_within = |at: &Share| at.iter().all(|x| (SLACK..1.0 - SLACK).contains(x));
         let mut pairs = Vec::new();
         for (i, p) in ends.iter().enumerate() {
             for (j, q) in ends.iter().enumerate().skip(i + 1) {
                 let far = (p[0] - q[0]).hypot(p[1] - q[1]);
-                if far <= GAP {
+                if far <= GAP && (is_within(p) || is_within(q)) {
                     pairs.push((far, i, j));
                 }
             }
@@ -127,7 +127,7 @@ impl Sides {
                 }
             }
         }
-        is_met.iter().all(|is_met| *is_met)
+        ends.iter().zip(is_met).all(|(at, is_met)| is_met || !is_within(at))
     }
 
     /// Lists the chords by rows, when all are there; `ends` are those of the whole edges, in parameters. None where the edges are not closed.
@@ -146,11 +146,18 @@ impl Sides {
         };
         let ends: Vec<Share> = ends.iter().map(|at| [into(0, at[0]), into(1, at[1])]).collect();
         let is_finite = |chord: &Chord| chord.ends.iter().flatten().all(|x| x.is_finite()) && chord.width.is_finite();
-        if !self.chords.iter().all(is_finite) || !self.close(ends) {
+        if !self.chords.iter().all(is_finite) || !self.close(&ends) {
             return None;
         }
         self.lists = [0, 1].map(|across| List::of(&self.chords, across));
         Some(self)
+    }
+
+    /// Whether no piece is near a place in a row, where `across` is 1, or in a column.
+    pub fn is_clear(&self, across: usize, cell: usize, at: Share) -> bool {
+        let list = &self.lists[across];
+        let near = &list.chords[list.starts[cell] as usize..list.starts[cell + 1] as usize];
+        !near.iter().any(|&i| self.chords[i as usize].holds(at))
     }
 
     /// Whether a place is in the face or on its border, by one of which that is known and no piece is near of, along a line: of v where `along` is 0,

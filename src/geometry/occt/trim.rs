@@ -61,19 +61,58 @@ impl Trim {
             Place::Inside => Some(true),
             Place::Outside => Some(false),
             Place::Free | Place::Crossed => {
-                let sides = sides.as_ref()?;
-                [0, 1].into_iter().find_map(|along| {
-                    // The nearest cell of the row or column that is known.
-                    let place = |k: usize| if along == 0 { grid[k][j] } else { grid[i][k] };
-                    let [own, cell] = [[i, j], [j, i]][along];
-                    let beside = |k: usize| [own.checked_sub(k), (own + k < CELLS).then_some(own + k)];
-                    let known = (1..CELLS).flat_map(beside).flatten().find(|&k| place(k) != Place::Crossed)?;
-                    let middle = (known as f64 + 0.5) / CELLS as f64;
-                    sides.is_inside(&mut curves, along, cell, [s, r], (middle, place(known) == Place::Inside))
-                })
+                let mut way = Way { grid, sides: sides.as_ref()?, curves: &mut curves };
+                [0, 1]
+                    .into_iter()
+                    .find_map(|along| way.straight(along, [i, j], [s, r]))
+                    .or_else(|| [0, 1].into_iter().find_map(|along| way.round_a_corner(along, [i, j], [s, r])))
             }
         }
     }
+}
+
+/// The way from a place in a crossed cell to one that is known. Places are shares of the range.
+struct Way<'t, 'c, 'p> {
+    grid: &'t [[Place; CELLS]; CELLS],
+    sides: &'t Sides,
+    curves: &'c mut Curves<'p>,
+}
+
+impl Way<'_, '_, '_> {
+    /// The cells of a row or a column beside one of them, the nearest first.
+    fn beside(own: usize) -> impl Iterator<Item = usize> {
+        let both = move |k: usize| [own.checked_sub(k), (own + k < CELLS).then_some(own + k)];
+        (1..CELLS).flat_map(both).flatten()
+    }
+
+    /// Whether a place is inside, by the nearest cell that is known of the row where `along` is 0, of the column where it is 1.
+    fn straight(&mut self, along: usize, [i, j]: [usize; 2], at: [f64; 2]) -> Option<bool> {
+        let place = |k: usize| if along == 0 { self.grid[k][j] } else { self.grid[i][k] };
+        let [own, cell] = [[i, j], [j, i]][along];
+        let known = Self::beside(own).find(|&k| place(k) != Place::Crossed)?;
+        let known = (middle(known), place(known) == Place::Inside);
+        self.sides.is_inside(self.curves, along, cell, at, known)
+    }
+
+    /// The same by a place in the next cell of the row or column, which is told by its column or row: in a corner of the face all cells of both may
+    /// be crossed.
+    fn round_a_corner(&mut self, along: usize, cell: [usize; 2], at: [f64; 2]) -> Option<bool> {
+        let across = 1 - along;
+        Self::beside(cell[along]).take(2).find_map(|next| {
+            let (mut there, mut corner) = (cell, at);
+            (there[along], corner[along]) = (next, middle(next));
+            if !self.sides.is_clear(across, cell[across], corner) {
+                return None;
+            }
+            let is_inside = self.straight(across, there, corner)?;
+            self.sides.is_inside(self.curves, along, cell[across], at, (corner[along], is_inside))
+        })
+    }
+}
+
+/// The middle of a cell, as a share of the range.
+fn middle(cell: usize) -> f64 {
+    (cell as f64 + 0.5) / CELLS as f64
 }
 
 impl Trim {
@@ -214,14 +253,14 @@ fn cross(grid: &mut [[Place; CELLS]; CELLS], face: &FaceEntity, piece: &[[f64; 2
 /// Asks OCCT once for each connected part of the cells that no edge crosses.
 fn fill(on: &mut OcctEvaluator, index: u32, grid: &mut [[Place; CELLS]; CELLS]) {
     let range = on.model.topology.faces[index as usize].range;
-    let middle = |k: usize, i: usize| range[k][0] + (range[k][1] - range[k][0]) * (i as f64 + 0.5) / CELLS as f64;
+    let centre = |k: usize, i: usize| range[k][0] + (range[k][1] - range[k][0]) * middle(i);
     let mut stack = Vec::new();
     for start in 0..CELLS * CELLS {
         let (i, j) = (start / CELLS, start % CELLS);
         if grid[i][j] != Place::Free {
             continue;
         }
-        let inside = on.inside_by_occt(index, [middle(0, i), middle(1, j)]);
+        let inside = on.inside_by_occt(index, [centre(0, i), centre(1, j)]);
         let place = if inside { Place::Inside } else { Place::Outside };
         grid[i][j] = place;
         stack.push((i, j));
