@@ -6,7 +6,7 @@ use geo_adapt::geometry::{Entity, Evaluate, Geometry, Model};
 use geo_adapt::mesh::vector::distance;
 use geo_adapt::mesh::{Association, Elements, TetMesh, io};
 use geo_adapt::tasks::Team;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Meshes with their models: entities of the model (vertices that corners stand on, edges that ridges cover, faces).
 const CASES: [(&str, &str, [usize; 3]); 6] = [
@@ -217,4 +217,49 @@ fn the_program_writes_the_association_and_prints_the_distances() {
         let (_, report) = fit(&mesh, &case.model).unwrap();
         assert!(report.dimensions.iter().all(|d| d.from_file == d.count), "what was written holds: {report:?}");
     }
+}
+
+/// A triangle with three vertices on the rim of a cylinder lies on the side as well as on the cap: its reference tells which.
+#[test]
+fn an_ear_on_a_rim_has_the_face_of_its_reference() {
+    const AROUND: u32 = 12;
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("geometry/cylinder.step");
+    let model = Model::read(&model).unwrap();
+    let mut mesh = TetMesh::default();
+    for z in [0.0, 0.5, 1.0] {
+        for k in 0..AROUND {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(AROUND);
+            mesh.vertices.push([0.25 * angle.cos(), 0.25 * angle.sin(), z]);
+        }
+    }
+    let centres = [0.0, 1.0].map(|z| {
+        mesh.vertices.push([0.0, 0.0, z]);
+        mesh.vertices.len() as u32 - 1
+    });
+    let mut triangles = Vec::new();
+    let mut add = |nodes: [u32; 3], reference: i32| triangles.push((nodes, reference));
+    for k in 0..AROUND {
+        let next = (k + 1) % AROUND;
+        add([centres[0], next, k], 2);
+        add([AROUND + k, AROUND + next, 2 * AROUND + next], 1);
+        add([AROUND + k, 2 * AROUND + next, 2 * AROUND + k], 1);
+        // The side is cut off below vertex 4: there the ear is.
+        let lower = if next == 4 { 5 } else { next };
+        match k {
+            4 => add([5, AROUND + 5, AROUND + 4], 1),
+            _ => {
+                add([k, lower, AROUND + next], 1);
+                add([k, AROUND + next, AROUND + k], 1);
+            }
+        }
+    }
+    for k in 0..AROUND {
+        add([centres[1], 2 * AROUND + k, 2 * AROUND + (k + 1) % AROUND], 3);
+    }
+    add([3, 4, 5], 1);
+    (mesh.triangles.nodes, mesh.triangles.refs) = triangles.into_iter().unzip();
+    let (result, report) = fit(&mesh, &model).unwrap();
+    let of_references: Vec<u32> = mesh.triangles.refs.iter().map(|&of| of as u32 - 1).collect();
+    assert_eq!(result.faces, of_references, "{:?}", report.notices);
+    assert_eq!(result.entities[4].dimension(), 1);
 }
