@@ -39,8 +39,9 @@ fn tasks_side(name: &str) -> cc::Build {
 mod occt {
     use std::path::PathBuf;
 
-    const SOURCES: [&str; 18] = [
+    const SOURCES: [&str; 19] = [
         "cpp/load.cpp",
+        "cpp/gaps.cpp",
         "cpp/names.cpp",
         "cpp/divide.cpp",
         "cpp/connect.cpp",
@@ -102,6 +103,7 @@ mod occt {
             .compile("geo-adapt-occt");
         for source in SOURCES.iter().chain(&[
             "cpp/occt.hpp",
+            "cpp/gaps.hpp",
             "cpp/names.hpp",
             "cpp/damage.hpp",
             "cpp/splines.hpp",

@@ -232,7 +232,8 @@ std::shared_ptr<Model> load_model(rust::Str name, std::uint32_t format)
   std::vector<DoubleWall> walls;
   const TopoDS_Shape solids = divided(connected(closed(shape, labels, format == 1), labels), labels, walls);
   const TopoDS_Shape apart = separated(solids, labels);
-  return std::make_shared<Model>(apart, labels, solids, std::vector<Model::Box>(), walls);
+  const std::vector<Gap> gaps = without_gaps(apart);
+  return std::make_shared<Model>(apart, labels, solids, std::vector<Model::Box>(), walls, gaps);
 }
 
 } // namespace geo_adapt

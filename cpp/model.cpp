@@ -106,8 +106,9 @@ double length_on_surface(const BRepAdaptor_Curve& curve)
 } // namespace
 
 Model::Model(const TopoDS_Shape& loaded, const Labels& given, const TopoDS_Shape& whole, std::vector<Box> known,
-             std::vector<DoubleWall> divided)
-  : shape(loaded), joined(whole.IsNull() ? loaded : whole), labels(given), walls(std::move(divided)), boxes(known.begin(), known.end())
+             std::vector<DoubleWall> divided, std::vector<Gap> closed)
+  : shape(loaded), joined(whole.IsNull() ? loaded : whole), labels(given), walls(std::move(divided)), gaps(std::move(closed)),
+    boxes(known.begin(), known.end())
 {
   TopExp::MapShapes(shape, TopAbs_SOLID, solids);
   TopExp::MapShapes(shape, TopAbs_FACE, faces);
@@ -123,6 +124,15 @@ rust::Vec<DoubleWallRecord> Model::double_walls() const
   rust::Vec<DoubleWallRecord> all;
   for (const DoubleWall& wall : walls) {
     all.push_back({wall.at, wall.solids});
+  }
+  return all;
+}
+
+rust::Vec<GapRecord> Model::gaps_closed() const
+{
+  rust::Vec<GapRecord> all;
+  for (const Gap& gap : gaps) {
+    all.push_back({gap.edge, gap.before, gap.after});
   }
   return all;
 }

@@ -2,6 +2,7 @@
 // It only loads, lists and evaluates. Projections, caches and decisions are in src/geometry/occt/.
 #pragma once
 
+#include "geo-adapt/cpp/gaps.hpp"
 #include "geo-adapt/cpp/names.hpp"
 #include "rust/cxx.h"
 
@@ -65,6 +66,7 @@ struct DomainRecord;
 struct FlawRecord;
 struct HealRecord;
 struct DoubleWallRecord;
+struct GapRecord;
 struct EdgeUse;
 struct FaceSide;
 
@@ -77,7 +79,7 @@ public:
 
   /// `boxes` are those of the faces and of all, where they are known: OpenCASCADE takes long to find them.
   explicit Model(const TopoDS_Shape& shape, const Labels& labels = Labels(), const TopoDS_Shape& joined = TopoDS_Shape(),
-                 std::vector<Box> boxes = {}, std::vector<DoubleWall> walls = {});
+                 std::vector<Box> boxes = {}, std::vector<DoubleWall> walls = {}, std::vector<Gap> gaps = {});
 
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces.Extent()); }
   std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.Extent()); }
@@ -94,6 +96,8 @@ public:
   void write_brep(rust::Str path) const;
   /// Solids that were divided when the file was read, since faces of theirs lay on each other.
   rust::Vec<DoubleWallRecord> double_walls() const;
+  /// Edges that were moved onto their faces when the file was read.
+  rust::Vec<GapRecord> gaps_closed() const;
   /// What OpenCASCADE's own check finds wrong with faces.
   rust::Vec<FlawRecord> flaws() const;
   /// Writes all that it is made of in binary form, for `load_saved` of this same program.
@@ -131,6 +135,7 @@ private:
   TopTools_IndexedMapOfShape solids, faces, edges, vertices;
   Labels labels;
   std::vector<DoubleWall> walls;
+  std::vector<Gap> gaps;
   /// Of each face, then of all; found when the records are first read, before threads share the model.
   mutable std::vector<std::optional<Box>> boxes;
 

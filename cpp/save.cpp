@@ -62,6 +62,9 @@ void Model::save(rust::Str path) const
   const std::size_t count = walls.size();
   out.write(reinterpret_cast<const char*>(&count), sizeof count);
   out.write(reinterpret_cast<const char*>(walls.data()), static_cast<std::streamsize>(count * sizeof(DoubleWall)));
+  const std::size_t moved = gaps.size();
+  out.write(reinterpret_cast<const char*>(&moved), sizeof moved);
+  out.write(reinterpret_cast<const char*>(gaps.data()), static_cast<std::streamsize>(moved * sizeof(Gap)));
   TopoDS_Compound both;
   const BRep_Builder builder;
   builder.MakeCompound(both);
@@ -109,6 +112,13 @@ std::shared_ptr<Model> load_saved(rust::Str path)
   }
   std::vector<DoubleWall> walls(divided);
   in.read(reinterpret_cast<char*>(walls.data()), static_cast<std::streamsize>(divided * sizeof(DoubleWall)));
+  std::size_t moved = 0;
+  in.read(reinterpret_cast<char*>(&moved), sizeof moved);
+  if (!in) {
+    throw std::runtime_error("the saved model cannot be read");
+  }
+  std::vector<Gap> gaps(moved);
+  in.read(reinterpret_cast<char*>(gaps.data()), static_cast<std::streamsize>(moved * sizeof(Gap)));
   TopoDS_Shape both;
   BinTools::Read(both, in);
   if (!in || both.IsNull() || both.NbChildren() != 2) {
@@ -127,7 +137,7 @@ std::shared_ptr<Model> load_saved(rust::Str path)
       }
     }
   }
-  return std::make_shared<Model>(apart, labels, part.Value(), std::move(boxes), std::move(walls));
+  return std::make_shared<Model>(apart, labels, part.Value(), std::move(boxes), std::move(walls), std::move(gaps));
 }
 
 } // namespace geo_adapt

@@ -31,3 +31,14 @@ pub struct DoubleWall {
     /// So many solids were made of it.
     pub solids: u64,
 }
+
+/// An edge that was off its faces, and was moved onto them when the model's file was read (METHOD.md §3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosedGap {
+    /// The edge, from 0.
+    pub edge: u32,
+    /// Its greatest distance from its faces in the file, model units.
+    pub before: f64,
+    /// The same now: where the faces do not meet half of the distance between them is left.
+    pub after: f64,
+}

@@ -18,7 +18,7 @@ pub use discrete::Discrete;
 pub use entity::{CurveKind, EdgeEntity, Entity, FaceEntity, SurfaceKind, Topology, VertexEntity};
 pub use error::Error;
 pub use far_field::FarField;
-pub use healed::{DoubleWall, Healed, Remedy};
+pub use healed::{ClosedGap, DoubleWall, Healed, Remedy};
 pub use labels::on_mesh;
 pub use model::{Evaluator, Model};
 pub use names::{Label, Names, called};

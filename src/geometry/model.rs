@@ -1,8 +1,8 @@
 //! A model of any backend. The kernel works on this type: backends are told apart by a match, not by a virtual call.
 use super::classify::Classification;
 use super::{
-    CurveFrame, Discrete, DoubleWall, Evaluate, FarField, Geometry, Healed, Names, OnCurve, OnSurface, SurfaceFrame,
-    Topology,
+    ClosedGap, CurveFrame, Discrete, DoubleWall, Evaluate, FarField, Geometry, Healed, Names, OnCurve, OnSurface,
+    SurfaceFrame, Topology,
 };
 use crate::mesh::TetMesh;
 use crate::mesh::vector::Vec3;
@@ -140,6 +140,15 @@ impl Model {
         match self {
             #[cfg(feature = "occt")]
             Model::Occt(model) => model.double_walls(),
+            Model::Discrete(_) => Vec::new(),
+        }
+    }
+
+    /// The edges that were moved onto their faces when the model's file was read.
+    pub fn closed_gaps(&self) -> Vec<ClosedGap> {
+        match self {
+            #[cfg(feature = "occt")]
+            Model::Occt(model) => model.closed_gaps(),
             Model::Discrete(_) => Vec::new(),
         }
     }

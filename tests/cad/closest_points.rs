@@ -47,7 +47,14 @@ fn on_faces_they_agree_with_occt() {
                 let Some(expected) = on.reference_distance(true, i, point) else { continue };
                 let found = on.closest_on_face(i, point, None);
                 let what = format!("{} face {} {point:?}: {found:?}, OCCT has {expected}", path.display(), i + 1);
-                assert!((found.distance - expected).abs() <= allowed, "{what} ± {allowed:e}");
+                // OpenCASCADE's search misses some points on borders: a nearer one is proved by an edge of the face.
+                let is_nearer = found.distance < expected - allowed
+                    && face.edges.iter().any(|&edge| {
+                        let on_edge = on.closest_on_edge_within(edge, point, expected);
+                        on_edge.is_some_and(|on_edge| (on_edge.distance - found.distance).abs() <= allowed)
+                    });
+                let is_as_far = (found.distance - expected).abs() <= allowed;
+                assert!(is_as_far || is_nearer, "{what} ± {allowed:e}");
                 assert_eq!(distance(found.point, point), found.distance, "{what}");
                 assert!(
                     distance(on.face_frame(i, found.uv).point, found.point) <= 1e-14 * (1.0 + norm(point)),

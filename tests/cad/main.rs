@@ -15,6 +15,7 @@ mod common;
 mod copies;
 mod crossed;
 mod damaged;
+mod gaps;
 mod geometry_scripts;
 mod metric_geometry;
 mod model;

@@ -1,5 +1,5 @@
 //! The listing of a model for programs: entities count from 1, as in meshes and messages.
-use crate::geometry::{CurveKind, EdgeEntity, Evaluate, FaceEntity, Geometry, Model, Names, SurfaceKind};
+use crate::geometry::{ClosedGap, CurveKind, EdgeEntity, Evaluate, FaceEntity, Geometry, Model, Names, SurfaceKind};
 use crate::mesh::vector::{Vec3, norm};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -60,7 +60,17 @@ pub struct Listing<'a> {
     faces: Vec<FaceRow<'a>>,
     edges: Vec<EdgeRow>,
     vertices: Vec<VertexRow>,
+    /// Edges that were off their faces in the file.
+    moved_onto_faces: Vec<MovedRow>,
     names: &'a Names,
+}
+
+#[derive(Serialize)]
+struct MovedRow {
+    edge: u32,
+    /// Greatest distance from its faces in the file, and now, model units.
+    before: f64,
+    after: f64,
 }
 
 #[derive(Serialize)]
@@ -123,9 +133,14 @@ impl<'a> Listing<'a> {
             faces: Face::all(model).into_iter().map(|face| face_row(face, model.names())).collect(),
             edges: topology.edges.iter().zip(0..).map(|(edge, i)| edge_row(edge, i, model)).collect(),
             vertices: vertices.collect(),
+            moved_onto_faces: model.closed_gaps().into_iter().map(moved).collect(),
             names: model.names(),
         }
     }
+}
+
+fn moved(ClosedGap { edge, before, after }: ClosedGap) -> MovedRow {
+    MovedRow { edge: edge + 1, before, after }
 }
 
 fn from_one(indices: &[u32]) -> Vec<u32> {

@@ -1,6 +1,6 @@
 //! The listing of a model for people: entities count from 1.
 use super::listing::Face;
-use crate::geometry::{EdgeEntity, Geometry, Label, Model, Topology, VertexEntity};
+use crate::geometry::{ClosedGap, EdgeEntity, Geometry, Label, Model, Topology, VertexEntity};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -24,6 +24,12 @@ pub fn describe(model: &Model) -> String {
     };
     let rows: Vec<_> = topology.vertices.iter().zip(0..).map(row).collect();
     table(&mut text, "Vertices", &["", "x", "y", "z", "tolerance", "edges"], &rows);
+    let row =
+        |gap: &ClosedGap| vec![(gap.edge + 1).to_string(), format!("{:.1e}", gap.before), format!("{:.1e}", gap.after)];
+    let rows: Vec<_> = model.closed_gaps().iter().map(row).collect();
+    if !rows.is_empty() {
+        table(&mut text, "Edges that were moved onto their faces", &["", "off them", "now"], &rows);
+    }
     let names = model.names();
     for (title, labels) in
         [("Names of solids", &names.tetrahedra), ("Names of faces", &names.triangles), ("Names of edges", &names.edges)]

@@ -93,6 +93,14 @@ pub mod ffi {
         solids: u64,
     }
 
+    /// An edge that was moved onto its faces.
+    struct GapRecord {
+        edge: u64,
+        /// Its greatest distance from them, before and after.
+        before: f64,
+        after: f64,
+    }
+
     /// An edge as a wire of a face has it.
     struct EdgeUse {
         edge: u32,
@@ -182,6 +190,7 @@ pub mod ffi {
         fn domain(self: &Model, domain: &DomainRecord) -> Result<SharedPtr<Model>>;
         fn placed(self: &Model, factor: f64, by: &[f64; 3]) -> Result<SharedPtr<Model>>;
         fn double_walls(self: &Model) -> Result<Vec<DoubleWallRecord>>;
+        fn gaps_closed(self: &Model) -> Result<Vec<GapRecord>>;
         fn healed(self: &Model, length: f64, done: &mut Vec<HealRecord>) -> Result<SharedPtr<Model>>;
 
         fn surface_spline(model: &Model, face: u32) -> Result<Spline>;

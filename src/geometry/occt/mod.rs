@@ -22,7 +22,7 @@ mod swept;
 mod tree;
 mod trim;
 
-use super::{DoubleWall, Error, FarField, Geometry, Healed, Names, Topology};
+use super::{ClosedGap, DoubleWall, Error, FarField, Geometry, Healed, Names, Topology};
 use bridge::ffi;
 use copy::PCurve;
 use curve::Curve;
@@ -126,6 +126,12 @@ impl OcctModel {
     pub fn double_walls(&self) -> Vec<DoubleWall> {
         let found = self.occt.double_walls().unwrap_or_default();
         found.into_iter().map(|wall| DoubleWall { at: wall.at, solids: wall.solids }).collect()
+    }
+
+    /// The edges that were moved onto their faces when the model's file was read.
+    pub fn closed_gaps(&self) -> Vec<ClosedGap> {
+        let found = self.occt.gaps_closed().unwrap_or_default();
+        found.into_iter().map(|gap| ClosedGap { edge: gap.edge as u32, before: gap.before, after: gap.after }).collect()
     }
 
     /// Area of a face, in the square of the model's unit; none where OCCT finds none.
