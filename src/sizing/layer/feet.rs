@@ -22,7 +22,7 @@ impl Feet {
         faces: &[u32],
         layers: Option<(&Growth, &Outside)>,
     ) -> Self {
-        let search = Search::new(mesh, place, model, faces);
+        let search = Search::new(mesh, place, model, faces).with_corners();
         let reach = |feet: &[Foot]| {
             let Some((growth, outside)) = layers else { return 0.0 };
             // Farther away another face asks for no less than there is in any direction.

@@ -8,6 +8,9 @@ use crate::metric::{Sym3, plane_basis};
 const ALONG: f64 = 2e-3;
 /// The same on triangles that stand for a smooth surface, whose normals turn from one to the next: 30°.
 const ALONG_TRIANGLES: f64 = 0.5;
+/// In layers the way may be as far from the normal, 11°: a wedge between the two that is narrower than one cell of layers that grow by a fifth needs no
+/// cells of its own about the border, as on a plane of symmetry that a wall meets nearly at right angles.
+const WEDGE: f64 = 0.2;
 /// At a pole or an apex the curvatures are those at parameters so far towards the middle of the face.
 const NUDGE: f64 = 2e-3;
 /// 1 − s κ is at least this: at the focal points of a wall the distance has no second derivatives.
@@ -65,11 +68,36 @@ impl Foot {
         point: Vec3,
         exact: f64,
     ) -> Self {
+        let is_discrete = topology.faces[face as usize].kind == SurfaceKind::Discrete;
+        let along = if is_discrete { ALONG_TRIANGLES } else { ALONG };
+        Self::within(evaluator, topology, (face, on), point, (along, exact))
+    }
+
+    /// The same for the sizes of layers, where the foot on a border counts as one within the face if the way is nearly along the normal there.
+    pub fn in_layers(
+        evaluator: &mut Evaluator,
+        topology: &Topology,
+        (face, on): (u32, OnSurface),
+        point: Vec3,
+        exact: f64,
+    ) -> Self {
+        let is_discrete = topology.faces[face as usize].kind == SurfaceKind::Discrete;
+        let along = if is_discrete { ALONG_TRIANGLES } else { WEDGE };
+        Self::within(evaluator, topology, (face, on), point, (along, exact))
+    }
+
+    /// Within the face where no more than a share `along` of the way is across the normal.
+    fn within(
+        evaluator: &mut Evaluator,
+        topology: &Topology,
+        (face, on): (u32, OnSurface),
+        point: Vec3,
+        (along, exact): (f64, f64),
+    ) -> Self {
         let (way, distance) = (sub(point, on.point), on.distance);
         let frame = regular_frame(evaluator, topology, face, on.uv);
         let normal = unit(way);
         let aside = norm(sub(way, scale(frame.normal, dot(way, frame.normal))));
-        let along = if topology.faces[face as usize].kind == SurfaceKind::Discrete { ALONG_TRIANGLES } else { ALONG };
         if is_unit(frame.normal) && aside <= along * distance + exact {
             return Self::inside(&frame, distance, if distance > exact { normal } else { facing(&frame, way) });
         }

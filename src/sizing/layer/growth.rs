@@ -32,6 +32,11 @@ impl Growth {
         grown(self.first, self.growth, distance)
     }
 
+    /// Layers so many times as thick at the wall.
+    pub fn thicker(&self, factor: f64) -> Self {
+        Self { first: factor * self.first, ..*self }
+    }
+
     /// How far from the wall the size across is below another.
     pub fn reach(&self, size: f64) -> f64 {
         (size - self.first).max(0.0) / (self.growth - 1.0)

@@ -2,9 +2,12 @@
 //!
 //! `search` finds the closest points of faces, `foot` what the distance is like there: its gradient, and its second derivatives, which are the
 //! curvatures of the surfaces of equal distance. `growth` has the sizes that a user prescribes, `spalding` the profile of a turbulent boundary
-//! layer, whose second derivatives are known so without a recovery from the mesh; `spec` reads both from words. `triangles` is the distance where there is no model, and
-//! `measured` says what layers a mesh has.
+//! layer, whose second derivatives are known so without a recovery from the mesh; `spec` reads both from words. `corners` are where faces of a wall bend
+//! towards each other, `triangles` is the distance where there is no model, `measured` says what layers a mesh has, and `follows` how thin they can be
+//! on a coarse one.
+mod corners;
 mod feet;
+mod follows;
 mod foot;
 mod growth;
 mod measured;
@@ -15,6 +18,7 @@ mod spec;
 mod triangles;
 
 pub use feet::Feet;
+pub use follows::{THICKER, thickness};
 pub use foot::Foot;
 pub use growth::{Growth, Outside};
 pub use measured::{Measured, measure};

@@ -1,4 +1,5 @@
 //! The closest points of faces of a model to the vertices of a mesh.
+use super::corners::corners;
 use super::foot::Foot;
 use crate::geometry::classify::Classification;
 use crate::geometry::discrete::{BoxTree, box_of, closest_on_triangle};
@@ -22,8 +23,8 @@ pub struct Search<'a> {
     topology: &'a Topology,
     /// Ascending.
     faces: Vec<u32>,
-    /// The other ones of these that each shares an edge or a vertex with.
-    beside: BTreeMap<u32, Vec<u32>>,
+    /// The other ones of these that each makes a corner with, where they are looked for.
+    corners: BTreeMap<u32, Vec<u32>>,
     /// The mesh's triangles on them.
     triangles: Vec<u32>,
     tree: BoxTree,
@@ -41,9 +42,23 @@ impl<'a> Search<'a> {
         let corners = |triangle: u32| mesh.triangles.nodes[triangle as usize].map(|v| place.projected[v as usize]);
         let boxes: Vec<[Vec3; 2]> = triangles.iter().map(|&triangle| box_of(corners(triangle))).collect();
         let faces: Vec<u32> = asked.into_iter().collect();
-        let beside = beside(topology, &faces);
         let exact = EXACT * topology.diagonal();
-        Self { mesh, place, model, topology, faces, beside, triangles, tree: BoxTree::new(&boxes), exact }
+        Self {
+            mesh,
+            place,
+            model,
+            topology,
+            faces,
+            corners: BTreeMap::new(),
+            triangles,
+            tree: BoxTree::new(&boxes),
+            exact,
+        }
+    }
+
+    /// The same, with the corners that the faces make, before which a vertex has a foot on both.
+    pub fn with_corners(self) -> Self {
+        Self { corners: corners(self.mesh, self.place, self.model, &self.faces), ..self }
     }
 
     /// The exact distance of each vertex from the faces, shape (n,), model units: 0 on them.
@@ -106,8 +121,8 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// Adds the feet of a vertex: on the wall one for each of its faces there, else the nearest; and those on the faces beside, which make a
-    /// corner with these, where they are nearer than `reach` tells from the feet so far and the vertex is before them. `asked` is room for faces.
+    /// Adds the feet of a vertex: on the wall one for each of its faces there, else the nearest; and those on the faces that make a corner with
+    /// these, where they are nearer than `reach` tells from the feet so far and the vertex is before them. `asked` is room for faces.
     pub fn feet(
         &self,
         evaluator: &mut Evaluator,
@@ -128,12 +143,12 @@ impl<'a> Search<'a> {
         }
         if found.len() == begin {
             let nearest = self.nearest(evaluator, vertex);
-            found.push(Foot::off_wall(evaluator, self.topology, nearest, point, self.exact));
+            found.push(Foot::in_layers(evaluator, self.topology, nearest, point, self.exact));
             asked.push(nearest.0);
         }
         for k in 0..asked.len() {
-            let beside = self.beside.get(&asked[k]).map_or(&[][..], Vec::as_slice);
-            for &other in beside {
+            let corners = self.corners.get(&asked[k]).map_or(&[][..], Vec::as_slice);
+            for &other in corners {
                 if asked.contains(&other) {
                     continue;
                 }
@@ -154,28 +169,4 @@ impl<'a> Search<'a> {
         let is_before = dot(foot.normal, evaluator.face_normal(face, on.uv)) < 0.0;
         (foot.is_inside && is_before && foot.distance > self.exact).then_some(foot)
     }
-}
-
-/// For each of some faces those of them that share an edge or a vertex with it, ascending.
-fn beside(topology: &Topology, faces: &[u32]) -> BTreeMap<u32, Vec<u32>> {
-    let mut at_vertex: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
-    let mut beside: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
-    for &face in faces {
-        for &edge in &topology.faces[face as usize].edges {
-            let entity = &topology.edges[edge as usize];
-            let others = entity.faces.iter().filter(|other| faces.binary_search(other).is_ok());
-            beside.entry(face).or_default().extend(others);
-            for vertex in entity.vertices.into_iter().flatten() {
-                at_vertex.entry(vertex).or_default().insert(face);
-            }
-        }
-    }
-    for faces in at_vertex.values() {
-        faces.iter().for_each(|&face| beside.entry(face).or_default().extend(faces));
-    }
-    let without = |(face, mut others): (u32, BTreeSet<u32>)| {
-        others.remove(&face);
-        (face, others.into_iter().collect())
-    };
-    beside.into_iter().map(without).collect()
 }

@@ -27,6 +27,14 @@ pub struct Wall {
     pub spalding: Option<f64>,
 }
 
+impl Walls {
+    /// The same with layers so many times as thick at the walls, where they are prescribed.
+    pub fn thicker(&self, factor: f64) -> Self {
+        let each = self.0.iter().cloned();
+        Self(each.map(|wall| Wall { growth: wall.growth.map(|growth| growth.thicker(factor)), ..wall }).collect())
+    }
+}
+
 impl FromStr for Walls {
     type Err = String;
 
