@@ -9,7 +9,7 @@ use crate::tasks::Team;
 use std::path::{Path, PathBuf};
 
 /// What the boundary lies on where there is no CAD model.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[group(skip)]
 pub struct SurfaceArguments {
     /// Instead of --cad, the surface that the boundary lies on: .stl, .obj, .ply, or the boundary of a mesh of any format. In a

@@ -267,6 +267,99 @@ fn layers_are_there_after_one_cycle_and_stay() {
     }
 }
 
+/// Figures of a mesh in the metric of walls made anew on it: the share of unit edges, and the least mean ratio.
+fn judged(work: &Workplace, mesh: &str, model: &str, spec: &str) -> [f64; 2] {
+    let metric = text(&work.path("anew.solb"));
+    made(&["metric", "wall", mesh, "--cad", model, "--wall", spec, "--hmax", "0.3", "-o", &metric, "-q"]);
+    let told = made(&["inspect", mesh, "--metric", &metric, "--json"]);
+    let found: Value = serde_json::from_str(&told).unwrap();
+    [figure(&found["metric"], "unit_edges"), figure(&found["mean_ratios"], "min")]
+}
+
+fn report_of(path: &str) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// Edges of 0.1, whose middles are 0.0025 off the cylinder, for layers of 1e-5: drafts come first, and the result is what its own metric asks for. Then no
+/// drafts are needed.
+#[test]
+fn thin_layers_follow_a_curved_wall_in_one_run() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let spec = format!("{}:h=1e-5,growth=1.2", reference(&mesh_of(&start)));
+    let [out, again, report] = ["1.meshb", "2.meshb", "r.json"].map(|name| text(&work.path(name)));
+    let adapt = |input: &str, out: &str| {
+        let common =
+            ["adapt", input, "--cad", &model, "--size", "0.3", "--wall", &spec, "-o", out, "--report", &report];
+        let run = run(&common);
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        (stderr(&run), report_of(&report))
+    };
+    let (told, first) = adapt(&start, &out);
+    let drafts = first["drafts"].as_array().unwrap();
+    assert!(drafts.len() >= 2 && told.contains("drafts with layers"), "{told} {drafts:?}");
+    assert_eq!(first["input_vertices"], mesh_of(&start).vertices.len());
+    let thicker: Vec<f64> = drafts.iter().map(|draft| figure(draft, "thicker")).collect();
+    assert!(thicker.is_sorted_by(|a, b| a > b) && thicker.last() == Some(&10.0), "{thicker:?}");
+    let [unit, least] = judged(&work, &out, &model, &spec);
+    assert!(unit > 0.9 && least > 0.2, "{unit} {least}");
+    let layers = inspected(&out, &model, &spec);
+    let mean = figure(&layers, "mean") / figure(&layers, "asked");
+    let share = figure(&layers, "points") / figure(&layers, "points_asked");
+    assert!((0.75..0.95).contains(&mean) && (0.95..1.1).contains(&share), "{layers}");
+    let (told, second) = adapt(&out, &again);
+    assert!(second.get("drafts").is_none() && !told.contains("draft"), "{told}");
+}
+
+/// The metric of a field lies on the first mesh: drafts have it by interpolation, with the complexity that is asked for.
+#[test]
+fn drafts_keep_the_complexity_of_a_field() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let [field, report] = ["u.solb", "r.json"].map(|name| text(&work.path(name)));
+    let spec = format!("{}:h=1e-4,growth=1.2", reference(&mesh_of(&start)));
+    made(&["field", "evaluate", &start, "--function", "tanh3", "-o", &field, "-q"]);
+    let wanted = |options: &[&str], name: &str| {
+        let out = text(&work.path(name));
+        let common = ["adapt", &start, "--cad", &model, "--field", &field, "--wall", &spec, "-o", &out];
+        made(&[&common[..], &["--report", &report], options].concat());
+        let told = report_of(&report);
+        assert!(!told["drafts"].as_array().unwrap().is_empty(), "{told}");
+        assert_eq!(told["multiscale"]["fields"].as_array().map(Vec::len), Some(1), "{told}");
+        (mesh_of(&out).vertices.len(), told)
+    };
+    let (vertices, told) = wanted(&["--complexity", "12000"], "c.meshb");
+    assert_eq!(told["multiscale"]["complexity_wanted"], 12000.0);
+    assert!((18_000..30_000).contains(&vertices), "{vertices}");
+    // What must stay has fewer vertices than the metric asks for: it takes more than one mesh to meet a number.
+    let (vertices, told) = wanted(&["--vertices", "9000", "--freeze", "1,7"], "v.meshb");
+    let meeting = &told["vertices_wanted"];
+    assert!(figure(meeting, "meshes") > 1.0 && meeting["is_met"] == true, "{told}");
+    assert!((8_100..9_900).contains(&vertices), "{vertices}");
+}
+
+/// Drafts need a mesh in memory as a whole, and surfaces that its references name.
+#[test]
+fn it_is_said_where_drafts_would_help_and_are_not_made() {
+    let (work, [model, start]) = (Workplace::new(), cube_cylinder());
+    let spec = format!("{}:h=1e-4,growth=1.2", reference(&mesh_of(&start)));
+    let out = text(&work.path("m.meshb"));
+    let common = ["adapt", &start, "--cad", &model, "--size", "0.3", "--wall", &spec, "-o", &out];
+    let by_parts = run(&[&common[..], &["--memory", "2GB"]].concat());
+    assert!(by_parts.status.code() == Some(0), "{}", stderr(&by_parts));
+    assert!(stderr(&by_parts).contains("part by part no drafts are made"), "{}", stderr(&by_parts));
+    // Half of the cylinder has another reference.
+    let (mut mesh, mixed) = (mesh_of(&start), text(&work.path("mixed.meshb")));
+    let wall = reference(&mesh);
+    let is_right =
+        |nodes: &[u32; 3]| nodes.iter().map(|&v| mesh.vertices[v as usize]).map(|p| p[0] - p[1]).sum::<f64>() > 0.0;
+    let refs = mesh.triangles.iter().map(|(nodes, r)| if r == wall && is_right(&nodes) { 77 } else { r }).collect();
+    mesh.triangles.refs = refs;
+    io::write_mesh(Path::new(&mixed), &mesh).unwrap();
+    let spec = format!("{wall}+77:h=1e-4,growth=1.2");
+    std::fs::remove_file(&out).unwrap();
+    let run = run(&["adapt", &mixed, "--cad", &model, "--size", "0.3", "--wall", &spec, "-o", &out]);
+    assert!(run.status.code() == Some(0) && stderr(&run).contains("several references"), "{}", stderr(&run));
+}
+
 /// The sides x = 1 and y = 1 of the cube meet at right angles: as two walls, and as one.
 #[test]
 fn a_corner_of_two_walls_has_the_layers_of_both() {

@@ -52,6 +52,7 @@ impl Begun {
             .and_then(|given| given.without_stack(&input.mesh, "work part by part"))
             .and_then(|given| input.prepare(team, given, None, notices));
         let Input { on, source, .. } = agreed(ranks, prepared)?;
+        notices.extend(agreed(ranks, input.without_drafts(team, &on).map_err(Error::from))?);
         let complexity = input.amount.complexity().unwrap_or_else(|| source.complexity(team, &on.mesh));
         let logs = decomposition::logs_on(team, &on.mesh, &source);
         Ok((Self { on, complexity, content: Content::Whole(logs) }, Some(source)))

@@ -6,7 +6,7 @@ use clap::ArgGroup;
 use std::path::PathBuf;
 
 /// The metric: exactly one of the five.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[group(required = true, multiple = false)]
 pub struct FieldArguments {
     /// The metric at the vertices of the mesh, .sol or .solb, or the name of one in the mesh's file: symmetric tensors, or scalars, which are

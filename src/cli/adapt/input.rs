@@ -36,7 +36,7 @@ const APART: &str = "The mesh hangs together in edges or vertices alone, where i
                      vertices of its own, as `geo-adapt bootstrap` writes it beside its mesh";
 
 /// The inputs of a run.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub struct InputArguments {
     /// The mesh, in any format that `convert` reads
     pub mesh: PathBuf,
@@ -51,7 +51,7 @@ pub struct InputArguments {
     pub amount: Amount,
     /// How far a vertex of the input may be from the model, in its units
     #[arg(long, value_name = "T", value_parser = crate::cli::positive, allow_negative_numbers = true)]
-    tolerance: Option<f64>,
+    pub(super) tolerance: Option<f64>,
     /// Greatest size on a surface or in a region, by reference or name, or in a box: 3:h=0.01, inlet:h=0.02, region:2:h=0.05,
     /// box:X0,Y0,Z0,X1,Y1,Z1:h=0.1. With growth=1.2 behind it, it goes on around the surface or box, a fifth larger from an edge to the next: with
     /// the distance d the size is h + 0.2 d
@@ -101,6 +101,23 @@ pub struct Input {
     pub source: Source,
     /// What the metric was made of, where another may be wanted: with --vertices.
     pub raw: Option<Raw>,
+}
+
+/// A mesh on its model, before its metric is made.
+pub(super) struct Placed {
+    /// The mesh on its model.
+    pub on: OnModel,
+    /// What its metric is made of.
+    pub raw: Raw,
+    /// Its matched faces, until they are taken.
+    pub faces: Option<MatchedFaces>,
+}
+
+impl Placed {
+    /// The matched faces of the mesh.
+    pub fn take_faces(&mut self, team: Team<'_>) -> MatchedFaces {
+        self.faces.take().unwrap_or_else(|| MatchedFaces::of(team, &self.on.mesh.tets.nodes))
+    }
 }
 
 /// A mesh on its model, and what is told of it.
@@ -181,6 +198,18 @@ impl InputArguments {
         cad: Option<Model>,
         notices: &mut Vec<String>,
     ) -> Result<Input, Error> {
+        let placed = self.placed(team, given, cad, notices)?;
+        self.ready(team, placed, notices)
+    }
+
+    /// Completes the boundary, and puts the mesh on its model.
+    pub(super) fn placed(
+        &self,
+        team: Team<'_>,
+        given: Given,
+        cad: Option<Model>,
+        notices: &mut Vec<String>,
+    ) -> Result<Placed, Error> {
         let Given { mut mesh, stack, mut logs, mut names, fields, result_crosses } = given;
         let faces = MatchedFaces::of(team, &mesh.tets.nodes);
         let added = complete_matched(team, &mut mesh, &faces);
@@ -216,14 +245,31 @@ impl InputArguments {
         }
         let mesh = Arc::new(mesh);
         let raw = Raw { logs, copies, fields };
-        let on = On { place: &place, model: &model, names: &names, beside: beside.as_ref() };
-        let (source, how) = self.source(team, (&mesh, faces), &raw, on, (self.amount.complexity(), notices))?;
         let size = [mesh.vertices.len(), mesh.tets.len()];
-        Ok(Input {
-            on: OnModel { mesh, size, crosses, place, model, names, how, meeting: None, beside },
-            source,
-            raw: self.amount.vertices.is_some().then_some(raw),
-        })
+        let how = How::default();
+        let on = OnModel { mesh, size, crosses, place, model, names, how, meeting: None, beside };
+        Ok(Placed { on, raw, faces: Some(faces) })
+    }
+
+    /// Brings the metric to its complexity, on a mesh on its model.
+    pub(super) fn ready(&self, team: Team<'_>, mut placed: Placed, notices: &mut Vec<String>) -> Result<Input, Error> {
+        let (source, how) = self.metric(team, &mut placed, notices)?;
+        let Placed { mut on, raw, .. } = placed;
+        on.how = how;
+        Ok(Input { on, source, raw: self.amount.vertices.is_some().then_some(raw) })
+    }
+
+    /// The metric of its complexity on a mesh on its model, and how it was made.
+    pub(super) fn metric(
+        &self,
+        team: Team<'_>,
+        placed: &mut Placed,
+        notices: &mut Vec<String>,
+    ) -> Result<(Source, How), Error> {
+        let faces = placed.take_faces(team);
+        let Placed { on: OnModel { mesh, place, model, names, beside, .. }, raw, .. } = placed;
+        let on = On { place, model, names, beside: beside.as_ref() };
+        self.source(team, (mesh, faces), raw, on, (self.amount.complexity(), notices))
     }
 
     /// Tells where the boundary of the mesh passes through itself. Returns whether it does.
@@ -254,7 +300,10 @@ impl InputArguments {
         let (raw, share) = (raw.as_ref().unwrap_or(&none), how.chords.map(|chords| chords.share));
         let making = Making { mesh, raw, on, share, complexity: Some(complexity) };
         // What there is to say was said of the first.
-        let made = self.scaled(team, making, MatchedFaces::of(team, &mesh.tets.nodes), &mut Vec::new())?;
+        let mut made = self.scaled(team, making, MatchedFaces::of(team, &mesh.tets.nodes), &mut Vec::new())?;
+        // On a draft the metric of a field is interpolated: how it was made is known of the first mesh.
+        let How { made: before, goal, drafts, .. } = how.clone();
+        made.1 = How { made: made.1.made.or(before), goal: made.1.goal.or(goal), drafts, ..made.1 };
         Ok(self.beside_stack(team, mesh, on, made))
     }
 

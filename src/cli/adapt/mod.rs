@@ -2,6 +2,7 @@
 mod begun;
 mod by_parts;
 mod chords;
+mod drafts;
 pub mod field;
 pub mod files;
 pub mod input;
@@ -134,15 +135,21 @@ pub fn run(arguments: &Arguments) -> Outcome {
     for cycle in 1..=arguments.cycles {
         let start = start.take().unwrap_or_else(Instant::now);
         let line = line.take();
-        let inner = Waiting::for_what("putting the mesh on its model, and making the metric");
-        let mut input = arguments.input.prepare(team, given, cad.take(), &mut notices)?;
-        notices.drain(..).for_each(crate::cli::note);
+        let inner = Waiting::for_what("putting the mesh on its model");
+        let placed = arguments.input.placed(team, given, cad.take(), &mut notices)?;
         drop((inner, line));
-        let prepared = start.elapsed();
+        notices.drain(..).for_each(crate::cli::note);
         // What comes now is worth to be written.
-        let progress = Progress::new(progress::finish_on_interrupt());
+        let stop = progress::finish_on_interrupt();
+        let (mut input, drafted) = arguments.input(team, (&pool, plan), placed, stop, &mut notices)?;
+        notices.drain(..).for_each(crate::cli::note);
+        let prepared = start.elapsed().saturating_sub(drafts::time(&input.on.how.drafts));
+        let progress = Progress::new(stop);
         let is_last = cycle == arguments.cycles;
-        let adapted = arguments.adapted(team, (&pool, plan), &mut input, (&progress, is_last))?;
+        let adapted = match drafted {
+            Some(adapted) => adapted,
+            None => arguments.adapted(team, (&pool, plan), &mut input, (&progress, is_last))?,
+        };
         let finished = start.elapsed();
         let line = Waiting::for_what("measuring and writing");
         let held = adapted.extracted.part.as_ref().map(|joint| joint.held.clone());

@@ -1,5 +1,6 @@
 //! What was done: the table on the terminal and the JSON.
 use super::chords;
+use super::drafts::{self, Draft};
 use super::input::OnModel;
 use super::meet::Meeting;
 use super::rounds::Parts;
@@ -109,6 +110,9 @@ pub struct Report {
     /// What was cut along curved walls.
     #[serde(skip_serializing_if = "Option::is_none")]
     chords: Option<Limited>,
+    /// The drafts that were made before, with --wall on a coarse mesh.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    drafts: Vec<Draft>,
     /// How a number of vertices was met, with --vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     vertices_wanted: Option<Meeting>,
@@ -195,6 +199,7 @@ impl Report {
             multiscale: input.how.made.clone(),
             goal: input.how.goal.clone(),
             chords: input.how.chords,
+            drafts: input.how.drafts.clone(),
             vertices_wanted: input.meeting,
             parts: None,
             kept: None,
@@ -270,6 +275,7 @@ impl Report {
         if let Some(limited) = &self.chords {
             chords::row(limited, &mut table);
         }
+        drafts::row(&self.drafts, &mut table);
         if let Some(meeting) = &self.vertices_wanted {
             meeting.row(&mut table);
         }

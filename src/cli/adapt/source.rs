@@ -1,5 +1,6 @@
 //! The metric of a run, on the mesh as it was put on its model: bounded, graded, and of its complexity.
 use super::chords::told;
+use super::drafts::Draft;
 use super::input::{Error, InputArguments};
 use super::local;
 use crate::adapt;
@@ -49,6 +50,8 @@ pub struct How {
     pub chords: Option<Limited>,
     /// How it was fitted to a stack.
     pub fitted: Option<Fitted>,
+    /// The drafts that were made before.
+    pub drafts: Vec<Draft>,
 }
 
 /// Where the mesh lies.
@@ -147,7 +150,7 @@ impl InputArguments {
 
     /// The analytic field, or the mesh as background with sizes that are given, or with the metric made from a field; and how it was made. Of its
     /// complexity already, where it is bounded or made.
-    fn unscaled(
+    pub(super) fn unscaled(
         &self,
         team: Team<'_>,
         making: Making<'_>,
@@ -233,8 +236,17 @@ impl InputArguments {
         (mut logs, by_others): (Vec<Sym3>, Option<&dyn SizeBound>),
         (wanted, notices): (Option<f64>, &mut Vec<String>),
     ) -> Result<(Vec<Sym3>, Option<Cut>), String> {
-        let (limits, gradation) = (self.multiscale.limits()?, self.multiscale.growth().filter(|_| self.is_graded()));
-        let fixed = self.with_walls(team, mesh, on, self.local_sizes(team, mesh, on)?, (wanted, gradation), notices)?;
+        // The metric of a field is graded and has the sizes of the geometry in it on a draft, too.
+        let is_made = self.field.is_of_fields();
+        let growth = self.multiscale.growth().filter(|_| is_made || self.is_graded());
+        let (limits, gradation) = (self.multiscale.limits()?, growth);
+        let fixed = match wanted {
+            Some(complexity) if is_made => self.fixed(team, mesh, on, complexity, notices)?,
+            _ => {
+                let others = self.local_sizes(team, mesh, on)?;
+                self.with_walls(team, mesh, on, others, (wanted, gradation), notices)?
+            }
+        };
         let measure = Measure::Between;
         let complexity = wanted.unwrap_or(1.0);
         let bounds = Bounds { complexity, measure, gradation, limits, fixed: fixed.as_deref(), by_others };

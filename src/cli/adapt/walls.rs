@@ -1,6 +1,7 @@
 //! The layers along the walls of --wall, among the sizes of a run that hold whatever its metric says.
 use super::input::InputArguments;
 use super::source::On;
+use crate::geometry::Model;
 use crate::mesh::TetMesh;
 use crate::metric::multiscale::{Bounds, Measure, Norm, bounded, diameter};
 use crate::metric::{Limits, Sym3, field, grade};
@@ -15,6 +16,17 @@ const OF_LAW: f64 = 0.5;
 const SEGMENTS: f64 = 2.0;
 
 impl InputArguments {
+    /// What sizes are outside the layers: there a wall asks for nothing that is not asked for anyway.
+    pub(super) fn outside_layers(&self, team: Team<'_>, mesh: &TetMesh, model: &Model) -> Result<Outside, String> {
+        let limits = self.multiscale.limits()?;
+        let greatest = if self.has_geometry() {
+            self.geometry.options(model, limits, None).greatest
+        } else {
+            limits.hmax.unwrap_or_else(|| diameter(team, mesh))
+        };
+        Ok(Outside { greatest, segments: SEGMENTS })
+    }
+
     /// ln of a metric that holds whatever the field says, with that of the walls intersected. Where the complexity is given and all that asks for more
     /// than most of it, the layers are enlarged.
     pub(super) fn with_walls(
@@ -30,15 +42,9 @@ impl InputArguments {
             return Ok(others);
         }
         let asked = on.places(mesh).walls(&self.walls)?;
-        // Outside the layers a wall asks for nothing that is not asked for there anyway.
-        let limits = self.multiscale.limits()?;
-        let greatest = match &others {
-            Some(_) if self.has_geometry() => self.geometry.options(on.model, limits, None).greatest,
-            _ => limits.hmax.unwrap_or_else(|| diameter(team, mesh)),
-        };
         let is_law = asked.iter().any(|asked| asked.wall.spalding.is_some());
         let options = Options {
-            outside: Outside { greatest, segments: SEGMENTS },
+            outside: self.outside_layers(team, mesh, on.model)?,
             complexity: wanted.filter(|_| is_law).map(|wanted| OF_LAW * wanted),
             norm: Norm::default(),
             exact: false,

@@ -100,7 +100,7 @@ pub fn on(data: &Dataset) -> On<'_> {
 }
 
 /// How much the metric is to ask for.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[group(id = "amount", multiple = false)]
 pub struct Amount {
     /// Scale the metric to this complexity ∫ √det M, the volume in the metric: about half the number of vertices
@@ -134,7 +134,7 @@ pub fn needs_amount(command: clap::Command) -> clap::Command {
 }
 
 /// Bounds of the sizes.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub struct LimitArguments {
     /// Least size, in model units
     #[arg(long, value_name = "H", value_parser = super::super::positive, allow_negative_numbers = true)]
@@ -148,6 +148,11 @@ pub struct LimitArguments {
 }
 
 impl LimitArguments {
+    /// No limits.
+    pub fn none() -> Self {
+        Self { hmin: None, hmax: None, aspect_ratio: None }
+    }
+
     /// The limits; refuses a least size above the greatest.
     pub fn limits(&self) -> Result<Limits, String> {
         let Self { hmin, hmax, aspect_ratio } = *self;
@@ -161,7 +166,7 @@ impl LimitArguments {
 }
 
 /// How fast sizes may grow.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub struct GradationArgument {
     /// Greatest growth of the sizes from an edge to the next (Alauzet 2010, mixed space), or `off` [default: 1.5]
     #[arg(long, value_name = "R", value_parser = gradation, allow_negative_numbers = true)]
@@ -175,6 +180,11 @@ impl GradationArgument {
     /// The ratio; none when off.
     pub fn ratio(&self) -> Option<f64> {
         self.gradation.map_or(Some(USUAL_GROWTH), |gradation| gradation.0)
+    }
+
+    /// No bound on growth.
+    pub fn off() -> Self {
+        Self { gradation: Some(Gradation(None)) }
     }
 
     /// Whether one was given.

@@ -28,7 +28,7 @@ pub enum Combine {
 }
 
 /// The options of the multiscale metric.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub struct MultiscaleArguments {
     /// The p of the L^p norm of the interpolation error: 1, 2, 4, any number from 1 on, or inf [default: 2; of a goal 1]
     #[arg(long, value_name = "P", allow_negative_numbers = true)]
@@ -74,6 +74,11 @@ pub struct Made {
 }
 
 impl MultiscaleArguments {
+    /// The same without bounds of sizes and of their growth.
+    pub fn unbounded(&self) -> Self {
+        Self { gradation: GradationArgument::off(), limits: LimitArguments::none(), ..self.clone() }
+    }
+
     /// The bounds of the sizes.
     pub fn limits(&self) -> Result<Limits, String> {
         self.limits.limits()

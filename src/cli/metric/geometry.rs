@@ -47,7 +47,7 @@ pub struct Arguments {
 }
 
 /// What a geometry asks for; `adapt --field` has it too.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub struct GeometryArguments {
     /// Segments for a radian of curvature: the size is 1/(N κ), 2π N segments go round a circle
     #[arg(long, value_name = "N", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
