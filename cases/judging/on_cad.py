@@ -43,13 +43,15 @@ def quality(unit_edges, least, mean):
     return [Bound("unit_edges", "≥", *unit_edges), Bound("ratio_least", "≥", *least), Bound("ratio_mean", "≥", *mean)]
 
 
-def arguments(doc, count):
-    """The command line that all these cases have."""
+def arguments(doc, count, first=None):
+    """The command line that all these cases have; with a first height of layers where one is given."""
     parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     program = cycles.ROOT / "target/release/geo-adapt"
     parser.add_argument("--program", type=Path, default=program, help="the built program (default %(default)s)")
     parser.add_argument("--cycles", type=int, default=count, help="runs in a row (default %(default)s); floors hold for the default")
     parser.add_argument("--threads", type=int, default=0, help="default: all cores")
+    if first is not None:
+        parser.add_argument("--first", type=float, default=first, help="first height of the layers (default %(default)s, for which the floors hold)")
     options = parser.parse_args()
     if not options.program.is_file():
         sys.exit(f"{options.program} is not there: cargo build --release, or cases/run, which does it")
