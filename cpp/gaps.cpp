@@ -2,7 +2,6 @@
 // boundary layer (METHOD.md §3).
 #include "geo-adapt/cpp/gaps.hpp"
 
-#include <BRepAdaptor_Curve.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_TEdge.hxx>
 #include <BRep_Tool.hxx>
@@ -59,9 +58,9 @@ constexpr int LOOKS = 32;
 constexpr int POINTS[] = {4, 12, 36};
 /// Most points of a curve.
 constexpr int MOST_POINTS = 4000;
-/// An edge is moved where that brings it this much nearer to its faces.
+/// An edge is moved where that brings it to this share of its distance from its faces.
 constexpr double NEARER = 0.5;
-/// More points are taken where that brings it nearer by this much again.
+/// More points are kept only where they bring it to this share of the distance before.
 constexpr double ENOUGH = 0.7;
 
 using Uv = std::array<double, 2>;

@@ -68,9 +68,7 @@ impl Foot {
         point: Vec3,
         exact: f64,
     ) -> Self {
-        let is_discrete = topology.faces[face as usize].kind == SurfaceKind::Discrete;
-        let along = if is_discrete { ALONG_TRIANGLES } else { ALONG };
-        Self::within(evaluator, topology, (face, on), point, (along, exact))
+        Self::within(evaluator, topology, (face, on), point, (ALONG, exact))
     }
 
     /// The same for the sizes of layers, where the foot on a border counts as one within the face if the way is nearly along the normal there.
@@ -81,23 +79,23 @@ impl Foot {
         point: Vec3,
         exact: f64,
     ) -> Self {
-        let is_discrete = topology.faces[face as usize].kind == SurfaceKind::Discrete;
-        let along = if is_discrete { ALONG_TRIANGLES } else { WEDGE };
-        Self::within(evaluator, topology, (face, on), point, (along, exact))
+        Self::within(evaluator, topology, (face, on), point, (WEDGE, exact))
     }
 
-    /// Within the face where no more than a share `along` of the way is across the normal.
+    /// Within the face where no more than a share `on_cad` of the way is across the normal, or on triangles [`ALONG_TRIANGLES`].
     fn within(
         evaluator: &mut Evaluator,
         topology: &Topology,
         (face, on): (u32, OnSurface),
         point: Vec3,
-        (along, exact): (f64, f64),
+        (on_cad, exact): (f64, f64),
     ) -> Self {
         let (way, distance) = (sub(point, on.point), on.distance);
         let frame = regular_frame(evaluator, topology, face, on.uv);
         let normal = unit(way);
         let aside = norm(sub(way, scale(frame.normal, dot(way, frame.normal))));
+        let is_discrete = topology.faces[face as usize].kind == SurfaceKind::Discrete;
+        let along = if is_discrete { ALONG_TRIANGLES } else { on_cad };
         if is_unit(frame.normal) && aside <= along * distance + exact {
             return Self::inside(&frame, distance, if distance > exact { normal } else { facing(&frame, way) });
         }
